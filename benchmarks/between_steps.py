@@ -1,9 +1,9 @@
-"""States at asked-for times of the plain reference against the ends of its runs, on random motions.
+"""Accuracy of the plain reference between steps compared with that at the end of a run, on random motions.
 
 Run with ``python benchmarks/between_steps.py [count] [first]``. Each motion is one of ``random_systems``, with a
-damping ratio of 0.1 to 10, for 30 units of time, asked for at 1,001 times. It is compared with the same motion at a
-tolerance smaller by 100. At the time where the two differ most a run is made to end, which has no interpolant there.
-All differences are shares of the same sizes as in ``random_systems``.
+damping ratio of 0.1 to 10, for 30 units of time at 1,001 requested times. It is compared with the same motion at a
+hundredth of the tolerance. Another run ends at the time of the largest difference, where it needs no interpolant.
+All differences are relative to the sizes of ``random_systems``.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ from reference_model.systems import FloatArray, System
 
 LASTS, SAMPLES = 30.0, 1001
 WORSE = 2.0
-"""Ratio of the differences from which the interpolant is the one to blame."""
+"""Ratio of the differences above which the interpolant is the cause."""
 
 
 def random_motion(seed: int) -> tuple[System, FloatArray]:
-    """Return a system with a damping ratio log-uniform in 0.1 to 10, and a state."""
+    """Return a system with a damping ratio log-uniform in 0.1 to 10, and an initial state."""
     system, state = random_system(seed)
     ratio = 10.0 ** np.random.default_rng([seed, 1]).uniform(-1.0, 1.0)
     return replace(system, damping=2.0 * float(ratio)), state
 
 
 def measure(seed: int) -> tuple[float, float]:
-    """Return the largest difference at asked-for times, and that of a run which ends there; nan if given up."""
+    """Return the largest difference at requested times and that of a run which ends there; NaN if a run fails."""
     system, state = random_motion(seed)
     times = np.linspace(0.0, LASTS, SAMPLES)
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
@@ -52,7 +52,7 @@ def measure(seed: int) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print each motion whose states between steps are worse than the ends of runs, and a summary."""
+    """Print each motion that is less accurate between steps than at the end of a run, and a summary."""
     signal.signal(signal.SIGPROF, break_off)
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 500
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0

@@ -1,31 +1,30 @@
-"""Many pins at once: this package against C by hand and against libraries, on Fig. 5's basin.
+"""Ensembles of pins: this package compared with handwritten C and with libraries, on the basin of Fig. 5.
 
-Run with ``make -C benchmarks/limit && python benchmarks/ensemble.py``; takes about two minutes. Libraries that are
-not installed are told. All run on all processors, to t = 300 s unless a trajectory may end early, at a tolerance of
-1e-9 for each step.
+Run with ``make -C benchmarks/limit && python benchmarks/ensemble.py``; takes about two minutes and reports missing
+libraries. All run on all processors, to t = 300 s unless a trajectory may end early, at a tolerance of 1e-9 per step.
 
-Measured on two cores with AVX-512; rates are by processor time, and ratios hold better than they do:
+Measured on two cores with AVX-512. Rates are by processor time; ratios are more reproducible than rates:
 
 | way | trajectories/s | |
 |---|---|---|
-| C by hand, the same scheme, FMA | 96,000 | the limit |
+| handwritten C, the same scheme, FMA | 96,000 | the limit |
 | this package, full length | 87,000 | 0.90 of it |
 | this package, early end | 278,000 | 3.2 times that |
 | heyoka, regularised law | 1,800 | |
 | CyRK, regularised law | 750 | |
-| numbalsoda, regularised law | 4,000 | measured once elsewhere: it needs a Fortran compiler |
+| numbalsoda, regularised law | 4,000 | measured once elsewhere; it needs a Fortran compiler |
 
-How the scheme was chosen, in numbers per core:
+Reasons for the scheme, in numbers per core:
 
-- exact Coulomb friction in stretched time dτ = dt·(s + s₀)/s needs 730 steps a trajectory and one right-hand side
-  for fast and slow slip, and errs by 1.5e-8 at t = 100; s₀ = g·T/2 was taken (T/4: 716 steps, but stiffer starts of
-  slip, T: 759, 2T: 833, 4T: 902);
-- a step costs 25 ns a lane with 16 lanes, 29 ns with 8, 25 ns with 32; about 200 ns one at a time;
-- compilers keep to vectors of 256 bits on some processors that have 512: compiled for one of these, emulated on the
-  same machine by ``NUMBA_CPU_NAME=icelake-server``, pins at full length make 0.51 of C by hand, with 512 bits 0.88,
-  and the same bits; where the compiler prefers 512 by itself, 0.89. So the widest is always taken;
-- contraction to FMA would save 12 %, and cost the same bits on workers with and without it: not taken;
-- the exact law by hand in C makes 52,000/s a core; the regularised one, with DOP853 and Rodas5P, once made 37,000/s.
+- Exact Coulomb friction in stretched time dτ = dt·(s + s₀)/s takes 730 steps per trajectory, uses one right-hand side
+  for fast and slow slip, and has an error of 1.5e-8 at t = 100. We chose s₀ = g·T/2 (T/4: 716 steps, but stiffer
+  starts of slip, T: 759, 2T: 833, 4T: 902).
+- A step costs 25 ns per lane with 16 lanes, 29 ns with 8, 25 ns with 32, and about 200 ns for a single trajectory.
+- On some processors with 512-bit vectors, compilers use only 256 bits. Compiled for one of them, emulated by
+  ``NUMBA_CPU_NAME=icelake-server``, pins at full length reach 0.51 of handwritten C, and 0.88 with 512 bits, with
+  identical results. If the compiler prefers 512 bits itself, they reach 0.89. So the widest vectors are always used.
+- Contraction to FMA would save 12 %, but workers with and without FMA would give different results; it is off.
+- The exact law in handwritten C computes 52,000/s per core; the regularised law, with DOP853 and Rodas5P, 37,000/s.
 """
 
 from __future__ import annotations
@@ -53,18 +52,18 @@ STARTS = 20_000
 MILLION = 1_000_000
 UNTIL = 300.0
 TOLERANCE = 1e-9
-"""Of a step; an ensemble is asked for ten times as much."""
+"""Tolerance of a step; that of an ensemble is ten times larger."""
 REPEATS = 3
 THREADS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 LIMIT = Path(__file__).parent / "limit" / "pin.so"
 LIBRARY_STARTS = 500
-"""Of a library, whose cost is the same for each."""
+"""Number of starts for libraries, whose cost per trajectory is constant."""
 
 Way = Callable[[FloatArray], object]
 
 
 def starts(n: int) -> FloatArray:
-    """Return Fig. 5's starts: x0 in [−0.3, 0.5], vx0 in [−0.4, 0.4], shape (n, 4)."""
+    """Return initial states for Fig. 5: x0 in [−0.3, 0.5], vx0 in [−0.4, 0.4], shape (n, 4)."""
     rng = np.random.default_rng(5)
     x, vx = rng.uniform(-0.3, 0.5, n), rng.uniform(-0.4, 0.4, n)
     return np.column_stack((x, np.zeros(n), vx, np.zeros(n)))
@@ -76,7 +75,7 @@ def full_length(states: FloatArray) -> object:
 
 
 def early_end(states: FloatArray) -> object:
-    """Run this package until end states are certain."""
+    """Run this package until the end states are certain."""
     return simulate_ensemble(FIG5, states, duration=UNTIL, tolerance=TOLERANCE / LOCAL)
 
 
@@ -108,14 +107,14 @@ def by_hand() -> Way | None:
 
 
 def _rates(x: float, y: float, vx: float, vy: float) -> tuple[float, float, float, float]:
-    """Eq. 1 with the law v/√(v² + ε²), ε = 1e-6 m/s: no library takes the set-valued one."""
+    """Return the rates of eq. 1 with the law v/√(v² + ε²), ε = 1e-6 m/s; no library supports the set-valued law."""
     wx, wy = vx + 1.5 * y, vy - 1.5 * x
     f = 0.09 / math.sqrt(wx * wx + wy * wy + 1e-12)
     return vx, vy, 0.1 - x - 0.1 * vx - f * wx, -y - 0.1 * vy - f * wy
 
 
 def with_cyrk() -> Way:
-    """CyRK's DOP853, compiled."""
+    """Return a function that runs CyRK's DOP853, compiled."""
     import numba
     from CyRK import nbsolve_ivp
 
@@ -140,7 +139,7 @@ def with_cyrk() -> Way:
 
 
 def with_heyoka() -> Way:
-    """Taylor series of a batch of eight, compiled, in threads."""
+    """Return a function that runs heyoka's Taylor series in batches of eight, compiled, in threads."""
     import heyoka as hy
 
     x, y, vx, vy = hy.make_vars("x", "y", "vx", "vy")
@@ -167,7 +166,7 @@ LIBRARIES = {"CyRK": with_cyrk, "heyoka": with_heyoka}
 
 
 def seconds(way: Way, states: FloatArray) -> float:
-    """Return the shortest time of a few runs, in s of all processors: what else runs on them matters little."""
+    """Return the shortest processor time of a few runs per thread, in s, which other processes hardly affect."""
     times = []
     for _ in range(REPEATS):
         began = time.process_time()

@@ -1,23 +1,23 @@
-"""Many discs at once: the lanes of this package against the same method in C, by one trajectory and in lanes.
+"""Ensembles of discs: this package's lanes compared with the same method in C, one trajectory at a time and in lanes.
 
 Run with ``make -C benchmarks/limit && python benchmarks/ensemble_discs.py``; takes half a minute. All run on one
-core to t = 100 s at a tolerance of 1e-9, from starts of which no point comes to rest, and in turns, so that their
-ratios hold whatever else the machine does. The last column is by how much states at the end differ.
+core to t = 100 s at a tolerance of 1e-9, from starts without any point coming to rest. They alternate, so other load
+on the machine hardly affects their ratios. The last column is the largest difference of the end states.
 
-Measured on a core with AVX-512, in ns a step of one trajectory:
+Measured on a core with AVX-512, in ns per step of one trajectory:
 
 | | C | C in lanes | here | C : here | C in lanes : here |
 |---|---|---|---|---|---|
 | ring, Figs. 8, 9, 11 | 800–930 | 127–141 | 147–177 | 4.8–5.9 | 0.76–0.88 |
 | six points | 970–1020 | 92–129 | 115–169 | 5.7–8.6 | 0.67–0.95 |
 
-How the method was chosen:
+Reasons for the method:
 
-- friction of the ring costs 4 ns a lane (7 means, always; one at a time 35 ns with as many as it takes), of six
-  points with cosine and sine of the angle 4.4 ns;
-- a step over the place where a point of the ring rests errs by more than its estimate tells: steps that end there
-  make the largest error at t = 100 of Fig. 9 2e-9 instead of 2e-7, at the same number of steps;
-- 16 lanes: loops over 8 are unrolled before the compiler makes vectors of them.
+- Friction of the ring costs 4 ns per lane (always 7 means; a single trajectory 35 ns with as many as necessary), that
+  of six points 4.4 ns, including cosine and sine of the angle.
+- The error of a step across the rest of a point of the ring exceeds its estimate. With steps that end there, the
+  largest error at t = 100 of Fig. 9 is 2e-9 instead of 2e-7, for the same number of steps.
+- There are 16 lanes because the compiler unrolls loops over 8 before it vectorises them.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ LIMIT = Path(__file__).parent / "limit"
 
 
 def starts(disc: DiscOnDisc) -> FloatArray:
-    """Return starts all about the place, shape (n, 6): those that compiled code follows by itself."""
+    """Return random initial states, shape (n, 6), whose motions compiled code simulates without the reference."""
     rng = np.random.default_rng(8)
     states = np.zeros((STARTS, 6))
     states[:, 0], states[:, 3] = rng.uniform(-0.3, 0.5, STARTS), rng.uniform(-0.4, 0.4, STARTS)
@@ -57,7 +57,7 @@ def starts(disc: DiscOnDisc) -> FloatArray:
 
 
 def by_hand(disc: DiscOnDisc, states: FloatArray, program: str) -> tuple[FloatArray, int, float]:
-    """Return the states at the end, NaN where a point comes to rest, the steps and the seconds of a C program."""
+    """Return the end states by a C program, NaN if a point comes to rest, the number of steps and the time in s."""
     rows = np.ctypeslib.ndpointer(dtype=float, flags="C")
     library = ctypes.CDLL(str(LIMIT / f"{program}.so"))
     run = library.run_discs if program == "disc" else library.run_discs_in_lanes
@@ -71,7 +71,7 @@ def by_hand(disc: DiscOnDisc, states: FloatArray, program: str) -> tuple[FloatAr
 
 
 def in_lanes(disc: DiscOnDisc, states: FloatArray) -> tuple[FloatArray, int, float]:
-    """Return the same of this package."""
+    """Return end states, number of steps and time in s of this package."""
     clock = time.process_time()
     found = simulate_ensemble(disc, states, duration=UNTIL, tolerance=TOLERANCE, early_end=False, threads=1)
     return found.states, int(found.steps.sum()), time.process_time() - clock

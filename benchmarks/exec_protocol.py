@@ -1,10 +1,10 @@
-"""An engine in a process of its own, ``exec:COMMAND``, beside the same one in this process: what the protocol costs.
+"""Cost of the protocol: an engine in its own process, ``exec:COMMAND``, compared with the same engine in this one.
 
-Run with ``python benchmarks/exec_protocol.py``; takes about 10 s. The engine draws numbers of 17 digits in place of a
-motion, as fast as they can be drawn, so that all but that is the protocol's: both ends of the line count, once with a
-program in Python and once, where there is node, with one in JavaScript. Times are of the wall, the shortest of some.
+Run with ``python benchmarks/exec_protocol.py``; takes about 10 s. In place of a motion, the engine generates numbers
+of 17 digits, so nearly all of the time is the protocol's, at both ends. The program is in Python and, if node is
+installed, also in JavaScript. Times are the shortest wall times of several calls.
 
-Measured on two cores that others kept busy besides:
+Measured on two cores under other load:
 
 | times | numbers | Python, ms more | JavaScript, ms more | allowed, ms |
 |---|---|---|---|---|
@@ -14,8 +14,8 @@ Measured on two cores that others kept busy besides:
 | 2,000 | 10,004 | 6.7 | 4.0 | 10.2 |
 | 20,000 | 100,004 | 74 | 44 | 100 |
 
-On a processor that is slower by half a number takes 1.1 µs with Python: half of it is this end's, the other half what
-the program's own json takes to write all 17 digits and to read them.
+On a slower processor, a number takes 1.1 µs with Python: half of it at this end, the other half in the program's json
+to read and write all 17 digits.
 """
 
 from __future__ import annotations
@@ -47,21 +47,21 @@ require("readline").createInterface({ input: process.stdin }).on("line", (line) 
 """
 
 MOST_FIXED, MOST_EACH = 0.2, 1.0
-"""A call in ms, and a number more in µs: what the protocol may cost."""
+"""Allowed cost of the protocol: per call in ms, and per number in µs."""
 
 
 def states(times: FloatArray) -> FloatArray:
-    """Return numbers with all their digits, of shape (n, 4)."""
+    """Return numbers with 17 digits, shape (n, 4)."""
     return np.outer(times + 1.0 / 3.0, np.pi ** np.arange(4.0))
 
 
 def in_process(system: System, state: object, times: FloatArray, *, tolerance: float = 1e-9) -> Trajectory:
-    """Answer as the program does."""
+    """Return the same numbers as the program."""
     return Trajectory(system, times, states(times))
 
 
 def program() -> None:
-    """Answer questions until there are none."""
+    """Answer questions until the input ends."""
     print("{}", flush=True)
     for line in sys.stdin:
         question = json.loads(line)
@@ -69,7 +69,7 @@ def program() -> None:
 
 
 def shortest(call: Callable[[], object], repetitions: int) -> float:
-    """Return the time of a call in s."""
+    """Return the shortest time of a call in s."""
     found = []
     for _ in range(repetitions):
         start = time.perf_counter()

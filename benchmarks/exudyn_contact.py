@@ -1,12 +1,12 @@
-"""What friction costs in Exudyn, and what a smaller regularisation costs and brings.
+"""Cost of friction in Exudyn, and cost and accuracy as functions of the regularisation.
 
-Run as ``python benchmarks/exudyn_contact.py``; prints tables. Figures of one run compare with each other: the
-least of several repetitions, interleaved so that a busy machine hits all rows alike.
+Run with ``python benchmarks/exudyn_contact.py``; prints tables. Each number is the least of several repetitions,
+interleaved so that other load affects all rows equally. Compare only numbers of one run.
 
-What else was tried for the call, as the last column of the table of contacts counts it: numba's own dispatch by type,
-1.9 for a ring; a C callback through ctypes, 2.0 for a pin; a NumPy array in place of the forces' list, 0.15 more;
-Exudyn's symbolic functions, 1.0 for a pin, but over 5 for a ring, because they evaluate what is shared by several
-terms once for each of them; Exudyn's build without range checks, no difference.
+Alternatives for the call, in the unit of the last column of the table of contacts: numba's dispatch by type, 1.9 for
+a ring; a C callback through ctypes, 2.0 for a pin; a NumPy array in place of the list of forces, 0.15 more; Exudyn's
+symbolic functions, 1.0 for a pin, but over 5 for a ring, because they evaluate shared subexpressions once per use;
+Exudyn's build without range checks, no difference.
 """
 
 from __future__ import annotations
@@ -49,23 +49,23 @@ TABLE = [[0.0, 0.3], [0.1, 0.28], [1.0, 0.25]]
 ANNULUS = {"inner_radius": 0.08, "outer_radius": 0.12}
 
 AddContact = Callable[[Any, Any, Any], Any]
-"""Adds a contact between the nodes of master and disc to a model."""
+"""Adds a contact to a model, between the nodes of master and disc."""
 
 
 def ours(geometry: dict[str, Any], normal_load: NumberOrFunction = FIG5.friction_force) -> AddContact:
-    """Add the connector as it is used."""
+    """Return a function that adds our connector."""
     contact = SECTION | geometry | {"normal_load": normal_load}
     return lambda mbs, master, disc: add_ring_friction(mbs, master, disc, **contact)
 
 
 def built_in(geometry: dict[str, Any]) -> AddContact:
-    """Add Exudyn's own contact of spheres and a triangle."""
+    """Return a function that adds Exudyn's built-in contact between spheres and a triangle."""
     contact = SECTION | geometry | {"reach": 2.0}
     return lambda mbs, master, disc: add_native_friction(mbs, master, disc, **contact)
 
 
 def native(connector: str, marker: str, count: int) -> AddContact:
-    """Add ``count`` of Exudyn's own connectors between the ground and the disc."""
+    """Return a function that adds ``count`` native connectors between the ground and the disc."""
 
     def add(mbs: Any, master: Any, disc: Any) -> None:
         bodies = range(mbs.systemData.NumberOfObjects())
@@ -79,7 +79,7 @@ def native(connector: str, marker: str, count: int) -> AddContact:
 
 
 def with_force(force: Callable[..., Any], coordinates: int = 4) -> AddContact:
-    """Add the connector between both bodies with another force function."""
+    """Return a function that adds our connector with another force function."""
     return lambda mbs, master, disc: mbs.AddObject(
         items.ObjectGenericODE2(
             nodeNumbers=[master, disc],
@@ -93,12 +93,12 @@ NOTHING = [0.0] * 12
 
 
 def constant(*arguments: Any) -> list[float]:
-    """Return no force: what is left is the call itself."""
+    """Return zero force, to measure the call itself."""
     return [0.0, 0.0, 0.0, 0.0]
 
 
 def plain_python(radius: float, points: int) -> AddContact:
-    """Add the connector with the same law, not compiled."""
+    """Return a function that adds our connector with the same law in plain Python."""
     law, contact = in_python(ring_friction), (radius, points, FIG5.friction_force, 1e-6, NONE_HELD, radius)
 
     def force(mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
@@ -111,7 +111,7 @@ def plain_python(radius: float, points: int) -> AddContact:
 
 
 def in_python(function: Any) -> Callable[..., Any]:
-    """Return a compiled function, and all that it calls, as Python runs them."""
+    """Return a compiled function, with all functions that it calls, as plain Python."""
     plain = function.py_func
     names = {
         name: in_python(value) if hasattr(value, "py_func") else value
@@ -194,7 +194,7 @@ SPATIAL: dict[str, AddContact] = {
 
 
 def stribeck(slip_speed: float) -> float:
-    """Return a coefficient that falls over the slip speed (m/s)."""
+    """Return a coefficient that falls with the slip speed (m/s)."""
     return 0.25 + 0.05 * math.exp(-slip_speed / 0.5)
 
 
@@ -211,7 +211,7 @@ def warming(coefficient: Any, mbs: Any, *nodes: Any) -> None:
 
 
 def fading(temperature: float) -> float:
-    """Return a coefficient that falls over the temperature (°C)."""
+    """Return a coefficient that falls with the temperature (°C)."""
     return 0.3 * (1.0 - 1e-3 * (temperature - 20.0))
 
 
@@ -221,7 +221,7 @@ def load_of_time(time: float) -> float:
 
 
 def constant_load(time: float) -> float:
-    """Return a load in N as numba can compile it."""
+    """Return a load in N in a form that numba can compile."""
     return 0.05
 
 
@@ -252,7 +252,7 @@ def evaluations_in_a_loop(count: int, contact: Contact, fastest: float) -> float
 
 
 def cost_of_kernels() -> None:
-    """Print the time of one evaluation of the compiled law, without Exudyn and without a call from Python."""
+    """Print the time per evaluation of the compiled law, without Exudyn and without calls from Python."""
     count = 5_000
     print(f"{'compiled law, force and moment':<42}{'ns/evaluation':>15}")
     for name, radius, points in (
@@ -272,7 +272,7 @@ def cost_of_kernels() -> None:
 
 
 def seconds(model: tuple[Any, Any, Any], add_contact: AddContact, accelerations: bool = True) -> float:
-    """Return the processor's time that ``STEPS`` steps of RK44 take: what other processes take does not count."""
+    """Return the processor time in s of ``STEPS`` steps of RK44."""
     mbs, master, disc = model
     add_contact(mbs, master, disc)
     mbs.Assemble()
@@ -291,7 +291,7 @@ def seconds(model: tuple[Any, Any, Any], add_contact: AddContact, accelerations:
 
 
 def cost_of_contacts() -> None:
-    """Print the table of costs per step and per evaluation, and their ratios to no friction and to the mere call."""
+    """Print the costs per step and per evaluation, relative to no friction and to the mere call."""
     models = ((pin_without_friction, PLANAR), (free_spatial_bodies, SPATIAL), (two_rotors, AXIAL))
     best = dict.fromkeys([*PLANAR, *SPATIAL, *AXIAL], math.inf)
     for _ in range(REPETITIONS):
@@ -311,7 +311,7 @@ def cost_of_contacts() -> None:
 
 
 def choice_of_regularisation() -> None:
-    """Print error and cost of Fig. 5's second run over ε, the ground for ε = 100·tolerance."""
+    """Print error and cost of Fig. 5's second run for several ε, the reason for ε = 100·tolerance."""
     start, times = [0.1, 0.0, 0.03, 0.0], [0.0, 400.0]
     exact = reference_model.simulate(FIG5, start, times, tolerance=1e-11)
     events = np.array([(phase.start, phase.end) for phase in exact.stick_phases])
@@ -331,7 +331,7 @@ def choice_of_regularisation() -> None:
 
 
 def slip_of_discs() -> None:
-    """Print error and cost of Fig. 11's disc to t = 100 s, the ground for DOPRI5's tolerance."""
+    """Print error and cost of Fig. 11's disc to t = 100 s, the reason for DOPRI5's tolerance."""
     print(f"\n{'disc, t = 100 s':<18}{'tolerance':>10}{'evaluations':>13}{'s':>7}{'error at the end':>18}")
     for points in (None, 6):
         disc = replace(FIG11, contact_points=points)

@@ -1,6 +1,6 @@
-"""What solver, step and regularisation do to a clutch that slips and then sticks.
+"""Effects of solver, step and regularisation on a clutch that slips and then sticks.
 
-Run as ``python benchmarks/exudyn_solvers.py``; prints the table of docs/friction-in-your-own-model.md.
+Run with ``python benchmarks/exudyn_solvers.py``; prints the table of docs/friction-in-your-own-model.md.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ RUNS = (
 """Solver, ε in m/s and largest step in s."""
 
 UNTIL = 0.15
-"""In s; the clutch sticks from 0.065 s on."""
+"""End of the simulation in s; the clutch sticks from 0.065 s on."""
 
 
 def run(solver: str, regularisation: float, step: float) -> None:
-    """Let a flywheel drag a disc on an eccentric shaft until both turn alike, and print what came of it."""
+    """Simulate a flywheel that drags a disc on an eccentric shaft until both turn together; print a row."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     flywheel = mbs.AddNode(Node1D(initialVelocities=[100.0]))

@@ -1,4 +1,4 @@
-"""Places in the documentation that a benchmark writes."""
+"""Sections of the documentation that are written by benchmarks."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ DOCS = Path(__file__).parents[1] / "docs"
 
 
 def write_into(page: str, program: str, text: str) -> None:
-    """Write what ``program`` of this folder has measured into its place of a page.
+    """Write the results of ``program``, in this folder, into its section of a page.
 
     Raises
     ------
     ValueError
-        If the page has no such place.
+        If the page does not contain the section.
 
     """
     path = DOCS / page

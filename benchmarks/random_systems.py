@@ -1,11 +1,11 @@
-"""The reference on random systems of all kinds, within four decades of every parameter: time and accuracy.
+"""Time and accuracy of the reference on random systems of all kinds, with four decades of every parameter.
 
 Run with ``python benchmarks/random_systems.py [--compiled] [--tolerance 1e-9] [count] [first]``; a thousand take
-about an hour, compiled some minutes. Each motion lasts for 50 natural periods, asked for at 501 times; every tenth
-ends at an event in place of that, exactly or one rounding error beside it. It is compared with the same motion at a
-tolerance smaller by 100: the difference stands beside that of a motion that starts 1e-9 of its size aside, since
-unstable motions part. All are shares of the motion's extent and speed, or of the lengths that ``simulate`` names
-where these are larger. ``--compiled`` takes compiled runs in place of plain ones, on linear supports.
+about an hour, compiled some minutes. Each motion lasts for 50 natural periods, with 501 requested times. Every tenth
+ends instead at an event, exactly or one rounding error before or after it. It is compared with the same motion at a
+hundredth of the tolerance, and with a motion whose start differs by 1e-9 of its size, because unstable motions
+diverge. All differences are relative to the motion's extent and speed, or to the units of ``simulate`` if these are
+larger. ``--compiled`` selects compiled runs, on linear supports.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 PERIODS, SAMPLES = 50, 501
-LONGEST = 60.0  # s of processor time after which a run is broken off
+LONGEST = 60.0  # limit on the processor time of a run in s
 POINTS = (3, 4, 6, 12, 24)
 
 
 def random_system(seed: int) -> tuple[System, FloatArray]:
-    """Return a system with m = C = 1, all else log-uniform in 0.01 to 100, and a state of random size."""
+    """Return a system with m = C = 1, all other parameters log-uniform in 0.01 to 100, and a state of random size."""
     rng = np.random.default_rng(seed)
 
     def any_size() -> float:
@@ -70,7 +70,7 @@ def random_system(seed: int) -> tuple[System, FloatArray]:
 
 
 def sizes_of(system: System, states: FloatArray) -> FloatArray:
-    """Return how large places and velocities of a motion are, its angle and its spin apart, shape (4,) or (6,)."""
+    """Return the magnitude of each component of a motion, shape (4,) or (6,), equal for x and y and for vx and vy."""
     unit, d = Units.of(system, states[0]), system.state_size // 2
     place, speed = (np.hypot(*states[:, at : at + 2].T).max() for at in (0, d))
     sizes = np.repeat((max(place, unit.length), max(speed, unit.speed)), d)
@@ -82,7 +82,7 @@ def sizes_of(system: System, states: FloatArray) -> FloatArray:
 
 
 def end_of(seed: int, found: Trajectory) -> float:
-    """Return the end of the motion: for every tenth seed the start of a phase, or the float before or after it."""
+    """Return the end time; for every tenth seed, the start of a phase or the float before or after it."""
     events = [phase.start for phase in found.phases if phase.start > 0.0]
     if seed % 10 or not events:
         return float(found.times[-1])
@@ -91,14 +91,14 @@ def end_of(seed: int, found: Trajectory) -> float:
 
 
 def break_off(_: int, frame: FrameType | None) -> None:
-    """Raise ``TimeoutError``: the handler of the signal that breaks a run off."""
+    """Raise ``TimeoutError``; this handles the signal for the time limit of a run."""
     raise TimeoutError
 
 
 def measure(seed: int, compiled: bool, tolerance: float) -> tuple[str, float, int, float, float]:
-    """Return outcome, seconds, steps, difference from the tight run, and growth of a difference in the start."""
+    """Return outcome, time in s, steps, difference from the tight run, and growth of an initial difference."""
     system, state = random_system(seed)
-    if compiled:  # which takes linear supports only
+    if compiled:  # supports linear supports only
         system = replace(system, hardening=0.0, stop_gap=0.0, stop_stiffness=0.0)
     times = np.linspace(0.0, PERIODS * 2.0 * math.pi, SAMPLES)
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
@@ -133,7 +133,7 @@ def measure(seed: int, compiled: bool, tolerance: float) -> tuple[str, float, in
 
 
 def _warm() -> None:
-    """Compile what there is to compile."""
+    """Compile all kernels."""
     kinds = {
         system.contact_points: system
         for system, _ in map(random_system, range(99))
@@ -145,7 +145,7 @@ def _warm() -> None:
 
 
 def main() -> None:
-    """Print each run that is not as it should be, and a summary."""
+    """Print each run that fails, is slow or inaccurate, and a summary."""
     signal.signal(signal.SIGPROF, break_off)
     parser = argparse.ArgumentParser()
     parser.add_argument("--compiled", action="store_true")

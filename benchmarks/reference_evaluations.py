@@ -1,4 +1,4 @@
-"""Evaluations that Fig. 5's two runs to t = 400 s take: this reference, and plainer ways to the same accuracy.
+"""Evaluations for Fig. 5's two runs to t = 400 s: this reference, and simpler methods of the same accuracy.
 
 Run with ``python benchmarks/reference_evaluations.py``; takes about half a minute.
 """
@@ -28,15 +28,15 @@ Outcome = tuple[int, FloatArray]
 
 
 def this_reference(start: Sequence[float]) -> Outcome:
-    """Use slip-polar coordinates and stretched time near rest; output at 4001 times."""
+    """Run the reference: slip-polar coordinates and stretched time near rest, with output at 4001 times."""
     trajectory = simulate(FIG5, start, np.linspace(0.0, UNTIL, SAMPLES))
     return trajectory.solution.evaluations, trajectory.at_end
 
 
 def plain_events(start: Sequence[float]) -> Outcome:
-    """Integrate x, y, vx, vy with a terminal event on the slip speed; stick in closed form; no output on the way."""
+    """Integrate x, y, vx, vy with a terminal event on slip speed; stick in closed form, output only at the end."""
     motion = SlipMotion.of(FIG5)
-    rest = 1e-9  # slip at which the pin counts as stuck, and from which it starts again along the pull
+    rest = 1e-9  # slip at which the pin counts as stuck, and its initial slip along the pull after release
     state, t, evaluations = np.array(start), 0.0, 0
 
     def slip(_: float, y: FloatArray) -> float:
@@ -61,7 +61,7 @@ def plain_events(start: Sequence[float]) -> Outcome:
 
 
 def regularised(start: Sequence[float]) -> Outcome:
-    """Take the law v/√(v²+ε²) with ε = 1e-6 m/s all the way; its end is off by the regularisation."""
+    """Integrate with the law v/√(v²+ε²), ε = 1e-6 m/s; the error of the end state is due to the regularisation."""
     solution = solve_ivp(_eq1(1e-6), (0.0, UNTIL), start, method="DOP853", rtol=1e-9, atol=1e-10)
     return solution.nfev, solution.y[:, -1]
 

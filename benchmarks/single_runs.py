@@ -1,11 +1,11 @@
-"""One motion, plain and compiled: what ``simulate(..., compiled=True)`` saves.
+"""Time saved by ``simulate(..., compiled=True)`` on single motions.
 
-Run with ``python benchmarks/single_runs.py``; takes about 30 s, more where the kernels are not compiled yet. Times
-are processor time of a call in ms, the shortest of some, at a tolerance of 1e-9.
+Run with ``python benchmarks/single_runs.py``; takes about 30 s, more if the kernels are not compiled yet. Times are
+the shortest processor times of several calls, in ms, at a tolerance of 1e-9.
 
 Measured on a core with AVX-512:
 
-| motion | times asked for | plain, ms | compiled, ms | ratio |
+| motion | requested times | plain, ms | compiled, ms | ratio |
 |---|---|---|---|---|
 | Fig. 5, sticks nine times, to t = 500 s | 2 | 125 | 1.04 | 120 |
 | | 501 | 141 | 1.45 | 98 |
@@ -18,9 +18,9 @@ Measured on a core with AVX-512:
 | | 5,001 | 19.9 | 4.07 | 5 |
 | the same, starting with a point at rest | 501 | 88.6 | 16.3 | 5 |
 
-A call costs 0.05 to 0.09 ms, a step of all lanes 0.45 µs for the pin, and a time that is asked for 0.8 µs, most of
-it for loading and storing a lane. By hand in C, with a tolerance of each step ten times as large, the pin takes 0.6
-ms to the end. What is slow in the last row is the plain reference, which takes over where a point rests.
+A call costs 0.05 to 0.09 ms, a step of all lanes 0.45 µs for the pin, and a requested time 0.8 µs, most of it for
+loading and storing a lane. In handwritten C, with ten times the tolerance per step, the pin takes 0.6 ms to the end.
+The last row is slow because the plain reference takes over when a point rests.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from reference_model.systems import System
 
 
 class Motion(NamedTuple):
-    """A system, its start and how long it is followed, in s."""
+    """A system, its initial state and the duration in s."""
 
     system: System
     start: tuple[float, ...]
@@ -61,7 +61,7 @@ MOTIONS = {
 }
 TIMES = 2, 501, 5001
 SPENT = 1.0
-"""Time in s after which no more calls are made."""
+"""Total time of the calls in s."""
 
 
 def milliseconds(call: Callable[[], object]) -> float:

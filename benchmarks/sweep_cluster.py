@@ -1,8 +1,8 @@
-"""What a Dask cluster costs a sweep of random starts of Fig. 5, and how much memory the command needs on one.
+"""Overhead of a Dask cluster in a sweep of random starts of Fig. 5, and memory of the command.
 
-Run with ``python benchmarks/sweep_cluster.py``; takes fifteen minutes on two cores, and writes what it finds into
-``docs/sweeps.md``. Needs the extra ``cluster``. With other work on the machine only processor times and memory can be
-compared: throughputs are those of a processor, of all processes together.
+Run with ``python benchmarks/sweep_cluster.py``; takes fifteen minutes on two cores and writes its results into
+``docs/sweeps.md``. Needs the extra ``cluster``. Throughputs are per processor time of all processes, because wall
+times are not comparable under other load.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ from compare.sweep.store import SweepStore
 ROOT = Path(__file__).parents[1]
 
 SWEEPS = ((50, 2000), (50, 8000), (50, 32768), (306, 32768))
-"""Chunks, and starts in each; the last is a sweep of ten million."""
+"""Numbers of chunks and of starts per chunk; the last is a sweep of ten million."""
 
 LARGE = (1_000_000, 10_000_000)
-"""Trajectories of the sweeps of which the command's memory is measured."""
+"""Numbers of trajectories in the sweeps for the command's memory."""
 
 NODES, CORES, PROJECTED = 64, 64, 10**9
 
@@ -41,11 +41,11 @@ status = app.status(sys.argv[1:])
 print(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1], time.process_time())
 sys.exit(status)
 """
-"""The command, which tells its own memory: what the operating system tells its parent has the parent's in it."""
+"""The command, which prints its own memory; the value reported to its parent would include the parent's."""
 
 
 def plan_of(samples: int) -> RandomBasin:
-    """Return starts of the basin of Fig. 5."""
+    """Return a plan with random starts in the basin of Fig. 5."""
     return RandomBasin(
         system=FIG5,
         duration=300.0,
@@ -59,7 +59,7 @@ def plan_of(samples: int) -> RandomBasin:
 
 
 def cost(executor: Executor, chunks: int, size: int) -> float:
-    """Return the seconds of all processors together for a sweep of ``chunks`` of ``size``, written and labelled."""
+    """Return the total processor time in s of a sweep of ``chunks`` of ``size``, written and labelled."""
     with tempfile.TemporaryDirectory() as folder:
         store = SweepStore.create(Path(folder) / "sweep.zarr", plan_of(chunks * size), size)
         before = used()
@@ -68,14 +68,14 @@ def cost(executor: Executor, chunks: int, size: int) -> float:
 
 
 def used() -> float:
-    """Return the seconds that this process, which is also the scheduler's, and the workers have had a processor."""
+    """Return the processor time in s of this process, which is also the scheduler's, and of the workers."""
     here = psutil.Process()
     times = [process.cpu_times() for process in (here, *here.children(recursive=True))]
     return sum(time.user + time.system for time in times)
 
 
 def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
-    """Return the largest memory in MB of the command, and the seconds it had a processor itself."""
+    """Return the peak memory of the command in MB, and its own processor time in s."""
     with tempfile.TemporaryDirectory() as folder:
         more = [] if scheduler is None else ["--scheduler", scheduler]
         command = ["sweep", "basin", "pin", "--random", str(samples), "--output", folder, *more]
@@ -91,7 +91,7 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
 
 
 def written() -> str:
-    """Return what docs/sweeps.md says, measured."""
+    """Return the measured text for docs/sweeps.md."""
     lines = [
         f"On {cores()} workers, with starts of Fig. 5, in seconds of all processors together:",
         "",
@@ -103,7 +103,7 @@ def written() -> str:
         Cluster(local.scheduler_address) as cluster,
     ):
         executors = (InProcess(), cluster)
-        for executor in executors:  # compiled, or loaded, everywhere
+        for executor in executors:  # compile or load the kernels in all processes
             cost(executor, 50, 10)
         for chunks, size in SWEEPS:
             here, there = (cost(executor, chunks, size) for executor in executors)

@@ -1,7 +1,7 @@
-"""What a trajectory of a sweep costs, and what a command does beside the trajectories.
+"""Cost per trajectory of a sweep, and total cost of the command.
 
-Run with ``python benchmarks/sweep_cost.py``; takes a minute, and writes what it finds into ``docs/sweeps.md``. With
-other work on the machine the numbers are larger: two that compute on one core get in each other's way.
+Run with ``python benchmarks/sweep_cost.py``; takes a minute and writes its results into ``docs/sweeps.md``. Other
+load on the machine increases the numbers, because two processes on one core slow each other down.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
 from reference_model.systems import FloatArray
 
 LONG, SHORT = 12000.0, 300.0
-"""s: what the command waits for an end at most, and what is too short to be certain of many."""
+"""Durations in s: the command's longest wait for an end state, and one too short to decide many of them."""
 
 REPEATS = 3
 COMMAND = 1_000_000
-"""Random starts of the command."""
+"""Number of random starts of the command."""
 
 
 def starts(n: int, size: int, x: tuple[float, float], vx: tuple[float, float]) -> FloatArray:
@@ -39,13 +39,13 @@ def starts(n: int, size: int, x: tuple[float, float], vx: tuple[float, float]) -
 
 
 def pins(n: int, loads: FloatArray | None = None) -> Ensemble:
-    """Run starts in the basin of Fig. 5 on one core, each with a load in N of its own if there are ``loads``."""
+    """Run starts in the basin of Fig. 5 on one core, optionally with individual ``loads`` in N."""
     varied = {} if loads is None else {"friction_force": loads[:n]}
     return simulate_ensemble(FIG5, PIN_STARTS[:n], duration=LONG, parameters=varied, threads=1)
 
 
 def pins_to_the_end(n: int) -> Ensemble:
-    """Run them for as long as is asked for, though they are certain of their ends."""
+    """Run them for the full duration, even if their end states are certain."""
     return simulate_ensemble(FIG5, PIN_STARTS[:n], duration=SHORT, early_end=False, threads=1)
 
 
@@ -70,11 +70,11 @@ WAYS: dict[str, tuple[int, Callable[[int], Ensemble]]] = {
     "the same, until its end is certain": (2_000, lambda n: discs(n, None, LONG)),
     f"disc on six points, t = {SHORT:g} s": (8_000, lambda n: discs(n, 6, SHORT)),
 }
-"""How many trajectories, and how they run."""
+"""Number of trajectories and function for each row."""
 
 
 def cost(n: int, run: Callable[[int], Ensemble]) -> tuple[float, float]:
-    """Return the least µs of a core that a trajectory takes, and the share whose end is certain."""
+    """Return the least processor time per trajectory in µs, and the share of certain end states."""
     run(64)  # loads compiled code
     spent = []
     for _ in range(REPEATS):
@@ -85,7 +85,7 @@ def cost(n: int, run: Callable[[int], Ensemble]) -> tuple[float, float]:
 
 
 def command() -> tuple[float, float]:
-    """Return the s of all cores that a sweep by the command takes, and how many bytes of disk a trajectory."""
+    """Return the command's processor time in s, on all cores, and its disk space per trajectory in bytes."""
     with tempfile.TemporaryDirectory() as folder:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         sweep = ["sweep", "basin", "pin", "--random", str(COMMAND), "--output", folder]

@@ -1,6 +1,6 @@
-"""What explicit coupling of a clutch unit loses: over the communication step, and where what holds chatters.
+"""Error of explicit coupling of a clutch unit against the communication step, and chatter of a holding clutch.
 
-``python benchmarks/unit_coupling.py`` prints both tables of ``docs/fmu.md``; it takes a few seconds.
+Run with ``python benchmarks/unit_coupling.py``; prints both tables of ``docs/fmu.md`` within a few seconds.
 """
 
 import tempfile
@@ -14,7 +14,7 @@ import numpy as np
 from fmu_models import CLUTCH, export
 
 INERTIAS = np.array([0.5, 0.3])
-"""Of the flanges, in kg m²."""
+"""Moments of inertia of the flanges in kg m²."""
 
 COEFFICIENT, LOAD, RADIUS = 0.3, 600.0, 0.1
 
@@ -64,7 +64,7 @@ def main() -> None:
         ends = [
             unit.speeds(h, 0.4, (100.0, 0.0), 20.0, lambda t: LOAD * min(1.0, t / 0.2))[-1] for h in STEPS
         ]
-        # with friction at its limit the torque is that of the load, which is integrated in closed form
+        # at the friction limit, the torque follows from the load, which is integrated in closed form
         given = COEFFICIENT * LOAD * RADIUS * (0.4 - 0.1)
         exact = np.array([100.0 + (20.0 * 0.4 - given) / INERTIAS[0], given / INERTIAS[1]])
         for step, end in zip(STEPS, ends, strict=True):

@@ -1,9 +1,9 @@
-"""Where the processor time of the report, or of the tests, goes: by study and engine or file of tests, and by cause.
+"""Processor time of the report or of the tests, by study and engine or test file, and by cause.
 
 Run with ``python benchmarks/where_time_goes.py report [STUDY ...]`` or ``... tests [PATH ...]``, with an empty
-``NUMBA_CACHE_DIR`` for a first run on a machine. All happens in one process, one thing after the other; children are
-counted whole. A sample of the stack is taken every 10 ms of processor time and weighs what has passed since the last
-one, so that long calls into compiled code (Exudyn's solver, LLVM) count for those who made them.
+``NUMBA_CACHE_DIR`` to measure a first run on a machine. Everything runs sequentially in one process; child processes
+count as a whole. The stack is sampled every 10 ms of processor time. A sample is weighted by the time since the last
+one, so long calls into compiled code (Exudyn's solver, LLVM) count for their callers.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FIRST = {
     "compilation": ("/numba/core/", "/numba/np/", "/llvmlite/"),
     "imports": ("<frozen importlib._bootstrap>",),
 }
-"""Causes that count wherever they stand in the stack, by parts of files' names."""
+"""Causes that count anywhere in the stack, by parts of file names."""
 
 INNERMOST = {
     "drawing": ("/matplotlib/", "/PIL/"),
@@ -38,11 +38,11 @@ INNERMOST = {
     "studies' own": ("/compare/studies/", "/compare/claims/"),
     "the rest of compare": ("/compare/",),
 }
-"""Causes of which that of the innermost frame counts."""
+"""Causes that count for the innermost matching frame, by parts of file names."""
 
 
 class Clock:
-    """Adds up processor time by a key, which is set from outside, and by cause."""
+    """Processor time in s by cause and by a key set with ``count_for``."""
 
     def __init__(self) -> None:
         self.seconds: dict[tuple[str, str], float] = defaultdict(float)
@@ -52,7 +52,7 @@ class Clock:
 
     @contextmanager
     def running(self) -> Iterator[None]:
-        """Take samples for as long as this lasts."""
+        """Sample the stack within this context."""
         before = signal.signal(signal.SIGPROF, self._sample)
         signal.setitimer(signal.ITIMER_PROF, INTERVAL, INTERVAL)
         try:
@@ -62,7 +62,7 @@ class Clock:
             signal.signal(signal.SIGPROF, before)
 
     def count_for(self, key: str) -> None:
-        """Count what follows for ``key``."""
+        """Count the following time for ``key``."""
         self._sample(0, sys._getframe())
         children = _of_children()
         self.seconds[self._key, "other processes"] += children - self._children
@@ -95,7 +95,7 @@ def _cause(frame: FrameType | None) -> str:
 
 
 def report(clock: Clock, names: list[str]) -> None:
-    """Measure and draw studies one after the other."""
+    """Measure and draw all studies, or those with these names."""
     clock.count_for("imports")
     from compare.claims.errata import ERRATA
     from compare.engines import engines
@@ -117,25 +117,25 @@ def report(clock: Clock, names: list[str]) -> None:
 
 
 class Files:
-    """Tells the clock whose tests are running."""
+    """A pytest plugin that passes the current test file to the clock."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
 
     def pytest_runtest_logstart(self, nodeid: str) -> None:
-        """Count for the file of the test that begins: its own, and not that of a harness that it inherits from."""
+        """Count the following time for the test's own file, not for that of an inherited harness."""
         self._clock.count_for(nodeid.partition("::")[0])
 
 
 def table(seconds: dict[str, float]) -> str:
-    """Return rows of seconds, the largest first."""
+    """Return rows of times in s, the largest first."""
     rows = sorted(seconds.items(), key=lambda row: -row[1])
     shown = [*rows[:LARGEST], *([("the rest", sum(s for _, s in rows[LARGEST:]))] if rows[LARGEST:] else [])]
     return "\n".join(f"{spent:9.1f}  {name}" for name, spent in [*shown, ("all", sum(seconds.values()))])
 
 
 def main() -> None:
-    """Run what is asked for, and print both tables."""
+    """Run the report or the tests; print both tables."""
     what, *names = sys.argv[1:] or ["report"]
     clock = Clock()
     began = time.perf_counter()

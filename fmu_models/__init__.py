@@ -1,6 +1,6 @@
-"""The friction contact as functional mock-up units in C: pin, disc, and a clutch for drivetrains.
+"""The friction contact as functional mock-up units (FMUs) in C: pin, disc, and a clutch for drivetrains.
 
-A third implementation, which takes names of parameters from the reference and no physics.
+This third implementation takes only parameter names, units and bounds from the reference, not its physics.
 """
 
 from fmu_models.archive import Exported, HeadersMissingError, export

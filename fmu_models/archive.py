@@ -1,4 +1,4 @@
-"""Units as files: sources, headers of the standard, descriptions, and a library where there is a compiler."""
+"""Units as files: sources, headers of the standard, descriptions, and a library if there is a compiler."""
 
 from __future__ import annotations
 
@@ -29,25 +29,25 @@ OPTIONS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off")
 
 Fmi = Literal[2, 3]
 
-NO_COMPILER = "there is no C compiler here: the unit has its sources alone, which an importer may compile"
+NO_COMPILER = "no C compiler found: the unit contains only its sources, which an importer may compile"
 
 
 class HeadersMissingError(ValueError):
-    """FMPy, which brings the headers of the standard, is not installed."""
+    """FMPy, which provides the headers of the standard, is not installed."""
 
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit that was written.
+    """A unit that has been written to a file.
 
     Parameters
     ----------
     file : Path
-        Where it is.
+        Path of the unit.
     platform : str
-        What its library is for, "" if it has none.
+        Platform of its library, "" if the unit does not contain one.
     remark : str
-        Why it has none, "" if it has one.
+        Reason for a missing library, otherwise "".
 
     """
 
@@ -57,12 +57,12 @@ class Exported:
 
 
 def sources_of(model: Model, fmi: Fmi) -> tuple[str, ...]:
-    """Return the names of the C files that a library is compiled from."""
+    """Return the names of the library's C files."""
     return (model.source, *SHARED, MADE, f"fmi{fmi}.c")
 
 
 def write_sources(model: Model, folder: Path) -> None:
-    """Write all that a compiler needs but for the functions of a standard into ``folder``."""
+    """Write all C files and headers except those of the standard into ``folder``."""
     folder.mkdir(parents=True, exist_ok=True)
     for path in (*FOLDER.glob("*.h"), *(FOLDER / name for name in (model.source, *SHARED))):
         shutil.copyfile(path, folder / path.name)
@@ -71,28 +71,28 @@ def write_sources(model: Model, folder: Path) -> None:
 
 
 def write_standard(folder: Path, fmi: Fmi) -> None:
-    """Write those functions and their headers into ``folder``; raise ``HeadersMissingError`` without FMPy."""
+    """Write the functions and headers of the standard into ``folder``; raise ``HeadersMissingError`` without FMPy."""
     for path in (*standard_headers().glob(f"fmi{fmi}*.h"), FOLDER / f"fmi{fmi}.c"):
         shutil.copyfile(path, folder / path.name)
 
 
 def standard_headers() -> Path:
-    """Return the folder of FMPy with the headers of the standard; raise ``HeadersMissingError`` if there is none."""
+    """Return FMPy's folder with the headers of the standard; raise ``HeadersMissingError`` if FMPy is missing."""
     found = importlib.util.find_spec("fmpy")
     if found is None or found.origin is None:
         raise HeadersMissingError(
-            "a unit needs the headers of FMI, which FMPy brings: pip install 'friction-discs[fmu]'"
+            "FMPy is not installed, which provides the headers of FMI: pip install 'friction-discs[fmu]'"
         )
     return Path(found.origin).parent / "c-code"
 
 
 def compiler() -> str | None:
-    """Return the C compiler: that of the environment variable CC, or one of the usual names, or None."""
+    """Return the path of the C compiler: $CC, else cc, gcc or clang; None if there is none."""
     return next(filter(None, map(shutil.which, (os.environ.get("CC") or "cc", "gcc", "clang"))), None)
 
 
 def compile_library(sources: Sequence[Path], library: Path, *more: str) -> None:
-    """Compile C files with the ``compiler``; raise ``RuntimeError`` with what it says."""
+    """Compile C files into a library; raise ``RuntimeError`` with the compiler's messages if it fails."""
     library.parent.mkdir(parents=True, exist_ok=True)
     command = [str(compiler()), *OPTIONS, *more, "-o", str(library), *map(str, sources), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -101,7 +101,7 @@ def compile_library(sources: Sequence[Path], library: Path, *more: str) -> None:
 
 
 def platform(fmi: Fmi) -> tuple[str, str]:
-    """Return what the standard calls this machine, and how names of libraries end."""
+    """Return the standard's name for this platform and the extension of its libraries."""
     machine = sysconfig.get_platform().rsplit("-", 1)[-1].lower()
     system, ending = {"win32": ("windows", ".dll"), "darwin": ("darwin", ".dylib")}.get(
         sys.platform, ("linux", ".so")
@@ -113,18 +113,18 @@ def platform(fmi: Fmi) -> tuple[str, str]:
 
 
 def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
-    """Write a model as a unit; return what it holds.
+    """Write a model as a unit; return its path and platform.
 
     Raises
     ------
     ValueError
-        If the name of the file does not end with .fmu, as the standard demands.
+        If the file name does not end with .fmu, as the standard requires.
     HeadersMissingError
         If FMPy is not installed.
     RuntimeError
-        If there is a compiler, and it fails.
+        If the compiler fails.
     OSError
-        If the file can't be written.
+        If the file cannot be written.
 
     """
     if file.suffix.lower() != ".fmu":

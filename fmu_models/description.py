@@ -1,4 +1,4 @@
-"""``modelDescription.xml`` of a model by FMI 2.0 and 3.0, and ``buildDescription.xml`` of the latter."""
+"""``modelDescription.xml`` of a model for FMI 2.0 and 3.0, and ``buildDescription.xml`` for FMI 3.0."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ UNITS: dict[str, dict[str, int]] = {
     "J": {"kg": 1, "m": 2, "s": -2},
     "W": {"kg": 1, "m": 2, "s": -3},
 }
-"""Exponents of the base units of all units that variables have."""
+"""Exponents of the base units for each unit of a variable."""
 
 CAUSALITY = {
     "time": "independent",
@@ -46,16 +46,16 @@ TYPES = {
     3: {"real": "Float64", "whole": "Int32", "boolean": "Boolean"},
 }
 UNTIL = "100"
-"""End of the experiment that importers suggest, in s."""
+"""End of the default experiment in s."""
 
 
 def token_of(model: Model) -> str:
-    """Return what the library and the description of a model agree in."""
+    """Return the token that must agree between the library and the description of a model."""
     return "{" + hashlib.sha256(repr(model).encode()).hexdigest()[:32] + "}"
 
 
 def description(model: Model, fmi: int, sources: Sequence[str]) -> bytes:
-    """Return ``modelDescription.xml`` of a model by FMI 2 or 3, whose C files are ``sources``."""
+    """Return ``modelDescription.xml`` for FMI 2 or 3 of a model with the C files ``sources``."""
     root = Xml.Element(
         "fmiModelDescription",
         {
@@ -84,7 +84,7 @@ def description(model: Model, fmi: int, sources: Sequence[str]) -> bytes:
 
 
 def build_description(model: Model, sources: Sequence[str]) -> bytes:
-    """Return ``buildDescription.xml`` of FMI 3."""
+    """Return ``buildDescription.xml`` for FMI 3."""
     root = Xml.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = Xml.SubElement(root, "BuildConfiguration", modelIdentifier=model.name)
     files = Xml.SubElement(configuration, "SourceFileSet", language="C99")

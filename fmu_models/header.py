@@ -1,4 +1,4 @@
-"""The C header of a model and its tables: variables, and the rule of quadrature over an annulus."""
+"""C header and tables of a model: its variables, and the quadrature rule for an annulus."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from fmu_models.variables import Model, Variable
 
 RINGS = 12
-"""Of an annulus, on either side of where one of its points may rest."""
+"""Quadrature points of an annulus, on each side of the radius at which a point may be at rest."""
 
 CAUSALITY = {
     "time": "t",
@@ -26,10 +26,10 @@ BROKEN = "int broken_rule(const double v[], char *sentence, size_t size)"
 
 
 def header(model: Model, token: str) -> str:
-    """Return the text of ``variables.h``; ``token`` is that of the description."""
+    """Return the text of ``variables.h``; ``token`` must be that of the description."""
     return "\n".join(
         [
-            "/* Made from the table of variables: the value reference of each. */",
+            "/* Generated from the table of variables: the value reference of each. */",
             "#ifndef VARIABLES_H",
             "#define VARIABLES_H",
             "#include <stddef.h>",
@@ -44,7 +44,7 @@ def header(model: Model, token: str) -> str:
             "    double start, least, most;",
             "} Variable;",
             *(f"extern const {array};" for array in _arrays(model)),
-            "/* Whether parameters break a rule, which the sentence then says. */",
+            "/* Returns whether parameters violate a rule, and its message in sentence. */",
             f"{BROKEN};",
             "#endif",
             "",
@@ -53,7 +53,7 @@ def header(model: Model, token: str) -> str:
 
 
 def tables(model: Model) -> str:
-    """Return the text of ``variables.c``: what the header declares."""
+    """Return the text of ``variables.c``, which defines the names declared by the header."""
     lines = [f"const {array} = {{{values}}};" for array, values in _arrays(model).items()]
     return "\n".join(
         ['#include "variables.h"', "#include <math.h>", "#include <stdio.h>", *lines, _rules(model), ""]

@@ -1,6 +1,6 @@
-"""The variables of the units: one table for each model, of which description files and the C header are made.
+"""Tables of the units' variables, the source of the description files and the C headers.
 
-Parameters and states of pin and disc have the names, units and bounds that ``reference_model.systems`` gives them.
+Parameters and states of pin and disc have the names, units and bounds of ``reference_model.systems``.
 """
 
 from __future__ import annotations
@@ -30,24 +30,24 @@ class Variable:
     Parameters
     ----------
     name : str
-        By which importers know it; its place in the table is its value reference.
+        Name for importers; the value reference is the index in the table.
     unit : str
-        One of ``description.UNITS``, or "" for none.
+        One of ``description.UNITS``, or "" if dimensionless.
     about : str
-        What it is.
+        Description.
     role : str
         "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
-        at events alone.
+        only at events.
     start : float, optional
-        Value before initialisation; None where it follows from others.
+        Value before initialisation; None if it follows from others.
     least, most : float
-        Range of values that may be set.
+        Allowed range.
     type : str
         "real", "whole" or "boolean".
     derivative_of : str
-        The state of which it is the derivative, "" if of none.
+        Name of the state for a derivative, otherwise "".
     scale : str
-        What a state is measured by: "x" as lengths, "v" as speeds, or "1".
+        Scale of a state: "x" for lengths, "v" for speeds, or "1".
 
     """
 
@@ -64,16 +64,16 @@ class Variable:
 
     @property
     def settable(self) -> bool:
-        """Whether it has a start value that an importer may change."""
+        """True if an importer may change its start value."""
         return self.role in ("parameter", "state", "input")
 
 
 @dataclass(frozen=True)
 class Model:
-    """A model: name, description, its own C source, variables in the order of value references, and rules.
+    """A model: name, description, C source, variables in the order of value references, and rules.
 
-    A rule is a condition on parameters, as an expression that means the same in Python and C, and the message if it
-    does not hold, in which "{name:g}" stands for a value. The export checks it, and the unit at initialisation.
+    A rule is a condition on parameters, an expression valid in both Python and C, and the message if it is violated,
+    with "{name:g}" for values. The export checks it, and so does the unit at initialisation.
     """
 
     name: str
@@ -84,21 +84,21 @@ class Model:
 
     @property
     def states(self) -> tuple[Variable, ...]:
-        """The continuous states."""
+        """Continuous states."""
         return self.having("state")
 
     @property
     def derivatives(self) -> tuple[Variable, ...]:
-        """Their derivatives, in the same order."""
+        """Derivatives of the states, in the same order."""
         by_state = {one.derivative_of: one for one in self.having("derivative")}
         return tuple(by_state[one.name] for one in self.states)
 
     def having(self, *roles: str) -> tuple[Variable, ...]:
-        """Return the variables of some roles, in their order."""
+        """Return the variables with these roles, in table order."""
         return tuple(one for one in self.variables if one.role in roles)
 
     def starting(self, **values: float) -> Model:
-        """Return the model with other start values; raise ``ValueError`` if it cannot start with them."""
+        """Return the model with other start values; raise ``ValueError`` if one is unknown or invalid."""
         known = {one.name: one for one in self.variables if one.settable}
         for name, value in values.items():
             if name not in known:
@@ -122,12 +122,12 @@ def _checked(variable: Variable, value: float) -> float:
 
 
 ABOUT = {
-    "mass": "mass of what moves in the plane of contact",
+    "mass": "mass that moves in the plane of contact",
     "stiffness": "stiffness of the radial support, the same in every direction",
     "damping": "damping of the radial support",
-    "friction_force": "friction while all slips, coefficient times normal load",
-    "disc_speed": "speed of the disc below",
-    "offset": "where on the x-axis the springs are relaxed; the disc below turns about 0",
+    "friction_force": "friction force in sliding, coefficient times normal load",
+    "disc_speed": "speed of the master disc",
+    "offset": "position on the x-axis where the springs are relaxed; the master disc turns about 0",
     "hardening": "stiffness that grows with the square of the deflection",
     "stop_gap": "play before the stop of the support",
     "stop_stiffness": "stiffness of the stop, 0 for none",
@@ -137,11 +137,11 @@ ABOUT = {
     "shaft_speed": "speed of the shaft",
     "x": "position",
     "y": "position",
-    "angle": "angle that the disc has turned",
+    "angle": "angle of the disc",
     "vx": "velocity",
     "vy": "velocity",
     "spin": "speed of the disc",
-    "heat": "what friction has turned into heat",
+    "heat": "heat generated by friction",
 }
 
 MEASURED_BY = {"x": "x", "y": "x", "angle": "1", "vx": "v", "vy": "v", "spin": "1", "heat": "1"}
@@ -149,11 +149,11 @@ MEASURED_BY = {"x": "x", "y": "x", "angle": "1", "vx": "v", "vy": "v", "spin": "
 DERIVED_UNITS = {"m": "m/s", "m/s": "m/s2", "rad": "rad/s", "rad/s": "rad/s2", "J": "W"}
 
 REFERENCE_UNITS = {"N s/m": "N.s/m", "N/m³": "N/m3", "kg m²": "kg.m2", "N m s/rad": "N.m.s/rad"}
-"""Units of the reference in the spelling that the standard recommends."""
+"""Units of the reference in the spelling recommended by the standard."""
 
 TIME = Variable("time", "s", "time", "time")
 TOLERANCE = Variable(
-    "tolerance", "", "relative, of the integrator of co-simulation", "parameter", 1e-11, 1e-14, 1e-2
+    "tolerance", "", "relative tolerance of the integrator in co-simulation", "parameter", 1e-11, 1e-14, 1e-2
 )
 REGULARISATION = Variable(
     "regularisation",
@@ -166,7 +166,7 @@ REGULARISATION = Variable(
 EXACT = Variable(
     "exact",
     "",
-    "whether the contact sticks by state events; otherwise it creeps below regularisation",
+    "true if the contact sticks by state events; otherwise it creeps below regularisation",
     "parameter",
     1.0,
     0.0,
@@ -215,21 +215,21 @@ def _supported(kind: type[System], values: Sequence[float], start: Sequence[floa
         TOLERANCE,
         *_states(COLUMNS[kind], start),
         *FRICTION,
-        Variable("sticks", "", "whether the contact rests as a whole", "output", type="boolean"),
-        Variable("indicator", "", "changes its sign where the contact begins or ends to stick", "local"),
+        Variable("sticks", "", "true if the contact rests as a whole", "output", type="boolean"),
+        Variable("indicator", "", "changes sign when the contact sticks or is released", "local"),
         *_stick_events(COLUMNS[kind]),
     )
 
 
 def _stick_events(columns: Sequence[tuple[str, str]]) -> tuple[Variable, ...]:
-    """Return what an exact contact tells of when it stuck last: from there on it turned with the disc below."""
+    """Return the outputs of an exact contact for its last stick and release."""
     places = [(name, unit) for name, unit in columns if unit in ("m", "rad")]
     return (
-        Variable("stick_count", "", "how often the contact began to stick", "event", type="whole"),
-        Variable("stick_time", "s", "when it did last, 0 if never", "event"),
-        *(Variable(f"stick_{name}", unit, f"{ABOUT[name]} then", "event") for name, unit in places),
-        Variable("release_count", "", "how often the contact was let go", "event", type="whole"),
-        Variable("release_time", "s", "when it was last, 0 if never", "event"),
+        Variable("stick_count", "", "number of times the contact stuck", "event", type="whole"),
+        Variable("stick_time", "s", "start of the last stick, 0 if none", "event"),
+        *(Variable(f"stick_{name}", unit, f"{ABOUT[name]} at that time", "event") for name, unit in places),
+        Variable("release_count", "", "number of releases of the contact", "event", type="whole"),
+        Variable("release_time", "s", "time of the last release, 0 if none", "event"),
     )
 
 
@@ -250,13 +250,15 @@ DISC = Model(
             (1.0, 1.0, 0.5, 0.0225, 1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.12, 0.015, 1.25),
             (0.02, 0.0, 0.0, 0.0, 0.0, 1.3),
         ),
-        _points("points of the contact, at least 3, or 0 for a ring; each creeps below regularisation"),
+        _points("number of contact points, at least 3, or 0 for a ring; each creeps below regularisation"),
         Variable("friction_moment", "N.m", "friction on the disc about its centre", "output"),
-        Variable("resting_points", "", "single points that rest: none, 1 or all", "event", type="whole"),
-        Variable("rest_count", "", "how often that changed in co-simulation", "event", type="whole"),
-        Variable("rest_time", "s", "when it did last, 0 if never", "event"),
+        Variable("resting_points", "", "number of resting points: 0, 1 or all", "event", type="whole"),
+        Variable(
+            "rest_count", "", "number of changes of resting_points in co-simulation", "event", type="whole"
+        ),
+        Variable("rest_time", "s", "time of the last change, 0 if none", "event"),
         *(
-            Variable(f"rest_{name}", unit, f"{ABOUT[name]} then", "event")
+            Variable(f"rest_{name}", unit, f"{ABOUT[name]} at that time", "event")
             for name, unit in COLUMNS[DiscOnDisc]
         ),
     ),
@@ -286,12 +288,19 @@ def _clutch() -> tuple[Variable, ...]:
     return (
         TIME,
         *support,
-        Variable("inner_radius", "m", "of the contact; that of a ring is the outer", "parameter", 0.1, 0.0),
-        Variable("outer_radius", "m", "of the contact; 0 for a pin", "parameter", 0.1, 0.0),
+        Variable(
+            "inner_radius",
+            "m",
+            "inner radius of the contact; for a ring, equal to the outer",
+            "parameter",
+            0.1,
+            0.0,
+        ),
+        Variable("outer_radius", "m", "outer radius of the contact; 0 for a pin", "parameter", 0.1, 0.0),
         Variable(
             "wear",
             "",
-            "whether pressure is as linings wear, alike with 1/r, or uniform",
+            "true for the pressure of worn linings, proportional to 1/r; otherwise uniform",
             "parameter",
             0.0,
             0.0,
@@ -302,16 +311,18 @@ def _clutch() -> tuple[Variable, ...]:
             Variable(
                 f"pressure_{where}",
                 "",
-                f"of the annulus at its {where} radius, over any, times what wear makes it; in between a parabola",
+                f"relative pressure at the {where} radius, a factor on that of wear; a parabola in between",
                 "parameter",
                 1.0,
                 0.0,
             )
             for where in ("inner", "mean", "outer")
         ),
-        _points("points at outer_radius that turn with flange b, or 0; each creeps below regularisation"),
+        _points(
+            "number of points at outer_radius, which turn with flange b and creep below regularisation; or 0"
+        ),
         Variable("plates", "", "pairs of faces in contact", "parameter", 1.0, 1.0, MOST_PLATES, type="whole"),
-        Variable("static_ratio", "", "of static to sliding friction", "parameter", 1.0, 1.0),
+        Variable("static_ratio", "", "ratio of static to sliding friction", "parameter", 1.0, 1.0),
         REGULARISATION,
         TOLERANCE,
         Variable("angle_a", "rad", "angle of flange a", "input", 0.0),
@@ -319,18 +330,20 @@ def _clutch() -> tuple[Variable, ...]:
         Variable("angle_b", "rad", "angle of flange b, with which the disc turns", "input", 0.0),
         Variable("speed_b", "rad/s", "speed of flange b", "input", 0.0),
         Variable("normal_load", "N", "force along the axis", "input", 1000.0, 0.0),
-        Variable("friction_coefficient", "", "of sliding", "input", 0.3, 0.0),
-        Variable("engagement", "", "share of the normal load that presses", "input", 1.0, 0.0, 1.0),
+        Variable("friction_coefficient", "", "coefficient of sliding friction", "input", 0.3, 0.0),
+        Variable(
+            "engagement", "", "share of the normal load that acts on the contact", "input", 1.0, 0.0, 1.0
+        ),
         *_states(
             (*((name, unit) for name, unit in COLUMNS[PinOnDisc]), ("heat", "J")),
             (0.0, 0.0, 0.0, 0.0, 0.0),
         ),
-        Variable("torque_a", "N.m", "on flange a about its axis", "output"),
-        Variable("torque_b", "N.m", "on flange b", "output"),
+        Variable("torque_a", "N.m", "torque on flange a about its axis", "output"),
+        Variable("torque_b", "N.m", "torque on flange b", "output"),
         *FRICTION,
-        Variable("radial_force_x", "N", "of the support on its ground", "output"),
-        Variable("radial_force_y", "N", "of the support on its ground", "output"),
-        Variable("heat_rate", "W", "what friction turns into heat", "output"),
+        Variable("radial_force_x", "N", "force of the support on the ground", "output"),
+        Variable("radial_force_y", "N", "force of the support on the ground", "output"),
+        Variable("heat_rate", "W", "heat flow generated by friction", "output"),
     )
 
 
@@ -353,7 +366,7 @@ CLUTCH = Model(
             "pressure_inner + pressure_mean + pressure_outer > 0.0",
             "pressure_mean = {pressure_mean:g}: one of pressure_inner, pressure_mean and pressure_outer must be > 0",
         ),
-        # a parabola with the values a, b and c at 0, 1/2 and 1 is negative in between if 4 b < (sqrt(a) - sqrt(c))^2
+        # a parabola with values a, b, c at 0, 1/2 and 1 becomes negative in between if 4 b < (sqrt(a) - sqrt(c))^2
         (
             "2.0 * sqrt(pressure_mean) >= fabs(sqrt(pressure_inner) - sqrt(pressure_outer))",
             "pressure_mean = {pressure_mean:g}: it is too small, the parabola to pressure_inner = {pressure_inner:g} "

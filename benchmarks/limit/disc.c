@@ -1,8 +1,8 @@
-/* The disc as fast as one trajectory after the other goes: what the lanes of reference_model/ensemble are measured against.
+/* The disc, one trajectory at a time and as fast as possible, as a benchmark for the lanes of reference_model/ensemble.
 
-   The method is theirs: the eighth-order Runge-Kutta method of Dormand and Prince (coefficients of Hairer's DOP853) in
-   stretched time, steps that end where U = R|S| on a ring, where friction has infinite slopes, and the last one where
-   the time is over. Slip only: what comes to rest is not followed.
+   The method is the same: the eighth-order Runge-Kutta method of Dormand and Prince (coefficients of Hairer's DOP853) in
+   stretched time. On a ring, steps end at U = R|S|, where friction has infinite slopes. The last step ends at the final
+   time. Slip only: motions are not followed to rest.
 
    run_discs(points, disc, starts, n, duration, tolerance, states) returns the number of steps: points is 0 for the ring;
    disc holds mass, polar inertia, stiffness, damping, friction force, disc speed, offset, contact radius, shaft damping
@@ -15,7 +15,7 @@
 enum { N = 6, ALL = 7, MOST_POINTS = 64 };
 
 static const double ON_EDGE = 1e-4, AT_END = 1e-13, LEAST = 1e-300;
-static const double REST = 1e-6; /* steps fall below it where a point of the contact comes to rest, or just before the end */
+static const double REST = 1e-6; /* steps fall below it as a point of the contact comes to rest, or just before the end */
 
 static double k2, beta, g, omega, offset, s0, eta, shaft, lag, curling;
 static int points;
@@ -46,7 +46,7 @@ static void ring(double u, double w, double *by_slip, double *by_rim) {
     *by_rim = u > w ? by_smaller : by_larger;
 }
 
-/* Rates of x, y, u_x, u_y, r and the angle by stretched time, and that of time. */
+/* Rates of x, y, u_x, u_y, r, angle and time with respect to stretched time. */
 static void rates(const double *q, double *k) {
     double x = q[0], y = q[1], ux = q[2], uy = q[3], r = q[4];
     double fx, fy, fr;

@@ -1,8 +1,8 @@
-/* The disc of disc.c in lanes: the practical limit for reference_model.ensemble, by hand, full length, without telling
-   end states.
+/* The disc of disc.c in lanes, handwritten: the practical limit for reference_model.ensemble, at full length and without
+   detecting end states.
 
-   The same method and the same arguments; two vectors of eight lanes, refilled as trajectories finish. Friction of the ring
-   takes as many means as the slowest of lanes may need. */
+   Method and arguments are those of disc.c; two vectors of eight lanes are refilled as trajectories finish. Friction of
+   the ring takes as many means as the slowest lane may need. */
 
 #include <math.h>
 
@@ -14,7 +14,7 @@ enum { N = 6, ALL = 7, MEANS = 6, MOST_POINTS = 64 };
 static const double ON_EDGE = 1e-4, AT_END = 1e-13, LEAST = 1e-300;
 static const double REST = 1e-6; /* as in disc.c */
 
-typedef struct { vec g, offset, s0, lag, curling, length, speed; } units_t; /* each trajectory in those of its own size */
+typedef struct { vec g, offset, s0, lag, curling, length, speed; } units_t; /* units of each trajectory, by its size */
 
 typedef struct { vec q[ALL], k[ALL], h, usual, before, approach; units_t by; } lanes_t;
 
@@ -42,7 +42,7 @@ INLINE void ring(vec u, vec w, vec *by_slip, vec *by_rim)
     *by_rim = pick(slides, by_small, by_large);
 }
 
-/* Cosine and sine by Taylor's series about the nearest quarter of a turn, to the last digits. */
+/* Cosine and sine by Taylor series about the nearest quarter turn, to rounding error. */
 INLINE void turned(vec angle, vec *cosine, vec *sine)
 {
     vec quarter;
@@ -107,7 +107,7 @@ INLINE vec edge(int points, const vec *q, const vec *k, vec *rate)
     for (int i = 0; i < N; i++) trial[i] = s->q[i] + h * STAGE_##stage;                   \
     rates(points, trial, &s->by, k[stage]);
 
-/* One try of all lanes; what is not taken has another step size. */
+/* One trial step of all lanes; a rejected lane only changes its step size. */
 INLINE void advance(int points, lanes_t *s, double end, double tolerance)
 {
     vec k[13][ALL], trial[ALL], h = s->h, high = all(0.0), low = all(0.0), leaving;
@@ -150,7 +150,7 @@ INLINE void advance(int points, lanes_t *s, double end, double tolerance)
     s->approach = pick(taken, leaving, s->approach);
 }
 
-/* A lane at a start, six numbers. */
+/* Initialise a lane from six numbers. */
 static void load(int points, lanes_t *s, int lane, const double *start, const double *disc, double kappa, double rate)
 {
     double force = disc[4] / disc[0];
@@ -188,7 +188,7 @@ INLINE long run(int points, const double *disc, const double *starts, long n, do
     lanes_t lanes[HALVES];
     long number[HALVES][WIDTH], first = 0, busy = 0, steps = 0;
     for (int half = 0; half < HALVES; half++)
-        for (int i = 0; i < WIDTH; i++) { /* idle lanes follow the first start once more */
+        for (int i = 0; i < WIDTH; i++) { /* idle lanes repeat the first start */
             long mine = first < n ? first++ : 0;
             number[half][i] = mine || (!half && !i) ? mine : -1;
             busy += number[half][i] >= 0;

@@ -1,4 +1,4 @@
-/* Coefficients of Hairer's DOP853, as SciPy has them; zeros are left out. */
+/* Nonzero coefficients of Hairer's DOP853, as in SciPy. */
 #ifndef DOP853_H
 #define DOP853_H
 #define A2_1 0.05260015195876773

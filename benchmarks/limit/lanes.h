@@ -1,4 +1,4 @@
-/* Eight numbers of eight trajectories in one vector; two of these in turns keep the processor busy. */
+/* Vectors with one number of each of eight trajectories; alternating between two vectors keeps the processor busy. */
 #ifndef LANES_H
 #define LANES_H
 

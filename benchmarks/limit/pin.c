@@ -1,9 +1,9 @@
-/* The pin under exact Coulomb friction as fast as this machine does it by hand: the practical limit for
- * reference_model.ensemble, full length, without telling end states.
+/* The pin under exact Coulomb friction, handwritten: the practical limit for reference_model.ensemble, at full length and
+ * without detecting end states.
  *
- * The same scheme: DOP853 in stretched time in two vectors of eight lanes, refilled as trajectories finish, with stick legs
- * in closed form and slip that begins by a series. (With the regularised law, DOP853 and Rodas5P, it is slower.)
- * The tolerance is relative to the size of each motion, as there.
+ * The scheme is the same: DOP853 in stretched time in two vectors of eight lanes, refilled as trajectories finish, with
+ * closed-form stick phases and a series at the start of slip. (The regularised law, by DOP853 and Rodas5P, is slower.)
+ * The tolerance is relative to the size of each motion, as in the package.
  */
 #include <complex.h>
 #include <math.h>
@@ -19,7 +19,7 @@ typedef double complex cplx;
 
 typedef struct { double k2, c, g, omega, offset, rate, s0; } law_t;
 
-typedef struct { vec v[6]; } rates_t; /* of x, y, wx, wy; dt/dtau; that times the slip speed */
+typedef struct { vec v[6]; } rates_t; /* rates of x, y, wx, wy; dt/dtau; dt/dtau times the slip speed */
 
 INLINE rates_t rates(vec x, vec y, vec wx, vec wy, const law_t *p)
 {
@@ -30,7 +30,7 @@ INLINE rates_t rates(vec x, vec y, vec wx, vec wy, const law_t *p)
     return (rates_t){{share * vx, share * vy, share * ax - f * wx, share * ay - f * wy, share, share * s}};
 }
 
-typedef struct { vec y[4], t, k[6], h, unit; } lanes_t; /* unit: of length, for the tolerance */
+typedef struct { vec y[4], t, k[6], h, unit; } lanes_t; /* unit: unit of length for the tolerance */
 
 #define SUM1(n, a, i) (n##_##a * k##a.v[i])
 #define SUM2(n, a, b, i) (SUM1(n, a, i) + SUM1(n, b, i))
@@ -44,7 +44,7 @@ typedef struct { vec y[4], t, k[6], h, unit; } lanes_t; /* unit: of length, for 
 #define STAGE(number, sum) \
     rates_t k##number = rates(s->y[0] + h * (sum(0)), s->y[1] + h * (sum(1)), s->y[2] + h * (sum(2)), s->y[3] + h * (sum(3)), p)
 
-/* A step of all lanes: where its error is too large only the step size changes. Returns which were taken. */
+/* A step of all lanes; a lane whose error is too large only changes its step size. Returns the mask of accepted lanes. */
 INLINE mask advance(const lanes_t *s, const law_t *p, double tolerance, lanes_t *to)
 {
     rates_t k1;
@@ -179,7 +179,7 @@ static double speed_over_time(const series_t *s, int terms, double t)
     return total;
 }
 
-/* Slip from rest: changes z, sets w, returns how long it took; w = 0 if it ended in rest. */
+/* Slip from rest: changes z, sets w and returns the duration; w = 0 if the slip ended in rest. */
 static double begin_slip(cplx *z, cplx *w, const law_t *p, double tolerance, double longest)
 {
     series_t s;
@@ -222,7 +222,7 @@ static void put_slipping(lanes_t *s, int i, cplx z, cplx w, const law_t *p)
     s->h[i] = fmin(0.3 / p->rate, (cabs(w) + p->s0) / p->g);
 }
 
-/* From rest until slip or the end; returns whether it is the end. */
+/* Continue from rest until slip or the end; returns whether the end is reached. */
 static int rest(lanes_t *s, int i, cplx z, double t, double end, const law_t *p, double tolerance)
 {
     cplx w = 0.0;
@@ -240,7 +240,7 @@ static int rest(lanes_t *s, int i, cplx z, double t, double end, const law_t *p,
     return t >= end;
 }
 
-/* Do the last step of a lane again so that it ends at the time end. */
+/* Repeat the last step of a lane so that it ends at the time end. */
 static void land(const lanes_t *before, lanes_t *after, int i, double end, const law_t *p)
 {
     lanes_t one, to;

@@ -1,4 +1,4 @@
-/* The sums of DOP853 for component i, of numbers or vectors: k[j][i] are its rates at stage j, from 0 on. */
+/* Sums of DOP853 for component i, a number or a vector; k[j][i] is its rate at stage j, counted from 0. */
 #ifndef STAGES_H
 #define STAGES_H
 

@@ -1,19 +1,19 @@
-"""Engines: whatever can simulate a system takes part in the comparison, with the systems that it promises.
+"""Engines of the comparison, each with the kinds of systems that it simulates.
 
-A study of a single system just calls ``engine.simulate``: where the engine never promised that system, the report
-says "not simulated" in place of its claims, which is neither a pass nor a failure. A study of several systems
-measures those that the engine simulates and hands on what is missing::
+A study of a single system calls ``engine.simulate``. If the engine does not simulate the system, the report says
+"not simulated" in place of the claims, which is neither a pass nor a failure. A study of several systems measures
+those that the engine simulates and reports the others::
 
     mine = [disc for disc in discs if engine.simulates(disc)]
     return Findings(claims_of(mine), data_of(mine), not_simulated=engine.lacking(discs))
 
-What an engine returns is looked at before a study sees it: times and shapes as asked for, numbers all finite.
+Every trajectory is checked before a study sees it: requested times, shapes and finite numbers.
 """
 
 import os
 
-# A user's ~/.exudyn/config.json would change what is measured. Exudyn reads it when it is imported: after this, since
-# every study imports this package, and in all processes that are started from here.
+# A user's ~/.exudyn/config.json would change the results. Exudyn reads it on import, which always follows this line
+# because every study imports this package. Child processes inherit the setting.
 os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError

@@ -1,4 +1,4 @@
-"""What an engine returns, looked at before a study sees it."""
+"""Checks of the trajectories that an engine returns, before a study sees them."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase, Trajectory
 
 PHASES = ("slip", "pivot", "stick")
-"""The kinds of phases."""
+"""Kinds of phases."""
 
 TIME_ROUNDING = 1e-12
-"""Relative: times of the same grid that were added up in another order agree to this."""
+"""Largest relative difference between times of one grid that were summed in different order."""
 
 REAL = "fiu"
-"""NumPy's kinds of real numbers, without texts and truth values."""
+"""NumPy's kinds of real numbers, without strings and Booleans."""
 
 
 class BadTrajectoryError(RuntimeError):
-    """An engine returned what is no answer to the question; the message says why."""
+    """An engine returned an invalid trajectory; the message says why."""
 
 
 def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
-    """Return ``trajectory`` if it is one of ``system`` at ``times`` (n,); raise ``BadTrajectoryError`` otherwise."""
+    """Return ``trajectory`` if it is valid for ``system`` at ``times`` (n,), else raise ``BadTrajectoryError``."""
     if not isinstance(trajectory, Trajectory):
         raise TypeError(f"simulate() returned {reprlib.repr(trajectory)}: it must be a Trajectory")
     asked, got = np.asarray(times, dtype=float), np.asarray(trajectory.times)
@@ -34,20 +34,18 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
     for name, array in (("times", got), ("states", states)):
         if array.dtype.kind not in REAL:
             raise BadTrajectoryError(
-                f"the trajectory's {name} are of the type {array.dtype}: they must be real numbers"
+                f"the trajectory's {name} have the type {array.dtype}: they must be real numbers"
             )
     if got.shape != asked.shape:
-        raise BadTrajectoryError(
-            f"the trajectory's times have shape {got.shape}: {asked.shape} were asked for"
-        )
+        raise BadTrajectoryError(f"the trajectory's times have shape {got.shape}: expected {asked.shape}")
     strange = ~(np.abs(got - asked) <= TIME_ROUNDING * np.max(np.abs(asked)))  # also true for NaN
     if np.any(strange):
         i = int(np.argmax(strange))
         raise BadTrajectoryError(
-            f"the trajectory's times[{i}] = {float(got[i])!r} s: {float(asked[i])!r} s was asked for"
+            f"the trajectory's times[{i}] = {float(got[i])!r} s: expected {float(asked[i])!r} s"
         )
     if states.shape != shape:
-        raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: they must have {shape}")
+        raise BadTrajectoryError(f"the trajectory's states have shape {states.shape}: expected {shape}")
     broken = ~np.all(np.isfinite(states), axis=1)
     if np.any(broken):
         i = int(np.argmax(broken))
@@ -57,7 +55,7 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
 
 
 def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:
-    """Raise ``BadTrajectoryError`` unless the phases follow each other within ``times``."""
+    """Raise ``BadTrajectoryError`` unless the phases are in order and within ``times``."""
     slack = TIME_ROUNDING * np.max(np.abs(times))
     earliest, latest = times[0] - slack, times[-1] + slack
     for i, phase in enumerate(phases):
@@ -77,20 +75,18 @@ def _check_phases(phases: Sequence[object], times: FloatArray, components: int) 
 
 
 def _is_real(value: object, shape: tuple[int, ...]) -> bool:
-    """Return whether ``value`` is made of finite real numbers in this shape."""
+    """Return whether ``value`` consists of finite real numbers in this shape."""
     array = np.asarray(value)
     return array.dtype.kind in REAL and array.shape == shape and bool(np.isfinite(array).all())
 
 
 def as_many_as(answers: object, asked: int) -> list[object]:
-    """Return the ``answers`` of ``simulate_many`` if they are so many; raise ``BadTrajectoryError`` otherwise."""
+    """Return ``answers`` of ``simulate_many`` as a list; raise ``BadTrajectoryError`` unless there are ``asked``."""
     if isinstance(answers, Trajectory) or not isinstance(answers, Iterable):
         raise TypeError(
             f"simulate_many() returned {reprlib.repr(answers)}: it must be a list of trajectories"
         )
     found = list(answers)
     if len(found) != asked:
-        raise BadTrajectoryError(
-            f"simulate_many() returned {len(found)} trajectories: {asked} were asked for"
-        )
+        raise BadTrajectoryError(f"simulate_many() returned {len(found)} trajectories: expected {asked}")
     return found

@@ -1,4 +1,4 @@
-"""An engine: a function that simulates, and what it promises."""
+"""An engine: a function that simulates, and the kinds of systems that it supports."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ KINDS = {
     "points": "a disc on single points",
     "ring": "a disc on a continuous ring",
 }
-"""The kinds of systems that an engine may promise, and what they are in words.
+"""Kinds of systems that an engine may simulate, with their descriptions.
 
-A block is a pin on a disc that does not turn: who simulates pins simulates blocks as well.
+A block is a pin on a disc at rest, so every engine that simulates pins simulates blocks.
 """
 
 EVERY_KIND = tuple(KINDS)
 
 
 LEAST_STEP = 1e-9
-"""In s: with a shorter one the studies' motions of 10 s and more would take over 10¹⁰ steps."""
+"""Shortest fixed step in s; the studies' motions last 10 s and more, which would take over 10¹⁰ steps."""
 
 COARSE_STEP = 30.0
-"""How coarse a fixed step is, see ``StatesOnly``: contact that sticks along tangents creeps by ωh/2 of its speed."""
+"""Coarseness of a fixed step, see ``StatesOnly``; a contact stuck along tangents creeps at ωh/2 of its speed."""
 
 
 class Simulate(Protocol):
-    """The one function that an engine implements.
+    """The one function that an engine must implement.
 
-    ``tolerance`` is the accuracy to aim at: whatever the engine approximates (step, iteration, a smoothed
-    friction law) must get better when it gets smaller, because errors are estimated by tightening it.
+    ``tolerance`` is the required accuracy. Every approximation of the engine (step, iteration, regularised friction
+    law) must improve with it, because errors are estimated by tightening it.
     """
 
     def __call__(
@@ -55,7 +55,7 @@ class Simulate(Protocol):
 
 
 class SimulateMany(Protocol):
-    """What an engine may implement besides: many motions at once, at a tolerance as in ``Simulate``."""
+    """Optional second function of an engine: many motions in one call, at a tolerance as in ``Simulate``."""
 
     def __call__(
         self,
@@ -64,58 +64,57 @@ class SimulateMany(Protocol):
         times: list[ArrayLike],
         **accuracy: float,
     ) -> Sequence[Trajectory]:
-        """Return what ``Simulate`` does for each of as many systems, states and times."""
+        """Return the motion of each system from its initial state at its times; the lists are equally long."""
         ...
 
 
 class UnsupportedSystemError(ValueError):
-    """An engine was asked for a system or motion that it never promised to simulate; the message says which."""
+    """The engine does not simulate the requested system or motion; the message says which."""
 
 
 @dataclass(frozen=True)
 class Engine:
-    """A name, a simulate() and what it is for.
+    """An engine's name, its ``simulate``, and its capabilities.
 
     Parameters
     ----------
     name : str
-        As on the command line.
+        Name on the command line.
     function : callable
-        The engine's ``simulate``; to take part in work on several cores, a function of an importable module.
+        The engine's ``simulate``; a function of an importable module if several processes are to use it.
     kinds : tuple of str
-        What ``function`` promises to simulate: "block" (a pin on a disc that does not turn), "pin" (blocks too),
-        "points" (a disc on single points), "ring" (a disc on the continuous ring).
+        Systems that ``function`` simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
+        disc on single points), "ring" (a disc on the continuous ring).
     sticks : bool
-        Whether it simulates motions that stick. An engine that does not is asked for motions only in which the
-        reference finds none, and which do not start at rest on the disc below.
+        True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds no
+        stick, and which do not start at rest on the master disc.
     nonlinear : bool
-        Whether it simulates supports that harden or have a stop.
+        True if it simulates supports that harden or have a stop.
     phases : bool
-        Whether its trajectories tell when bodies stick. Otherwise, and where one has no phases at all, stick is found
-        from the states, see ``compare.engines.stick``.
+        True if its trajectories contain the stick phases. Otherwise, and for a trajectory without phases, stick is
+        found from the states, see ``compare.engines.stick``.
     precision : float
-        What its states may be off by whatever the tolerance, relative to the motion's own lengths and speeds:
-        1e-6 for single precision. See ``compare.engines.precision``.
+        Error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for single
+        precision. See ``compare.engines.precision``.
     step : float, optional
-        For an integrator with a fixed step, which takes ``step`` in place of ``tolerance``: the step in s for a
-        tolerance of 1e-9, see ``step_at``.
+        Step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function`` then
+        takes ``step`` in place of ``tolerance``.
     order : float
-        By which errors fall with a fixed step.
+        Order of the error in a fixed step.
     kin : str
-        Name of the engine whose code it shares, so that neither is independent evidence about the other.
+        Name of the engine whose code it shares; neither is independent evidence for the other.
     contact_only : bool
-        Whether all but its contact is its kin's: then it is measured only where the contact decides, see
-        ``Study.contact``, unless it is asked for by its name.
+        True if it shares everything except the contact with its kin. It is then measured only in studies of the
+        contact, see ``Study.contact``, unless it is requested by name.
     version : str
-        What the engine calls its version.
+        The engine's own version.
     about : str
-        What a reader of the report has to know of it, in a sentence or two.
+        One or two sentences for readers of the report.
 
     Raises
     ------
     ValueError
-        For a kind that there is not, a step below ``LEAST_STEP``, or ``sticks``, ``nonlinear`` or ``phases`` that is
-        not True or False.
+        If a kind is unknown, a number is out of range, or ``sticks``, ``nonlinear`` or ``phases`` is not a Boolean.
 
     """
 
@@ -134,7 +133,7 @@ class Engine:
     about: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse a promise that no study could ask for."""
+        """Normalise the fields; raise ``ValueError`` if one is invalid."""
         for name in ("name", "version", "about"):
             object.__setattr__(self, name, one_line(getattr(self, name)))
         object.__setattr__(self, "kinds", tuple(self.kinds))
@@ -162,16 +161,16 @@ class Engine:
         *,
         tolerance: float = USUAL_TOLERANCE,
     ) -> Trajectory:
-        """Do as ``function``, and look at what it returns.
+        """Call ``function``, check the trajectory and return it.
 
         Raises
         ------
         UnsupportedSystemError
-            For a system or a motion that the engine does not promise.
+            If the engine does not simulate the system or the motion.
         TypeError
-            If the function returns no ``Trajectory``.
+            If ``function`` does not return a ``Trajectory``.
         BadTrajectoryError
-            If it is not the one that was asked for, or has numbers that are not finite.
+            If the trajectory has other times or shapes than requested, or numbers that are not finite.
 
         """
         self._refuse(system, initial_state, times)
@@ -183,15 +182,14 @@ class Engine:
     def simulate_many(
         self, motions: Iterable[tuple[System, ArrayLike, ArrayLike]], *, tolerance: float = USUAL_TOLERANCE
     ) -> list[Trajectory]:
-        """Return the motion of each system from its initial state at its times, as ``simulate`` does.
+        """Return the motion of each system from its initial state at its times.
 
-        They are asked for at once where ``function`` has an attribute ``simulate_many``, a function of the systems,
-        the initial states and the times, each a list, else one after the other.
+        If ``function`` has an attribute ``simulate_many``, see ``SimulateMany``, one call computes all of them.
 
         Raises
         ------
         UnsupportedSystemError, TypeError, BadTrajectoryError
-            As ``simulate`` does, or for another number of trajectories than was asked for.
+            As ``simulate`` does; also if the number of trajectories is wrong.
 
         """
         motions = list(motions)
@@ -212,7 +210,7 @@ class Engine:
         return found
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
-        """Raise ``UnsupportedSystemError`` for a motion that the engine does not promise."""
+        """Raise ``UnsupportedSystemError`` for a motion that the engine does not simulate."""
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
         if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
@@ -222,7 +220,7 @@ class Engine:
         return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
 
     def _start(self, system: System, initial_state: ArrayLike, tolerance: float) -> ArrayLike:
-        """Return the state that the function is asked to start from."""
+        """Return the initial state passed to ``function``, perturbed if the precision is limited."""
         if self.precision == 0.0:
             return initial_state
         return blurred_start(system, np.asarray(initial_state, dtype=float), self.precision, tolerance)
@@ -230,7 +228,7 @@ class Engine:
     def _seen(
         self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the function's ``answer`` as studies see it: looked at, in its precision, and with its stick."""
+        """Return the checked ``answer``, with noise of the engine's precision and with its stick phases."""
 
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
@@ -252,10 +250,10 @@ class Engine:
 
     @property
     def root(self) -> float:
-        """The root of the tolerance with which a fixed step goes: its order, so that errors go with the tolerance.
+        """Exponent p of the fixed step h ∝ tolerance^(1/p): the order, so errors are proportional to the tolerance.
 
-        It is 2 for orders below, whose steps would become too many: where errors are estimated, at an eighth of the
-        tolerance, an error of first order then falls to a third.
+        The smallest exponent is 2, because steps of first order would become too many. At an eighth of the tolerance,
+        used for error estimates, an error of first order then falls to a third.
         """
         return max(self.order, 2.0)
 
@@ -264,14 +262,14 @@ class Engine:
         return (self.step or 0.0) * math.pow(tolerance / USUAL_TOLERANCE, 1.0 / self.root)
 
     def simulates(self, system: System) -> bool:
-        """Return whether the engine promises to simulate ``system``."""
+        """Return whether the engine simulates ``system``."""
         return self._promises(_kind(system)) and (self.nonlinear or Support.of(system).linear)
 
     def _promises(self, kind: str) -> bool:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
     def lacking(self, systems: Iterable[System]) -> str:
-        """Return in a sentence what of ``systems`` the engine does not simulate, "" if it simulates all."""
+        """Return a sentence that names the kinds of ``systems`` the engine does not simulate, or ""."""
         words = dict.fromkeys(
             KINDS[_kind(system)] + (" on a nonlinear support" if self._promises(_kind(system)) else "")
             for system in systems
@@ -291,11 +289,11 @@ def _ends(times: ArrayLike) -> tuple[float, float]:
     return float(times[0]), float(times[-1])
 
 
-@functools.lru_cache(maxsize=64)  # the same motion is asked for at two tolerances, one after the other
+@functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances in succession
 def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
-    """Return whether the contact slips from ``start``, and then on, to ``end``, by the reference."""
+    """Return whether, by the reference, the contact slips all the time from ``start`` to ``end``."""
     import reference_model
 
     run = reference_model.simulate(system, initial_state, [start, end], tolerance=1e-6)
-    # without slip, friction has a direction only for who knows what it holds
+    # at zero slip, the direction of friction is defined only by a model of stick
     return slip_of(run)[0] > 0.0 and all(phase.kind == "slip" for phase in run.phases)

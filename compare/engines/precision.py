@@ -1,9 +1,9 @@
-"""What an engine can't do better, made visible: noise of the size of its precision.
+"""Noise that makes the limited precision of an engine visible in the error estimates.
 
-The numerical error of a claim is what changes with the tolerance. Rounding to single precision may change nothing:
-the same digits are cut off at both tolerances. Noise of that size, other at each tolerance, goes the way of rounding
-through whatever a claim does with the states, differences and roots and growth included, so that its error shows in
-the change. This is the idea of stochastic arithmetic (Vignes, Mathematics and Computers in Simulation 35, 1993).
+The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision may not
+contribute, because it can cut off the same digits at both tolerances. Noise of that size, different at each
+tolerance, propagates through a claim as rounding does and so contributes to the change. This is the idea of
+stochastic arithmetic (Vignes, Mathematics and Computers in Simulation 35, 1993).
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from reference_model.systems import ANGLE, FloatArray, System
 from reference_model.trajectory import Trajectory
 
 LEAST_PRECISE = 1e-3
-"""The largest precision that may be declared: there is little left to compare of a coarser one."""
+"""Largest precision that an engine may declare; coarser states are hardly comparable."""
 
 OTHER_SIZE = 0.25
-"""Of the noise at the next smaller or larger tolerance, over its size at this one."""
+"""Amplitude of the noise at every second tolerance, relative to that at the others."""
 
 
 def blurred_start(system: System, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
-    """Return ``state``, shape (4,) or (6,), from another place, as near as rounding may move it.
+    """Return ``state``, shape (4,) or (6,), with its position moved by noise of size ``precision``.
 
-    It moves with the master disc there, so that its slip stays: what sticks begins with stick.
+    The velocity changes by that of the master disc, so the slip remains and a sticking body still sticks.
     """
     half = len(state) // 2
     moved = _blurred(state[np.newaxis], precision, tolerance, state)[0]
@@ -38,9 +38,9 @@ def blurred_start(system: System, state: FloatArray, precision: float, tolerance
 
 
 def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: FloatArray) -> Trajectory:
-    """Return ``trajectory`` with noise up to ``precision`` of its largest distance from the axis, speed, angle, spin.
+    """Return ``trajectory`` with noise up to ``precision`` times its largest lengths, speeds, angle and spin.
 
-    The first state is the ``start`` that was asked for.
+    The first state is the requested ``start``.
     """
     states = np.asarray(trajectory.states, dtype=float)
     states = _blurred(states, precision, tolerance, start, trajectory.times)
@@ -49,10 +49,11 @@ def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: F
 
 
 def _blurred(states: FloatArray, precision: float, tolerance: float, *question: FloatArray) -> FloatArray:
-    """Return ``states`` with noise that follows from the question alone, its factor from the tolerance.
+    """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
-    At the two tolerances of an estimate it is the same noise, of the other sign and another size. Two numbers may be
-    off by nearly the same by chance, but not then, whether the effect has the noise's sign or none.
+    The two tolerances of an estimate have the same noise with opposite signs and different amplitudes. Independent
+    noise could cause nearly equal errors by chance, which the estimate would miss. Opposite signs reveal effects that
+    are odd in the noise, different amplitudes those that are even.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision
@@ -60,7 +61,7 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
 
 
 def _sizes(states: FloatArray) -> FloatArray:
-    """Return beside which size a number is rounded, for each component of ``states`` (n, 4) or (n, 6)."""
+    """Return the magnitude relative to which each component of ``states`` (n, 4) or (n, 6) is rounded."""
     half = states.shape[1] // 2
     sizes = np.max(np.abs(states), axis=0)
     for x in (0, half):
@@ -68,9 +69,9 @@ def _sizes(states: FloatArray) -> FloatArray:
     return np.asarray(sizes)
 
 
-# --- The tolerances at which engines are asked.
+# --- Tolerances passed to engines.
 
 USUAL_TOLERANCE = 1e-9
 
 COARSENING = 8.0
-"""Factor between the two tolerances from which an error is estimated, see ``compare.claims.error_estimates``."""
+"""Ratio of the two tolerances that give an error estimate, see ``compare.claims.error_estimates``."""

@@ -1,4 +1,4 @@
-"""Engines by name: this project's, those of installed packages, and functions of modules."""
+"""Engines by name: those of this project, of installed packages, and functions of modules."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from reference_model.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class ByName:
-    """Calls a function of a module that is imported then: the command line must start without SciPy and Exudyn.
+    """A function of a module that is imported on the first call, so the command line starts without SciPy and Exudyn.
 
-    The module is looked for in ``folder``, if there is one, after all other places.
+    ``folder``, if given, is searched for the module after all other folders.
     """
 
     module: str
@@ -29,39 +29,40 @@ class ByName:
     folder: str = ""
 
     def __call__(self, *arguments: Any, **options: Any) -> Trajectory:
-        """Call it."""
+        """Call the function."""
         trajectory: Trajectory = self.imported(*arguments, **options)
         return trajectory
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """What the function has under this name, if anything, see ``compare.engines.engine.SimulateMany``."""
+        """The function's attribute of this name, or None; see ``compare.engines.engine.SimulateMany``."""
         return getattr(self.imported, "simulate_many", None)
 
     @property
     def imported(self) -> Callable[..., Any]:
         """The function itself."""
         if self.folder and self.folder not in sys.path:
-            # last, or a file of the user's would take the place of a library's module
+            # last, so that a user's file cannot replace a library's module
             sys.path.append(self.folder)
         function: Callable[..., Any] = getattr(importlib.import_module(self.module), self.function)
         return function
 
 
 ENTRY_POINTS = "friction_discs.engines"
-"""The group of entry points in which an installed package names its engines: ``mine = "package.module:simulate"``."""
+"""Group of entry points for the engines of an installed package: ``mine = "package.module:simulate"``."""
 
 DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "order", "version")
-"""Attributes of a function that say what it is for, named like the parameters of ``Engine``."""
+"""Optional attributes of a ``simulate`` function, named like the parameters of ``Engine``."""
 
 _REGISTRY: dict[str, Engine] = {}
 _ON_REQUEST: set[str] = set()
 
 
 class Scheme(NamedTuple):
-    """What names of the form "scheme:REST" mean: the engine of REST, and a quick check of it.
+    """Meaning of names "scheme:REST": a function that returns the engine of REST, and a quick check of REST.
 
-    Both raise ``ValueError`` for a REST that is none. One that may stand ``alone`` is asked for "" then.
+    Both raise ``ValueError`` if REST is invalid. If ``alone``, the name of the scheme is valid without ":REST", which
+    is then "".
     """
 
     engine: Callable[[str], Engine]
@@ -73,12 +74,12 @@ _SCHEMES: dict[str, Scheme] = {}
 
 
 def register_scheme(name: str, scheme: Scheme) -> None:
-    """Let engines be named "name:REST"."""
+    """Register ``scheme`` for engines named "name:REST"."""
     _SCHEMES[name] = scheme
 
 
 def register(engine: Engine, *, on_request: bool = False) -> Engine:
-    """Add ``engine`` to those that every study runs, or that are only run where they are named.
+    """Register ``engine`` for every study, or for runs that request it by name; return it.
 
     Raises ``ValueError`` if its name is taken.
     """
@@ -91,13 +92,12 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 
 
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
-    """Return the engines of the given names, or all that are registered but those on request.
+    """Return the engines of the given names, or by default all registered engines except those on request.
 
-    One that is named is measured in all that it promises, see ``Engine.contact_only``.
-    A name of the form "module:function" is imported (from the current folder too) and needs no registration, nor
-    does "exec:COMMAND", see ``compare.engines.outside``, nor one of the entry points "friction_discs.engines" of an
-    installed package.
-    Raises ``ValueError`` for a name that is unknown or can't be imported.
+    A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. These names need no
+    registration: "module:function", which may be in the current folder; "exec:COMMAND", see
+    ``compare.engines.outside``; and an entry point "friction_discs.engines" of an installed package.
+    Raises ``ValueError`` if a name is unknown or cannot be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(
@@ -106,17 +106,17 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
 
 
 def is_registered(name: str) -> bool:
-    """Return whether an engine of that name needs no import of anything else."""
+    """Return whether an engine of this name is registered, so that nothing else has to be imported."""
     return name in _REGISTRY
 
 
 def owner_of(engine: Engine | None) -> str:
-    """Return the name of a foreign engine, or "" for the engines of this project, which may share a process."""
+    """Return the name of a foreign engine, or "" for this project's engines, which may share a process."""
     return "" if engine is None or is_registered(engine.name) else engine.name
 
 
 def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Return the engines, called as they were asked for where a shorter name of theirs is another's too."""
+    """Return the engines, renamed to the requested names if their own names would be ambiguous."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
     return tuple(
         replace(engine, name=name) if engine.name != name and taken[engine.name] > 1 else engine
@@ -125,17 +125,17 @@ def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, .
 
 
 def on_request() -> tuple[Engine, ...]:
-    """Return the registered engines that take part only where they are named."""
+    """Return the registered engines that run only if requested by name."""
     return tuple(_REGISTRY[name] for name in sorted(_ON_REQUEST))
 
 
 def shares_code(name: str, other: str) -> bool:
-    """Return whether the engine called ``name`` is the one called ``other``, or shares code with it."""
+    """Return whether the engine ``name`` is the engine ``other`` or shares code with it."""
     return name == other or (name in _REGISTRY and _REGISTRY[name].kin == other)
 
 
 def repeated_by(name: str) -> str:
-    """Return the engine that the one called ``name`` repeats in all but its contact, "" if there is none."""
+    """Return the name of the engine from which ``name`` differs only in its contact, "" if there is none."""
     engine = _REGISTRY.get(name)
     return engine.kin if engine is not None and engine.contact_only else ""
 
@@ -151,7 +151,7 @@ def _named(name: str) -> Engine:
 
 
 def known_name(name: str) -> str:
-    """Return ``name`` if an engine can be looked for by it; raise ``ValueError`` that suggests one otherwise."""
+    """Return ``name`` if it may name an engine; otherwise raise ``ValueError`` with a suggestion."""
     if scheme := _scheme(name):
         scheme.check(name.partition(":")[2])
         return name
@@ -160,22 +160,22 @@ def known_name(name: str) -> str:
 
 
 def _scheme(name: str) -> Scheme | None:
-    """Return what ``name`` is an engine of by its part before a colon; None where that says nothing."""
+    """Return the scheme of ``name`` by its part before the colon, or None."""
     first, colon, _ = name.partition(":")
     scheme = _SCHEMES.get(first)
     return scheme if scheme and (colon or scheme.alone) and first not in _installed() else None
 
 
 def _installed() -> dict[str, str]:
-    """Return "module:function" of the engines of installed packages, by name."""
+    """Return a map from the names of installed packages' engines to "module:function"."""
     return {point.name: point.value for point in entry_points(group=ENTRY_POINTS)}
 
 
 def imported(name: str, place: str) -> Engine:
     """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if there is none.
 
-    It is taken for an engine of the pin only, which need not tell stick, unless attributes of the function, named
-    like the parameters of ``Engine``, say something else::
+    By default it simulates the pin only, without reporting phases. Attributes of the function, named like the
+    parameters of ``Engine``, override the defaults::
 
         simulate.kinds = ("pin", "points", "ring")
         simulate.sticks = False
@@ -184,14 +184,16 @@ def imported(name: str, place: str) -> Engine:
         simulate.step = 1e-3
     """
     module_name, _, function_name = place.partition(":")
-    function = ByName(module_name, function_name, os.getcwd())  # where a console script does not look
+    function = ByName(module_name, function_name, os.getcwd())  # not on a console script's path
     try:
         simulate = function.imported
-    except (Exception, SystemExit) as error:  # whatever a module may do when it is imported
+    except (Exception, SystemExit) as error:  # importing a user's module may raise anything
         kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
-        raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
+        raise ValueError(f"engine {name!r} cannot be imported: {kind}{error}") from None
     if not callable(simulate):
-        raise ValueError(f"engine {name!r} is no function")
+        raise ValueError(
+            f"engine {name!r} is not callable: expected simulate(system, initial_state, times, *, tolerance)"
+        )
     declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
     if "version" in declared:
         declared["version"] = str(declared["version"])
@@ -202,7 +204,7 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-# --- The engines of this project.
+# --- Engines of this project.
 
 _simulate_reference = ByName("reference_model", "simulate")
 
@@ -215,10 +217,10 @@ exudyn_native = register(
         ("pin", "points"),
         kin="exudyn",
         contact_only=True,
-        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. "
-        "Integrator, support and the smoothing of friction are the same, so it is asked only where the contact's own "
-        "code decides: the contact by itself, a motion of each kind, a whirl, and free bodies. With --engine "
-        "exudyn-native it is measured in all that it simulates.",
+        about="exudyn-native is Exudyn with its built-in contact in place of the connector of exudyn_models. The "
+        "integrator, the support and the regularisation of friction are the same, so it is measured only in studies "
+        "that depend on the contact's own code: the contact alone, a motion of each kind, a whirl, and free bodies. "
+        "With --engine exudyn-native it is measured in every study that it can simulate.",
     )
 )
 compiled = register(
@@ -237,9 +239,9 @@ plain = register(
         ByName("reference_model.plain", "simulate"),
         EVERY_KIND,
         sticks=False,
-        about="plain is the equations as the paper prints them, integrated by SciPy, with friction that is viscous "
-        "at slow slip: what sticks creeps, and it tells no stick from slip. It takes only the parameters from the "
-        "reference.",
+        about="plain integrates the equations of the paper by SciPy, with friction that is viscous at slow slip. "
+        "A sticking body therefore creeps, and plain does not distinguish stick from slip. It takes only the "
+        "parameters from the reference.",
     ),
     on_request=True,
 )

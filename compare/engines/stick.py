@@ -1,7 +1,7 @@
-"""Stick found from states, for engines that tell none: when a body comes to rest on the master disc and lets go.
+"""Stick phases found from states, for engines that do not report them.
 
-Up to stick the slip falls as the time that is left, and from release on it grows as the square of the time that is
-gone: both are followed down to where the engine's own creep or noise begins, and extrapolated from there.
+Before stick, slip falls in proportion to the time left; after release, it grows as the square of the time elapsed.
+Both are sampled down to the engine's own creep or noise and extrapolated from there to the time of zero slip.
 """
 
 from __future__ import annotations
@@ -20,66 +20,67 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PER_PERIOD = 64
-"""Samples in a period of the support or in a revolution, whichever is shorter."""
+"""Samples per period of the support or per revolution, whichever is shorter."""
 
 MOST = 20_000
-"""Samples that a motion is looked at before one looks closer."""
+"""Largest number of samples before refinement."""
 
 REST = 1e-2
-"""Slip over the largest speed of the motion, below which a body may stick; looking closer, it must come down more."""
+"""Slip, relative to the largest speed of the motion, below which a body may stick; refinement lowers it."""
 
 CREEP = 3e-4
-"""Slip over the largest speed of the motion, up to which a body may creep where it sticks, at a tolerance of 1e-9.
+"""Largest creep in stick, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-It goes with the tolerance, as the creep of a smoothed law should, up to ``REST``.
+It is proportional to the tolerance, as the creep of a regularised law should be, up to ``REST``.
 """
 
 CLOSER = 64
-"""By how much samples become denser, and the slip that is looked for smaller, at one look."""
+"""Factor between the sample densities, and between the levels of slip, of successive refinements."""
 
 LOOKS = 3
 
 LEAST = 1e-7
-"""Slip over the largest speed of the motion from which is extrapolated at a tolerance of 1e-9; it goes with its root.
+"""Least slip for extrapolation, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-What is off by extrapolation then changes with the tolerance, and is in the errors that are estimated by that.
+It is proportional to the root of the tolerance. The error of extrapolation therefore changes with the tolerance and
+is part of the error estimate.
 """
 
 ABOVE_NOISE = 32.0
-"""The same over an engine's precision, where that is more."""
+"""Least slip for extrapolation as a multiple of the engine's precision, if that is larger."""
 
 NOISE = 0.1
-"""Change of slip from sample to sample, over the slip, from which on it is rounding and no creep."""
+"""Relative change of slip from sample to sample above which it is rounding noise instead of creep."""
 
 ABOVE_CREEP = 8.0
-"""Least slip from which is extrapolated, over that in a stick phase."""
+"""Least slip for extrapolation as a multiple of the creep in the stick phase."""
 
 QUIET, QUIETER = 0.1, 0.5
-"""Share of the time of a slow span that is stick for sure: at first, when there may be slow slip in it, and later."""
+"""Share of a slow span that is certainly stick: at first, when the span may contain slow slip, and later."""
 
 GROWS = 1.2
-"""Creep in the third quarter of a stick phase over that in the first, from which on it grows up to release."""
+"""Ratio of the third to the first quartile of creep above which creep counts as growing up to release."""
 
 BELOW_REST = 16.0
-"""``REST`` over the largest creep that grows: of more it is not known where it ends and slip begins."""
+"""``REST`` over the largest growing creep; above that, the end of creep cannot be told from the begin of slip."""
 
 FLANK = 16.0
-"""Largest slip from which is extrapolated, over the least."""
+"""Ratio of the largest to the least slip for extrapolation."""
 
 
 class StatesOnly(Trajectory):
-    """A trajectory whose stick phases are looked for when somebody asks for them.
+    """A trajectory that computes its stick phases from states on first use.
 
     Parameters
     ----------
     told : Trajectory
-        What the engine returned.
+        The trajectory that the engine returned.
     ask : callable
         ``ask(times) -> states`` of the same motion, at times from ``told.times[0]`` on.
     coarseness : float
-        The tolerance at which the engine was asked, over 1e-9.
+        The engine's tolerance as a multiple of 1e-9.
     precision : float
-        The engine's, see ``compare.engines.precision``.
+        The engine's precision, see ``compare.engines.precision``.
 
     """
 
@@ -98,15 +99,15 @@ class StatesOnly(Trajectory):
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """From ``times[0]`` to ``times[-1]``; where a single point of several rests is not found."""
+        """Slip and stick phases from ``times[0]`` to ``times[-1]``; a pivot about a single point is not detected."""
         return self._samples.phases(float(self.times[0]), float(self.times[-1]))
 
 
 @dataclass
 class _Span:
-    """The samples ``first`` to ``last``, by their times in s, between which the slip is below ``level`` in m/s.
+    """A time span from sample ``first`` to sample ``last``, in s, with slip below ``level`` in m/s.
 
-    From the level outwards beginning and end are extrapolated by polynomials of a ``degree``.
+    Its begin and end are extrapolated from slip above the level by polynomials of this ``degree``.
     """
 
     first: float
@@ -116,10 +117,7 @@ class _Span:
 
 
 class _Samples:
-    """What is known of a motion: states and slip speeds at times that become more.
-
-    ``coarseness`` and ``precision`` are those of ``StatesOnly``.
-    """
+    """States and slip speeds of a motion at a growing set of times; parameters as in ``StatesOnly``."""
 
     def __init__(
         self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float, precision: float
@@ -156,9 +154,9 @@ class _Samples:
         return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)
 
     def _largest_speed(self) -> float:
-        """Return the largest speed of the motion in m/s, of the slip or of what the disc below carries.
+        """Return the largest speed of the motion in m/s: of its slip, or of the master disc below it.
 
-        Of what creeps on a plane at rest, which carries nothing, it is that which the springs would give.
+        For a body that creeps on a plane at rest, return the speed that the springs could give it.
         """
         fastest, omega = float(np.max(self.slip)), abs(self.system.disc_speed)
         x, y = self.states[:, :2].T
@@ -173,11 +171,11 @@ class _Samples:
         return min(max(PER_PERIOD, math.ceil(PER_PERIOD * turns)), MOST) + 1
 
     def look(self, times: FloatArray) -> None:
-        """Ask for the states at more ``times``."""
+        """Request the states at further ``times``."""
         times = np.setdiff1d(times, self.times)
         if times.size == 0:
             return
-        # the first time says where the motion starts
+        # the motion starts at the first of the requested times
         asked = times if self.times.size == 0 else np.concatenate((self.times[:1], times))
         states = self.ask(asked)[len(asked) - len(times) :]
         order = np.argsort(np.concatenate((self.times, times)))
@@ -186,7 +184,7 @@ class _Samples:
         self.slip = slip_of(Trajectory(self.system, self.times, self.states))
 
     def _where_it_may_rest_between(self) -> FloatArray:
-        """Return times between samples where the slip, falling and growing as beside them, may come to nothing."""
+        """Return times around minima of slip that may reach zero between samples, judging by the adjacent slopes."""
         slip, steps = self.slip, np.abs(np.diff(self.slip))
         beside = np.concatenate(([np.inf], slip, [np.inf]))
         lowest = np.flatnonzero((slip <= beside[:-2]) & (slip < beside[2:]))
@@ -199,7 +197,7 @@ class _Samples:
         )
 
     def _spans(self, level: float, start: int = 0, stop: int | None = None) -> list[_Span]:
-        """Return where at least two samples after each other, of some, have slips below ``level`` in m/s."""
+        """Return the spans of at least two samples, from ``start`` to ``stop``, with slip up to ``level`` in m/s."""
         slow = self.slip[start:stop] <= level
         edges = start + np.flatnonzero(np.diff(np.concatenate(([0], slow, [0]))))
         return [
@@ -209,7 +207,7 @@ class _Samples:
         ]
 
     def _places(self, span: _Span) -> tuple[int, int]:
-        """Return the first and the last place of a span, to which samples may have come."""
+        """Return the indices of the first and last sample of a span, which later samples may have extended."""
         first, last = (int(i) for i in np.searchsorted(self.times, (span.first, span.last)))
         while first > 0 and self.slip[first - 1] <= span.level:
             first -= 1
@@ -218,7 +216,7 @@ class _Samples:
         return first, last
 
     def _edges(self, span: _Span) -> FloatArray:
-        """Return times between the outermost samples of a span and those beside them."""
+        """Return times between the outermost samples of a span and their outer neighbours."""
         first, last = self._places(span)
         outside = max(first - 1, 0), min(last + 1, len(self.times) - 1)
         return _joined(
@@ -227,7 +225,7 @@ class _Samples:
         )
 
     def _closer(self, span: _Span) -> list[_Span]:
-        """Return what of a span is below a lower level, as low as its creep allows."""
+        """Return the spans within ``span`` below a lower level, as low as its creep allows."""
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
@@ -235,14 +233,14 @@ class _Samples:
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
-        """Return the slip in m/s that is not exceeded for a ``share`` of the time from ``begin`` to ``end`` in s."""
+        """Return the quantile ``share``, over time, of the slip in m/s from ``begin`` to ``end`` in s."""
         evenly = np.linspace(begin, end, 4 * CLOSER + 1)
         return float(np.quantile(np.interp(evenly, self.times, self.slip), share))
 
     def _is_stick(self, begin: float, end: float, span: _Span) -> bool:
-        """Return whether a body that is slow from ``begin`` to ``end`` in s rests there, and does not pass by slowly.
+        """Return whether a body that is slow from ``begin`` to ``end``, in s, sticks and not only slips slowly.
 
-        It all but rests, for most of the time in which it is slow, and friction can hold it.
+        It sticks if it only creeps, for most of the slow span, and friction can hold it.
         """
         if end - begin <= (span.last - span.first) / 2.0:
             return False
@@ -252,7 +250,7 @@ class _Samples:
         return rests and _load(self.system, self._state((begin + end) / 2.0)) <= self.system.friction_force
 
     def _flanks(self, span: _Span) -> FloatArray:
-        """Return times before and after a span at which the slip is some times its level."""
+        """Return times before and after a span with slip up to ``FLANK`` times its level."""
         first, last = self._places(span)
         fast = np.flatnonzero(self.slip > FLANK * span.level)
         before, after = fast[fast < first], fast[fast > last]
@@ -260,7 +258,7 @@ class _Samples:
         return _joined(np.linspace(self.times[i], self.times[j], CLOSER + 1) for i, j in flanks)
 
     def _begin(self, span: _Span) -> float:
-        """Return when the slip, which falls as the time that is left, is nothing."""
+        """Return the time in s of zero slip before the span; slip falls in proportion to the time left."""
         first, _ = self._places(span)
         if first == 0:
             return float(self.times[0])
@@ -268,7 +266,7 @@ class _Samples:
         return min(max(time, nearest), span.last)
 
     def _end(self, span: _Span) -> float:
-        """Return when the slip, which grows as the square of the time that is gone, was nothing."""
+        """Return the time in s of zero slip after the span; slip grows as the square of the time elapsed."""
         _, last = self._places(span)
         if last == len(self.times) - 1:
             return float(self.times[-1])
@@ -276,13 +274,13 @@ class _Samples:
         return max(min(time, nearest), span.first)
 
     def _released(self, span: _Span) -> _Span:
-        """Return a span with the level and the degree from which its end, release, is extrapolated.
+        """Return a span with the level and degree for extrapolating its end, the release.
 
-        The level is the geometric mean of the creep and of ``REST``. Where friction is smoothed over ε and creep
-        grows before release, as ε·f/√(1 − f²), it comes to a multiple of ε at the same time for each ε. The level
-        hangs on nothing but that creep: if it jumped with the samples, so would the release, and what it is off by
-        would no more fall with the step as its error estimate takes for granted. Nor would it if what a parabola
-        leaves out, which is late, made up for creep, which is early: a cubic leaves out less.
+        The level is the geometric mean of the creep and of ``REST``. If friction is regularised over ε, creep grows
+        before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. The level
+        depends only on that creep. If it jumped with the samples, so would the release, and its error would not fall
+        with the step, as the error estimate assumes. The same holds if the error of a parabola (late) cancelled that
+        of creep (early); a cubic has a smaller error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]
@@ -293,7 +291,7 @@ class _Samples:
         return replace(span, level=level, degree=3)
 
     def _extrapolated(self, outwards: NDArray[np.intp], power: float, span: _Span) -> tuple[float, float]:
-        """Return when slip**power is nothing, by a polynomial through a flank, and the time of the nearest sample."""
+        """Return the time of zero slip, by a polynomial in slip**power over a flank, and of the nearest sample."""
         beyond = np.flatnonzero(self.slip[outwards] > FLANK * span.level)
         places = outwards[: max(int(beyond[0]), 1) if beyond.size else None]
         roots, nearest = (self.slip[places] / span.level) ** power, float(self.times[places[0]])
@@ -311,7 +309,7 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
 
 
 def slip_of(run: Trajectory) -> FloatArray:
-    """Return how fast a body moves on the master disc in m/s, shape (n,): its centre, and its rim about that."""
+    """Return the slip speed on the master disc in m/s, shape (n,), of the centre combined with that of the rim."""
     system = run.system
     if isinstance(system, DiscOnDisc):
         rim = system.contact_radius * (run.states[:, -1] - system.disc_speed)
@@ -320,7 +318,7 @@ def slip_of(run: Trajectory) -> FloatArray:
 
 
 def _load(system: System, state: FloatArray) -> float:
-    """Return the force in N with which friction has to hold a body at the place of ``state`` on the master disc."""
+    """Return the friction force in N that holds a body at the position of ``state`` on the master disc."""
     z, omega = complex(*state[:2]), system.disc_speed
     return abs(
         Support.of(system).force(z) - complex(0.0, system.damping * omega) * z + system.mass * omega**2 * z

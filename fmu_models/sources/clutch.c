@@ -1,5 +1,5 @@
 /* A clutch between two flanges: the contact, and the centre of its disc on a radial support. The disc turns with
-   flange b, the face that it slips on with flange a about a fixed axis. */
+   flange b. The face on which it slips turns with flange a about a fixed axis. */
 #include "contact.h"
 #include "support.h"
 #include "unit.h"

@@ -1,18 +1,18 @@
-/* The ring by the arithmetic-geometric mean, the annulus by Gauss's rule over rings.
+/* The ring by the arithmetic-geometric mean, the annulus by Gaussian quadrature over rings.
 
-   A ring's mean slip speed is P(U, W) = (2/pi) L [2 E(k) - (1 - k^2) K(k)], L the larger and k L the smaller of U and
-   W, by Landen's transformation of (2/pi) (U + W) E. So dP/dL = (2/pi) E and dP/d(kL) = (2/pi) [E - (1 - k^2) K]/k.
-   From a_0 = 1, b_0 = sqrt(1 - k^2), c_0 = k and c_n+1 = c_n^2/(4 a_n+1) the mean A gives K = pi/(2 A) and
-   K - E = K (k^2/2 + k^2 T), k^2 T = sum over n >= 1 of 2^(n-1) c_n^2 (DLMF 19.8.6): none of what follows subtracts
-   numbers that are nearly alike but where a logarithm outgrows it. */
+   The mean slip speed of a ring is P(U, W) = (2/pi) L [2 E(k) - (1 - k^2) K(k)], where L is the larger and k L the
+   smaller of U and W. This is Landen's transformation of (2/pi) (U + W) E. It follows that dP/dL = (2/pi) E and
+   dP/d(kL) = (2/pi) [E - (1 - k^2) K]/k. From a_0 = 1, b_0 = sqrt(1 - k^2), c_0 = k and c_n+1 = c_n^2/(4 a_n+1), the
+   mean A gives K = pi/(2 A) and K - E = K (k^2/2 + k^2 T), k^2 T = sum over n >= 1 of 2^(n-1) c_n^2 (DLMF 19.8.6).
+   Nearly equal numbers are subtracted only where a logarithm dominates the cancellation error. */
 #include "contact.h"
 #include "points.h"
 #include "variables.h"
 #include <math.h>
 
-#define NEAREST 1e-15   /* relative distance from U = W below which the curvature, a logarithm, grows no more */
-#define ROUNDING 1e-2   /* of the corner of the static peak, in slip speeds over epsilon */
-#define FARTHEST 4.0    /* radius at rest over the outer one, beyond which it makes no difference where it is */
+#define NEAREST 1e-15   /* relative distance from U = W below which the curvature, a logarithm, is cut off */
+#define ROUNDING 1e-2   /* rounding of the corner of the static peak, as slip speed over epsilon */
+#define FARTHEST 4.0    /* largest radius at rest, over the outer radius, that refines the quadrature */
 
 static double mean_of(double k, double complement, double *T) {
     double a = 1.0, b = sqrt(complement), c = k, weight = 0.5, sum = 0.0;
@@ -24,7 +24,7 @@ static double mean_of(double k, double complement, double *T) {
         weight *= 2.0;
         sum += weight * c * c;
     }
-    /* for small k all is in the first term, which is k^2/16 times k^2 */
+    /* for small k the first term, k^2/16 times k^2, is sufficient */
     *T = k > 1e-7 ? sum / (k * k) : k * k / 16.0;
     return a;
 }
@@ -46,13 +46,13 @@ void ring_slopes(double U, double W, double slope[2]) {
 void ring_curvatures(double U, double W, double curvature[3]) {
     double larger = U > W ? U : W, smaller = U > W ? W : U, k = smaller / larger, T, A, sharp;
     A = mean_of(k, fmax((larger - smaller) / larger, NEAREST) * (1.0 + k), &T);
-    sharp = (0.5 + T) / (A * larger); /* by the smaller, twice; the slopes are of degree 0 */
+    sharp = (0.5 + T) / (A * larger); /* d2P by the smaller; the others follow because slopes have degree 0 */
     curvature[0] = U > W ? k * k * sharp : sharp;
     curvature[1] = -k * sharp;
     curvature[2] = U > W ? sharp : k * k * sharp;
 }
 
-/* Share of the load on the ring of a radius in m, per m: by Simpson's rule, which is exact for a cubic, it is 1. */
+/* Share of the load per m of radius r in m; normalised by Simpson's rule, which is exact for a cubic. */
 static double share_at(const Contact *c, double r) {
     double width = c->outer - c->inner, s = (r - c->inner) / width, a = c->inner, b = c->outer, whole;
     double inner = c->pressure[0], mean = c->pressure[1], outer = c->pressure[2];
@@ -61,10 +61,10 @@ static double share_at(const Contact *c, double r) {
     return 6.0 * (c->wear ? pressure : r * pressure) / (width * whole);
 }
 
-/* Adds slopes and curvatures of the rings of one side of the annulus, from the radius at rest. */
+/* Adds slopes and curvatures of the rings on one side of the radius at rest. */
 static void add_side(const Contact *c, double U, double S, double rest, double near, double far, double slope[2],
                      double *curvature) {
-    /* r = rest + (far - rest) t^3 draws the rings towards where a point of one is at rest */
+    /* r = rest + (far - rest) t^3 concentrates the rings near the radius at rest */
     double length = far - rest, from = cbrt((near - rest) / length);
     for (int i = 0; i < N_GAUSS; i++) {
         double t = from + (1.0 - from) * GAUSS_PLACES[i], r = rest + length * t * t * t, by[2], twice[3];
@@ -81,7 +81,7 @@ static void add_side(const Contact *c, double U, double S, double rest, double n
     }
 }
 
-/* Slopes, and curvatures unless there is no place for them, at U, S >= 0, not both 0. */
+/* Slopes, and curvatures unless the pointer is 0, at U, S >= 0, not both 0. */
 static void derivatives(const Contact *c, double U, double S, double slope[2], double *curvature) {
     if (c->outer == 0.0) {
         slope[0] = 1.0, slope[1] = 0.0;
@@ -112,8 +112,7 @@ double slip_potential(const Contact *contact, double U, double S, double slope[2
     return slope[0] * U + slope[1] * fabs(S);
 }
 
-/* Friction of what slips as fast over that of sliding, and its derivative by P/epsilon: falling like a root from 1 to
-   2. */
+/* Friction over sliding friction at share = P/epsilon, and its derivative; it falls like a root from share 1 to 2. */
 static double peak(double share, double static_ratio, double *by_share) {
     double root, full;
     *by_share = 0.0;
@@ -125,7 +124,7 @@ static double peak(double share, double static_ratio, double *by_share) {
     return static_ratio - (static_ratio - 1.0) * (root - ROUNDING) / full;
 }
 
-/* Friction over mu N of a contact that is viscous as a whole, below 1. */
+/* Friction over mu N of a contact without points, viscous as a whole at shares below 1. */
 static double law(double share, double static_ratio, double *by_share) {
     double found = peak(share, static_ratio, by_share);
     if (share >= 1.0) return found;
@@ -165,7 +164,7 @@ double friction_tangent(const Contact *contact, const double slip[3], const doub
     double U = hypot(slip[0], slip[1]), S = fabs(slip[2]), sign = slip[2] < 0.0 ? -1.0 : 1.0;
     double slope[2], twice[3], by_share, ex, ey, dU, dS, dP, factor, d_factor, d_along, across, unused;
     if (contact->points > 0) return tangent_of_points(contact, slip, d, d_friction, d_angle, d_force);
-    if (U == 0.0 && S == 0.0) { /* of degree 1 below epsilon: along d it grows as it is there */
+    if (U == 0.0 && S == 0.0) { /* friction has degree 1 below epsilon, so its derivative is the force at slip d */
         Contact one = *contact;
         dP = slip_potential(contact, hypot(d[0], d[1]), d[2], slope);
         one.friction *= contact->static_ratio * dP / contact->epsilon;
@@ -192,7 +191,7 @@ double friction_tangent(const Contact *contact, const double slip[3], const doub
 }
 
 double friction_needed(const Contact *contact, double force, double moment, double by[2]) {
-    /* The largest (F U + M S)/P(U, S): its level sets are convex, so that it has one hump between U and S alone. */
+    /* Maximise (F U + M S)/P(U, S) by golden sections: P is convex, so there is one maximum. */
     double golden = 0.61803398874989484820, low = 0.0, high = 1.57079632679489661923, best = -1.0, slope[2];
     by[0] = 1.0, by[1] = 0.0;
     if (contact->outer == 0.0) return force;

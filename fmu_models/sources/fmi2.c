@@ -40,7 +40,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
         unit->environment = functions->componentEnvironment;
     }
     if (!guid || strcmp(guid, TOKEN)) {
-        say(unit, 1, "the description that was read is of another unit: the guid differs");
+        say(unit, 1, "the guid differs: modelDescription.xml belongs to another unit");
         free(unit);
         return 0;
     }

@@ -24,7 +24,7 @@ static int between(Unit *unit, double time) {
 static fmi3Status status_of(int failed) { return failed ? fmi3Error : fmi3OK; }
 
 static fmi3Status lacking(fmi3Instance c) {
-    say(UNIT, 1, "this unit has neither clocks nor arrays nor what else was asked for");
+    say(UNIT, 1, "this function is not supported: the unit has neither clocks nor arrays");
     return fmi3Error;
 }
 
@@ -49,7 +49,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
     unit->logger = (void (*)(void))logger;
     unit->environment = environment;
     if (!token || strcmp(token, TOKEN)) {
-        say(unit, 1, "the description that was read is of another unit: the token differs");
+        say(unit, 1, "the token differs: modelDescription.xml belongs to another unit");
         free(unit);
         return 0;
     }

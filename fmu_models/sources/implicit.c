@@ -1,11 +1,11 @@
-/* Radau IIA of order 5, for what creeps: its collocation by Newton's iteration with the Jacobian in closed form, and the
-   estimate of its error of order 3 (Hairer, Wanner, Solving ODE II, IV.8). */
+/* Radau IIA of order 5, for creep: collocation by Newton's iteration with the closed-form Jacobian, and an error
+   estimate of order 3 (Hairer, Wanner, Solving ODE II, IV.8). */
 #include "step.h"
 #include <math.h>
 #include <string.h>
 
 #define MOST_TURNS 10
-#define CONVERGED 1e-2 /* what is left of Newton's iteration, over the error that is allowed */
+#define CONVERGED 1e-2 /* error of Newton's iteration over the allowed error */
 #define SQRT6 2.44948974278317809820
 #define REAL 3.63783425274449573220 /* the real eigenvalue of the inverse of A */
 
@@ -17,7 +17,7 @@ static const double A[3][3] = {
 static const double C[3] = {(4.0 - SQRT6) / 10.0, (4.0 + SQRT6) / 10.0, 1.0};
 static const double E[3] = {-(13.0 + 7.0 * SQRT6) / 3.0, (-13.0 + 7.0 * SQRT6) / 3.0, -1.0 / 3.0};
 
-/* Triangles of the matrix a of n rows, in place; returns whether it has no inverse. */
+/* LU factors of the n by n matrix a, in place; returns 1 if it is singular. */
 static int factorise(int n, double a[], int row[]) {
     for (int j = 0; j < n; j++) {
         row[j] = j;
@@ -68,7 +68,7 @@ int is_stiff(State *s, const Step *one, double J[N][N]) {
     return one->h * worst > 1.0;
 }
 
-/* Newton's iteration for the deviations z of the three places from y; returns whether it fails. */
+/* Newton's iteration for the increments z of the three stages; returns 1 if it fails. */
 static int collocate(State *s, const Step *one, double J[N][N], double z[3][N]) {
     double matrix[9 * N * N], before = 0.0;
     int row[3 * N];
@@ -112,7 +112,7 @@ double implicit_attempt(State *s, Step *one, double J[N][N]) {
         one->end[i] = one->y[i] + z[2][i];
         slope[i] = (E[0] * z[0][i] + E[1] * z[1][i] + E[2] * z[2][i]) / one->h;
     }
-    for (int turn = 0; turn < 2; turn++) { /* the second, of what is stiff, damps what the first has of it */
+    for (int turn = 0; turn < 2; turn++) { /* the second pass damps the stiff components of the estimate */
         worst = 0.0;
         for (int i = 0; i < N; i++) error[i] = f[i] + slope[i];
         solve(N, matrix, row, error);

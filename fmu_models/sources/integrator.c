@@ -1,18 +1,18 @@
-/* Dormand and Prince's pair of orders 5 and 4 with error control, and the events of exact Coulomb friction by its
-   continuous extension of order 4 (Hairer, Norsett, Wanner, Solving ODE I, II.5 and II.6). What creeps is stiff, and
-   then goes by Radau's method. */
+/* Dormand and Prince's pair of orders 5 and 4 with error control. Its continuous extension of order 4 locates the
+   events of exact Coulomb friction (Hairer, Norsett, Wanner, Solving ODE I, II.5 and II.6). Creep is stiff and is
+   integrated by Radau's method. */
 #include "step.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define MOST_STEPS 20000000L /* between two communication points */
-#define SAMPLES 8 /* of a step, between which an event is looked for */
-#define HALVINGS 40 /* of a step in which points come to rest or are let go */
-#define LET_GO 2.0  /* slip speed over epsilon; errors of steps were seen to reach 1.1 */
-#define DIRECTION 1e-3 /* of the slip: how far a step may miss a velocity, so that friction keeps its direction */
-#define AT_LIMIT 3.25 /* h times the largest eigenvalue, where explicit steps are about to be unstable (IV.2 of II) */
-#define IN_A_ROW 15   /* such steps, from which on steps are implicit */
+#define MOST_STEPS 20000000L /* largest number of steps between two communication points */
+#define SAMPLES 8 /* intervals per step that are searched for an event */
+#define HALVINGS 40 /* bisections of a step in which points come to rest or are released */
+#define LET_GO 2.0  /* slip speed over epsilon that counts as release; integration errors reached 1.1 */
+#define DIRECTION 1e-3 /* largest velocity error over slip, which keeps the direction of friction accurate */
+#define AT_LIMIT 3.25 /* h times the largest eigenvalue near the explicit stability limit (IV.2 of II) */
+#define IN_A_ROW 15   /* number of such steps before the implicit method takes over */
 
 static const double A[6][6] = {
     {1.0 / 5},
@@ -38,7 +38,7 @@ double allowed(const State *s, const Step *one, int i) {
     return STATE_KINDS[i] == 'v' ? fmin(size, DIRECTION * fmax(one->slip, s->epsilon)) : size;
 }
 
-/* Counts explicit steps that are as long as they can be; last is where the last but one stage was. */
+/* Counts explicit steps at the stability limit; last is the state of the last but one stage. */
 static void watch(State *s, const Step *one, const double last[N]) {
     double slopes = 0.0, ways = 0.0;
     for (int i = 0; i < N; i++) {
@@ -50,7 +50,7 @@ static void watch(State *s, const Step *one, const double last[N]) {
     else if (s->held_up > 0) s->held_up--;
 }
 
-/* Fills k[1..6] and the end of a step of which t, h, y and k[0] are there; returns its error over what is allowed. */
+/* Fills k[1..6] and the end of a step from its t, h, y and k[0]; returns its error over the allowed error. */
 static double explicit_attempt(State *s, Step *one) {
     double worst = 0.0, last[N];
     if (model_carried(s, one->t + one->h, one->end)) return 0.0;
@@ -67,7 +67,7 @@ static double explicit_attempt(State *s, Step *one) {
         double error = 0.0;
         for (int j = 0; j < 7; j++) error += E[j] * one->k[j][i];
         error = fabs(one->h * error) / allowed(s, one, i);
-        if (!(error <= worst)) worst = error; /* what is no number, too */
+        if (!(error <= worst)) worst = error; /* also NaN */
     }
     if (worst <= 1.0 && !s->exact) watch(s, one, last);
     return worst;
@@ -87,7 +87,7 @@ static const double D[7] = {-12715105075.0 / 11282082432, 0.0, 87487479700.0 / 3
                             -10690763975.0 / 1880347072,  701980252875.0 / 199316789632,
                             -1453857185.0 / 822651844,    69997945.0 / 29380423};
 
-/* The state at the share x of a step. */
+/* State at the fraction x of a step. */
 static void within(const State *s, const Step *one, double x, double y[N]) {
     if (model_carried(s, one->t + x * one->h, y)) return;
     for (int i = 0; i < N; i++) {
@@ -105,7 +105,7 @@ static double indicator(State *s, const Step *one, double x) {
     return s->v[V_indicator];
 }
 
-/* Whether the sign of the indicator changes in a step, which then ends just behind that. */
+/* Returns whether the indicator changes sign in a step, and ends the step just after the change. */
 static int event(State *s, Step *one) {
     double before;
     if (!s->exact) return 0;
@@ -132,7 +132,7 @@ static int event(State *s, Step *one) {
 #endif
 
 #ifdef V_resting_points
-/* Finds when points no longer rest as they did where a step began: it is taken again, to ever closer there. */
+/* Locates by bisection, with repeated steps, when the number of resting points changes. */
 static void locate(State *s, const Step *one, int then) {
     State trial = *s;
     Step part = *one;
@@ -153,8 +153,8 @@ static void locate(State *s, const Step *one, int then) {
     s->left_time = one->t + behind;
 }
 
-/* Notes in a step when points come to rest, or are let go: from epsilon on, once they are LET_GO times as fast, because
-   errors of steps lead to either side of epsilon before. */
+/* Records when points come to rest or are released in a step. A release is recorded at epsilon, but only once the slip
+   reaches LET_GO times epsilon, because integration errors can cross epsilon back and forth. */
 static void note_rests(State *s, const Step *one) {
     int then = (int)s->v[V_resting_points], least, most;
     for (int i = 0; i < N; i++) s->v[STATES[i]] = one->end[i];
@@ -206,14 +206,14 @@ int unit_advance(Unit *unit, double until) {
         last = one.h >= 0.999999 * left;
         if (last) one.h = left;
         if (tried++ == MOST_STEPS) {
-            snprintf(sentence, sizeof sentence, "at t = %.9g s there were %ld steps already, the last one of %.3g s",
+            snprintf(sentence, sizeof sentence, "at t = %.9g s the limit of %ld steps was reached, the last of them %.3g s long",
                      one.t, tried - 1, one.h);
             unit->say(unit, 1, sentence);
             return 1;
         }
         error = attempt(s, &one);
         factor = error > 0.0 ? 0.9 * pow(error, -0.2) : error == 0.0 ? 5.0 : 0.2;
-        if (!(error <= 1.0)) { /* or no number */
+        if (!(error <= 1.0)) { /* also NaN */
             s->step = one.h * (factor > 0.1 ? fmin(factor, 0.9) : 0.1);
             if (s->step < least) {
                 snprintf(sentence, sizeof sentence, "at t = %.9g s the steps became too short: %.3g s", one.t,
@@ -231,7 +231,7 @@ int unit_advance(Unit *unit, double until) {
         memcpy(one.y, one.end, sizeof one.y);
         s->v[V_time] = one.t;
         for (int i = 0; i < N; i++) s->v[STATES[i]] = one.y[i];
-        if (happens && model_change(s)) /* it jumps onto what holds it, or away */
+        if (happens && model_change(s)) /* the states jump to those of stick or release */
             for (int i = 0; i < N; i++) one.y[i] = s->v[STATES[i]];
         rates(s, one.t, one.y, one.k[0]);
         one.slip = s->slowest;

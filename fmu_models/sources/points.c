@@ -1,4 +1,4 @@
-/* Point i is at the angle phi + 2 pi i/n and carries N/n. One that rests while the disc turns about it creeps. */
+/* Point i is at the angle phi + 2 pi i/n and carries N/n. A point at rest about which the disc turns creeps. */
 #include "points.h"
 #include <math.h>
 
@@ -54,7 +54,7 @@ double points_slip_tangent(const Contact *c, const double slip[3], const double 
         dx = d[0] - d[2] * arm[1] - slip[2] * d_arm[1];
         dy = d[1] + d[2] * arm[0] + slip[2] * d_arm[0];
         speed = hypot(x, y);
-        along = speed > 0.0 ? (x * dx + y * dy) / speed : hypot(dx, dy); /* d_speed; at rest to the side of d */
+        along = speed > 0.0 ? (x * dx + y * dy) / speed : hypot(dx, dy); /* d_speed; at rest, one-sided towards d */
         share = 1.0 / (c->points * fmax(speed, c->epsilon));
         d_share = speed > c->epsilon ? -share * along / speed : 0.0;
         fx = share * dx + d_share * x;

@@ -13,18 +13,18 @@ static double secant_of(const Support *p, double d) {
     return secant;
 }
 
-/* Force in N at a place (m) and a velocity (m/s). */
+/* Force in N at a position z (m) and velocity v (m/s). */
 static void support_force(const Support *p, const double z[2], const double v[2], double force[2]) {
     double w = z[0] - p->offset, secant = secant_of(p, hypot(w, z[1]));
     force[0] = -secant * w - p->damping * v[0];
     force[1] = -secant * z[1] - p->damping * v[1];
 }
 
-/* Its derivative along dz and dv. */
+/* Derivative of the force along dz and dv. */
 static void support_tangent(const Support *p, const double z[2], const double dz[2], const double dv[2],
                             double d_force[2]) {
     double w[2] = {z[0] - p->offset, z[1]}, d = hypot(w[0], w[1]), secant = secant_of(p, d);
-    double slope = 2.0 * p->hardening * d; /* of the secant */
+    double slope = 2.0 * p->hardening * d; /* d secant/dd */
     double d_secant;
     if (d > p->stop_gap) slope += p->stop_stiffness * p->stop_gap / (d * d);
     d_secant = d > 0.0 ? slope * (w[0] * dz[0] + w[1] * dz[1]) / d : 0.0;

@@ -1,11 +1,11 @@
-/* pin and disc: eq. 1 and eq. 19 of the paper. What sticks turns with the disc below, and is let go as soon as that
-   takes more than friction has. */
+/* Pin and disc: eq. 1 and eq. 19 of the paper. A sticking body turns with the master disc and is released as soon as the
+   load exceeds the friction limit. */
 #include "contact.h"
 #include "points.h"
 #include "support.h"
 #include "unit.h"
 
-/* Share of the size of the motion by which errors are measured at least, well above rounding. */
+/* Least share of the motion's size that scales errors, well above rounding. */
 #define LEAST_FELT 0.1
 
 #ifdef V_spin
@@ -46,13 +46,13 @@ static void slip_of(const double v[], double slip[3]) {
 
 int model_exact(const double v[]) {
 #ifdef V_contact_points
-    if (v[V_contact_points] > 0.0) return 0; /* single ones of them may rest, which is a motion of its own */
+    if (v[V_contact_points] > 0.0) return 0; /* pivots about single points are not treated exactly */
 #endif
     return v[V_exact] != 0.0;
 }
 
-/* What friction does is as large as the offset and what the spring gives way under it. Small states are those of a
-   whirl that is larger, as they pass 0. */
+/* The effects of friction scale with the offset and the spring's deflection under friction. If the motion is larger, as in a
+   whirl, states that pass 0 are small. */
 double model_scales(const State *s, double *length, double *speed, double *rate) {
     const double *v = s->v;
     double slip[3], felt = fabs(v[V_offset]);
@@ -67,7 +67,7 @@ double model_scales(const State *s, double *length, double *speed, double *rate)
     return fmin(fmax(felt / *length, LEAST_FELT), 1.0);
 }
 
-/* Forces and moment that hold the contact at rest on the disc below; returns mu N over which it would take that. */
+/* Force and moment that hold the contact at rest on the master disc; returns the least mu N that can provide them. */
 static double held_by(const State *s, double force[3], double by[2]) {
     const double *v = s->v;
     Contact contact = contact_of(s);
@@ -84,12 +84,12 @@ static double held_by(const State *s, double force[3], double by[2]) {
     return friction_needed(&contact, hypot(force[0], force[1]), force[2], by);
 }
 
-/* Slip in m/s along the friction that holds: positive where the body turns back. */
+/* Component of slip in m/s along the holding friction; positive if the body reverses. */
 static double slip_along(const double force[3], double needed, const double slip[3]) {
     return (force[0] * slip[0] + force[1] * slip[1] + force[2] * slip[2]) / needed;
 }
 
-/* As held_by along dz. */
+/* Derivative of held_by along dz. */
 static double held_tangent(const State *s, const double dz[2], const double force[3], const double by[2],
                            double d_force[3]) {
     const double *v = s->v;
@@ -142,7 +142,7 @@ void model_evaluate(State *s) {
             s->slowest = v[V_slip_speed] = 0.0;
             v[V_indicator] = v[V_friction_force] - needed;
             rests(s);
-        } else { /* it ends where the slip is fast enough, or turns back */
+        } else { /* this mode ends once the slip is fast enough, or reverses */
             double along = slip_along(force, needed, slip);
             for (int i = 0; i < 3; i++) force[i] *= v[V_friction_force] / needed;
             s->slowest = v[V_slip_speed] = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
@@ -251,7 +251,7 @@ int model_change(State *s) {
     }
     slip_of(v, slip);
     speed = slip_potential(&contact, hypot(slip[0], slip[1]), slip[2], slope);
-    /* What turns back with more than ε of slip across slides on to its rest. */
+    /* A body that reverses with a slip above ε slides until it rests. */
     if (s->mode == LEAVES &&
         (speed >= 0.99 * s->leaving ||
          (speed > 1.01 * s->epsilon && slip_along(force, needed, slip) >= 0.99 * s->epsilon))) {

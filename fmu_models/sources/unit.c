@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Share of the speed below which slip counts as rest, unless the unit's own solver has smaller errors. */
+/* Slip over speed below which the contact is at rest, unless the unit's own tolerance is smaller. */
 #define AS_REST 1e-9
 
 void unit_reset(Unit *unit) {
@@ -25,7 +25,7 @@ int unit_initialise(Unit *unit, double time) {
     s->v[V_time] = time;
     s->tolerance = s->v[V_tolerance];
     share = model_scales(s, &length, &speed, &rate);
-    /* Errors are to fall with the tolerance also where communication steps are shorter than it needs. */
+    /* Limit the step so that errors fall with the tolerance even if communication steps are short. */
     s->longest = rate > 0.0 ? pow(s->tolerance, 0.2) / rate : HUGE_VAL;
     for (int i = 0; i < N_STATES; i++) {
         char kind = STATE_KINDS[i];
@@ -34,7 +34,7 @@ int unit_initialise(Unit *unit, double time) {
     s->epsilon = s->v[V_regularisation];
     s->exact = model_exact(s->v);
     if (s->exact) s->epsilon = speed * (unit->exchange ? AS_REST : fmin(s->tolerance, AS_REST));
-    /* what is missed then falls like its power 3/2, with the tolerance */
+    /* the error grows with the power 3/2 of this speed, so it is proportional to the tolerance */
     s->leaving = speed * fmin(pow(s->tolerance, 2.0 / 3.0), 1e-6);
     s->step = 0.0;
     s->held_up = 0;
@@ -59,7 +59,7 @@ void unit_refresh(Unit *unit) {
 int unit_has(Unit *unit, size_t variable, char type) {
     char sentence[INTERNAL_DIGITS];
     if (variable < N_VARIABLES && VARIABLES[variable].type == type) return 1;
-    snprintf(sentence, sizeof sentence, "value reference %lu: there is no variable of this type with it",
+    snprintf(sentence, sizeof sentence, "value reference %lu: no variable of this type has it",
              (unsigned long)variable);
     unit->say(unit, 1, sentence);
     return 0;

@@ -1,1 +1,1 @@
-"""Engines of other people, live: adapters that simulate our systems with them, and their names when installed."""
+"""Adapters that simulate our systems with installed foreign engines, and the names of these engines."""

@@ -1,14 +1,14 @@
-"""Box2D as an engine, by pybox2d: friction joints, which are made for worlds that are looked at from above.
+"""Box2D as an engine, by pybox2d, with its friction joints for top-down scenes.
 
-Written for Box2D 2.3 (``pip install box2d``), in single precision. See ``top_down`` for the bodies. A friction joint
-bounds the length of its impulse, a cone; its greatest torque is 0 here, since contact is in points.
+Written for Box2D 2.3 (``pip install box2d``), in single precision. See ``TopDown`` in ``setting`` for the bodies. A
+friction joint bounds the length of its impulse, a cone. Its torque limit is 0 because contact is at points.
 
-What Box2D leaves to choose, and why so:
+Settings and their reasons:
 
-- Bodies must not sleep. Of several points the velocity iterations are 50; the manual's 8 are for games.
-- Angles are counted on and on, which rounds a long spin: whole turns are counted here.
+- Bodies must not sleep. Several points need 50 velocity iterations; the 8 of the manual are for games.
+- Box2D's angles grow without bound, so rounding grows with long spins. The adapter counts whole turns itself.
 
-There is no continuous ring of contact.
+The continuous ring is not supported.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ class _World(TopDown):
 
 simulate_with_friction_joints = Setting(
     "friction joint",
-    "by friction joints, in single precision: steps of order 1, until rounding grows with their number.",
+    "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
     linear=False,
     finest=2e-3,

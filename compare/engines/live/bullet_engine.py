@@ -1,20 +1,21 @@
-"""Bullet as an engine: its friction cone on and off, and our law as a force of the user.
+"""Bullet as an engine: with its friction cone on and off, and with our law as a user force.
 
 Written for PyBullet 3.2.7, in double precision (``pip install pybullet``; wheels for Linux, elsewhere pip builds it).
-Pin or disc is a multibody on two sliding joints, a disc on a revolute one too. Below it are n feet, spheres on
-vertical joints of their own, so that each is pressed on the plate by its weight N/n and by nothing else: of several
-feet of one rigid body the solver would load the first alone. The plate turns at ω on a joint, too heavy to notice.
+The pin or disc is a multibody on two prismatic joints; a disc also has a revolute one. Below it are n feet, spheres
+on vertical joints, each pressed on the plate by its own weight N/n only. For several feet of one rigid body, the
+solver would load only the first. The plate turns at ω on a joint and is heavy enough not to be slowed.
 
-What Bullet leaves to choose, and why so:
+Settings and their reasons:
 
-- Damping of the whole body is 0.04, joints have motors and a greatest speed of 100, unless told otherwise.
-- The coefficient of friction is the product of two. Slop and the solver's own threshold for leaving off are 0.
-- Springs and dampers are forces that are set before each step, so that any support will do.
+- Bullet's defaults, disabled here: a damping of the whole body of 0.04, motors in the joints, a joint speed limit
+  of 100.
+- The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
+- Springs and dampers are forces set before each step, so any support is possible.
 
-What it can't do: a step, with friction against the slip at its end, is of order 1. With the cone off, friction is
-bounded for each axis of the world, up to √2 times too large at any step. With the cone on it acts on a disc not
-quite along the slip, but each component of the slip over what an impulse changes of it, which is R²·m/J off at any
-step. There is no continuous ring of contact.
+Limits: a step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world
+axis, which is up to √2 times too large at any step. With the cone on, friction on a disc deviates from the direction
+of slip, because each component of the slip is divided by its own mobility: a relative error of R²·m/J at any step.
+The continuous ring is not supported.
 """
 
 from __future__ import annotations
@@ -38,14 +39,14 @@ from compare.engines.live.setting import (
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 ITERATIONS = 50
-"""Of the solver, its default. With ten, discs that stick on six points differ by less than 0.1 % of their error."""
+"""Solver iterations, the default. Ten change discs that stick on six points by less than 0.1 % of their error."""
 
 MOST_FEET = 100
-"""A body of PyBullet has at most 128 links."""
+"""Largest number of feet; PyBullet allows 128 links per body."""
 
 
 class _World(Model):
-    """Bullet with one body in it, and with a plate unless friction is our force."""
+    """A Bullet world with one body, and with a plate unless friction is our force."""
 
     engine = "Bullet"
 
@@ -65,7 +66,7 @@ class _World(Model):
             enableConeFriction=int(friction == "cone"),
             physicsClientId=self.client,
         )
-        # Half of what mass and inertia allow is in the feet.
+        # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
         foot = min(mass, inertia / abs(self.arms[0]) ** 2 if disc else mass) / 2.0 / len(self.arms)
@@ -89,7 +90,7 @@ class _World(Model):
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
 
     def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
-        """Return a multibody on a fixed base, without damping and without motors; ``links`` are masses, inertias."""
+        """Return an undamped multibody without motors on a fixed base; ``links`` are pairs of mass and inertia."""
         none, unit = [[0.0, 0.0, 0.0]] * len(links), [[0.0, 0.0, 0.0, 1.0]] * len(links)
         vectors = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1], "turn": [0, 0, 1]}
         body: int = pybullet.createMultiBody(
@@ -108,7 +109,7 @@ class _World(Model):
             linkJointAxis=[vectors[axis] for axis in axes],
             physicsClientId=self.client,
         )
-        # What is for the whole body goes to its base: a call with that for a link drops all that is for the link.
+        # Settings of the whole body go to its base: in a call for a link, they would discard the link's own settings.
         whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
         awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
         pybullet.changeDynamics(body, -1, activationState=awake, physicsClientId=self.client, **whole)
@@ -142,7 +143,7 @@ class _World(Model):
         return self.state
 
     def _forces(self, *state: float) -> list[float]:
-        """Return the generalised forces of support, shaft and, if it is ours, friction."""
+        """Return the generalised forces of support, shaft and, unless contact is native, friction."""
         system = self.system
         half = len(state) // 2
         z, v = complex(*state[:2]), complex(*state[half : half + 2])
@@ -157,19 +158,19 @@ class _World(Model):
 
 
 simulate_with_cone = Setting(
-    "cone", "with Bullet's contact, by steps of order 1.", _World, {"friction": "cone"}, linear=False
+    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, linear=False
 )
 simulate_with_box = Setting(
     "box",
-    "with enableConeFriction off; it converges to the motion with friction for each axis.",
+    "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
     _World,
     {"friction": "box"},
     linear=False,
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, set before each step: of order 1. ε is what friction changes of "
-    "the slip in a step.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, set before each step, of order 1. ε is the change of slip "
+    "by friction in a step.",
     _World,
     {"friction": "our force"},
     linear=False,

@@ -1,17 +1,17 @@
-"""Chipmunk as an engine, by pymunk: pivot joints with a greatest force.
+"""Chipmunk as an engine: pivot joints with a force limit.
 
-Written for pymunk 7.3 (``pip install pymunk``; wheels for Linux, macOS and Windows), in double precision. The world
-is looked at from above, see ``top_down``; the pivot joint with a greatest force is what Chipmunk's own demonstration
-of a tank has for the friction of the floor. It bounds the length of the impulse: a cone.
+Written for pymunk 7.3 (``pip install pymunk``; wheels for Linux, macOS and Windows), in double precision. The scene
+is seen from above, see ``TopDown`` in ``setting``. Chipmunk's own tank demo models friction on the ground by a pivot
+joint with a force limit. It bounds the length of the impulse, a cone.
 
-What Chipmunk leaves to choose, and why so:
+Settings and their reasons:
 
-- A pivot joint would also pull its two places together, which its greatest bias of 0 turns off.
-- Places move before velocities change. Forces that were set before a step would be those of other places, an
-  explicit method that feeds springs: eight times the error. They are set where velocities change.
-- Of several points the iterations are 50, five times as many as by default.
+- A pivot joint would also pull its two anchors together; a ``max_bias`` of 0 disables that.
+- Chipmunk updates positions before velocities. Forces set before a step would belong to the old positions, an
+  explicit method that feeds energy to springs and has eight times the error. They are set in the velocity update.
+- Several points need 50 iterations, five times the default.
 
-There is no continuous ring of contact.
+The continuous ring is not supported.
 """
 
 from __future__ import annotations
@@ -66,8 +66,7 @@ class _Space(TopDown):
 
 simulate_with_pivots = Setting(
     "pivot joint",
-    "by pivot joints with a greatest force, as in its demonstration of a tank that is looked at from above: steps of "
-    "order 1.",
+    "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
     linear=False,
 )

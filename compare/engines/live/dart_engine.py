@@ -1,20 +1,20 @@
-"""DART as an engine of the comparison: four of its contact solvers, and our law as a force of the user.
+"""DART as an engine of the comparison: with four of its contact solvers, and with our law as a user force.
 
 Needs ``pip install dartpy`` (wheels for Linux, and from Python 3.12 on for macOS and Windows). Measured with 6.20.0.
 
-Pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints of their own, so that each is
-pressed on the plate by its weight N/n and by nothing else: a rigid contact would leave open which of several feet of
-one body carries how much. The plate turns at ω on a joint whose motion is prescribed.
+The pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints, each pressed on the
+plate by its own weight N/n only. Rigid contact would leave the distribution of load on several feet of one body
+undefined. The plate turns at ω on a joint with prescribed motion.
 
-What DART leaves to choose, and why so:
+Settings and their reasons:
 
-- A step is semi-implicit, of order 1: friction acts against the slip at its end, places follow from the new speeds.
-  Springs of joints are implicit, which damps like C·h. The support's spring is a force set before each step instead:
-  a fourth of the error. Dampers are those of the joint.
-- Bodies at rest fall asleep unless told otherwise, and a second solver takes over silently where the first one fails.
-- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two axes of the
-  world, and too large by up to √2 in between, which does not get better with the step. The other two know the cone.
-- What solvers that iterate leave is at most 1e-10 of an impulse: at 1e-12 rounding can keep them from ending.
+- A step is semi-implicit, of order 1: friction opposes the slip at its end, positions follow from the new velocities.
+  Springs of joints are implicit, which damps like C·h. The support's spring is therefore a force set before each
+  step, with a quarter of the error. The dampers are those of the joint.
+- By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
+- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes
+  and up to √2 times too large in between, at any step. The other two solvers use the cone.
+- The tolerance of iterative solvers is 1e-10 of an impulse; at 1e-12, rounding can keep them from converging.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 SOLVER_TOLERANCE = 1e-10
 
 SHARE = 0.01
-"""Of mass and inertia that is in the feet."""
+"""Share of mass and inertia in the feet."""
 
 PLATE = 1e4
-"""Half its width in m."""
+"""Half the width of the plate in m."""
 
 
 class _Model(Model):
-    """A world with native contact by ``solver``, or with our force if there is none."""
+    """A world with native contact by ``solver``, or with our force if ``solver`` is empty."""
 
     engine = "DART"
 
@@ -74,7 +74,7 @@ class _Model(Model):
 
 
 def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
-    """Return the world and the joint of pin or disc, whose coordinates are x, y and the angle."""
+    """Return the world and the joint of the pin or disc, with coordinates x, y and angle."""
     dynamics, world = dartpy.dynamics, dartpy.simulation.World()
     asleep = dartpy.simulation.DeactivationOptions()
     asleep.mEnabled = False
@@ -101,7 +101,7 @@ def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
             guide, pad = pieces.createPrismaticJointAndBodyNodePair(body, vertical)
             guide.setTransformFromParentBodyNode(_shift(arm.real, arm.imag, 0.0))
             pad.setInertia(_inertia(foot, spin))
-            # A little below, for contact from the start.
+            # slightly below, for contact from the start
             _touching(pad, dynamics.SphereShape(1.0), 1.0 - 1e-9)
         plate, axis = dynamics.Skeleton("plate"), dynamics.RevoluteJointProperties()
         axis.mAxis = [0.0, 0.0, 1.0]
@@ -139,7 +139,7 @@ def _shift(x: float, y: float, z: float) -> Any:
 
 
 def _touching(body: Any, shape: Any, height: float) -> None:
-    """Give ``body`` a ``shape`` at that ``height`` in m, with μ = 1 and no rebound."""
+    """Add ``shape`` to ``body`` at this ``height`` in m, with μ = 1 and without restitution."""
     node = body.createShapeNode(shape)
     node.setRelativeTransform(_shift(0.0, 0.0, height))
     node.createCollisionAspect()
@@ -160,8 +160,8 @@ simulate_pgs = Setting(
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, at the start of each step. ε is what friction changes of the slip "
-    "in a step: with half of it the steps would not be stable.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, set at the start of each step. ε is the change of slip by "
+    "friction in a step; steps would be unstable with half of it.",
     _Model,
 )
 SETTINGS = (simulate_nsgs, simulate_fbf, simulate_dantzig, simulate_pgs, simulate_with_our_force)

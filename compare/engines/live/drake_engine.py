@@ -1,20 +1,21 @@
-"""Drake as an engine of the comparison: three of its contact solvers, two of its integrators, and our law as a force.
+"""Drake as an engine of the comparison: three contact solvers, two integrators, and our law as a force.
 
 Needs ``pip install drake`` (wheels for Linux and newer Pythons on macOS, none for Windows). Measured with 1.51.1.
 
-Pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a plate that turns at ω. Contact
-is compliant and heights are fixed, so that stiffness times depth is the load N/n whatever the motion does.
+The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a plate that turns at ω.
+Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any motion.
 
-What Drake leaves to choose, and why so:
+Settings and their reasons:
 
-- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators contact is a force, and
-  friction grows smoothly up to a slip of ε and is Coulomb's beyond: slip is as good as the integrator.
-- ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has one of its own, 5e-4·h·μN/m as measured in stick.
-- The convex solvers are content when Newton's iteration leaves 1e-6 of all momentum, and leave out a force F when
-  F·h is less than that. A heavy master would drown all friction so; theirs is light and driven instead, by the gain
-  of its motor or, as cenic does not heed that, by a torque through a stiff damper. Below h = 2e-3/rate errors grow.
-- Next to a half-space Drake crashes from some twenty spheres on, so that the plate is a box.
-- Springs between bodies act along a line. A bushing is one that has no direction; the dampers are those of the joint.
+- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, contact is a force, and
+  friction grows smoothly up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
+- ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
+- The convex solvers stop when the residual of Newton's iteration is 1e-6 of the total momentum, and ignore a force F
+  if F·h is smaller. A heavy master would hide all friction, so theirs is light and driven: by the gain of its motor
+  or, because cenic ignores that, by a torque through a stiff damper. Below h = 2e-3/rate errors grow.
+- With a half-space, Drake crashes from about twenty spheres on, so the plate is a box.
+- Drake's springs between bodies act along a line, so a bushing is used, which has no direction. The dampers are those
+  of the joint.
 """
 
 from __future__ import annotations
@@ -44,18 +45,18 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import SimulationError
 
 DEPTH = 1e3
-"""In m, of the spheres in the plate. SAP lets sliding bodies rise by μ·h times the slip, with μ = 1: by far less."""
+"""Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
 RADIUS = 1e-3
-"""Of the spheres in m."""
+"""Radius of the spheres in m."""
 
 PLATE = 1e5
-"""Edges of the plate in m."""
+"""Edge length of the plate in m."""
 
 
 @dataclass(frozen=True)
 class _Scheme:
-    """A discrete ``solver`` or an ``integrator``, with a heavy master or a ``driven`` one."""
+    """A discrete ``solver`` or an ``integrator``, with a heavy or a ``driven`` master."""
 
     solver: str = ""
     integrator: str = ""
@@ -64,7 +65,7 @@ class _Scheme:
 
 
 class _Plant:
-    """The bodies with a simulator, for one length of step in s (0: chosen by the integrator)."""
+    """The bodies and a simulator, for one step size in s (0: chosen by the integrator)."""
 
     def __init__(self, system: System, scheme: _Scheme, step: float, tolerance: float) -> None:
         self.system, self.step, builder = system, step, DiagramBuilder()
@@ -123,7 +124,7 @@ class _Plant:
             forces.FixValue(self.context, steady)
 
     def _touch(self, body: Any, master: Any) -> None:
-        """Put the contact points below ``body``, and a plate on ``master``."""
+        """Add the contact points below ``body`` and a plate on ``master``."""
         material, arms = ProximityProperties(), contact_arms("Drake", self.system)
         in_series = 2.0 * self.system.friction_force / len(arms) / DEPTH
         AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
@@ -135,7 +136,7 @@ class _Plant:
             self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
 
     def start(self, state: FloatArray) -> None:
-        """Set the state that the next ``advance`` starts from."""
+        """Set the initial state of the next ``advance``."""
         self.steps, self.time, half = 0, 0.0, len(state) // 2
         self.joint.set_translation(self.context, state[:2])
         self.joint.set_translational_velocity(self.context, state[half : half + 2])
@@ -147,9 +148,9 @@ class _Plant:
         self.simulator.Initialize()
 
     def advance(self, duration: float, steps: int) -> FloatArray:
-        """Return the state ``duration`` seconds later, which are that many ``steps`` of a discrete solver."""
+        """Return the state ``duration`` seconds later, after this number of ``steps`` of a discrete solver."""
         self.steps, self.time = self.steps + steps, self.time + duration
-        # Step i is taken at the time i·h: half a step before the end all of them are done, whatever the rounding.
+        # Step i is taken at time i·h. Ending half a step early completes all steps, whatever the rounding.
         self.simulator.AdvanceTo((self.steps - 0.5) * self.step if self.step else self.time)
         joint, context, half = self.joint, self.context, self.system.state_size // 2
         place = [*joint.get_translation(context), joint.get_rotation(context)]
@@ -158,7 +159,7 @@ class _Plant:
 
 
 class _OurFriction(LeafSystem):  # type: ignore[misc]
-    """Friction −μN·v/max(|v|, ε) of each point, and ``steady`` forces on the joints, from the state."""
+    """Friction −μN·v/max(|v|, ε) at each point, plus ``steady`` forces on the joints, as functions of the state."""
 
     def __init__(self, model: _Plant, steady: FloatArray) -> None:
         super().__init__()
@@ -177,12 +178,12 @@ class _OurFriction(LeafSystem):  # type: ignore[misc]
 
 
 class _Motion(Model):
-    """Goes on in a plant of its own for each length of step, which Drake fixes when a plant is built."""
+    """A motion through one plant per step size, because Drake fixes the step when a plant is built."""
 
     engine = "Drake"
 
     def __init__(self, system: System, state: FloatArray, tolerance: float, scheme: _Scheme) -> None:
-        contact_arms("Drake", system)  # refuses a ring
+        contact_arms("Drake", system)  # raises for a ring
         self.scheme, self.system, self.state, self.tolerance = scheme, system, state, tolerance
         self.plants: dict[float, _Plant] = {}
         self.plant: Any = None
@@ -200,7 +201,7 @@ class _Motion(Model):
         try:
             self.state = self.plant.advance(h * number, number)
         except RuntimeError as error:
-            raise SimulationError(f"Drake gave up: {error}") from error
+            raise SimulationError(f"Drake failed: {error}") from error
         self.steps, self.evaluations = self.steps + number, self.evaluations + number
         if self.scheme.integrator:
             integrator = self.plant.simulator.get_integrator()
@@ -211,42 +212,42 @@ class _Motion(Model):
 
 simulate_tamsi = Setting(
     "TAMSI",
-    "with TAMSI, by steps of order 1. Drake is about to give it up.",
+    "with TAMSI and steps of order 1. Drake plans to remove it.",
     _Motion,
     {"scheme": _Scheme("tamsi")},
 )
 simulate_sap = Setting(
     "SAP",
-    "with SAP, by steps of order 1; no better below a tolerance of 1e-5.",
+    "with SAP and steps of order 1. It does not improve below a tolerance of 1e-5.",
     _Motion,
     {"scheme": _Scheme("sap", driven=True)},
     finest=2e-3,
 )
 simulate_lagged = Setting(
     "lagged",
-    'with Drake\'s default, by steps of order 1; no better below a tolerance of 1e-5. "similar" differs from it by '
-    "how normal forces change, which ours do not, and gives the same.",
+    'with Drake\'s default and steps of order 1. It does not improve below a tolerance of 1e-5. "similar" differs from '
+    "it only if normal forces change, so its results are the same here.",
     _Motion,
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,
 )
 simulate_cenic = Setting(
     "cenic",
-    "with the convex solver under error control: its error falls like √tolerance, unevenly.",
+    "with the convex solver under error control. Its error falls unevenly, roughly like √tolerance.",
     _Motion,
     {"scheme": _Scheme(integrator="cenic", driven=True)},
     step=None,
 )
 simulate_runge_kutta = Setting(
     "Runge–Kutta 5",
-    "with contact as a force, by explicit steps of order 5, in stick of the length ε·m/μN.",
+    "with contact as a force and explicit steps of order 5, which shorten to ε·m/μN in stick.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5")},
     step=None,
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5", our_force=True)},
     step=None,

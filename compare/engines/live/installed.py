@@ -1,4 +1,4 @@
-"""``mujoco``, ``mujoco:pyramid`` and the like: engines of other people by name, where they are installed."""
+"""Installed foreign engines by name, for example ``mujoco`` or ``mujoco:pyramid``."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from compare.output.outside_text import one_of
 
 @dataclass(frozen=True)
 class Installed:
-    """An engine that a package of Python brings.
+    """An engine provided by a Python package.
 
     Parameters
     ----------
     title : str
-        What its authors call it.
+        The engine's official name.
     package : str
-        What pip installs.
+        The package for pip.
     wheels : str
-        For which systems pip has it ready to use.
+        Platforms with wheels.
     settings : mapping
-        The function in the adapter of each setting, by its short name; the first one is meant where none is named.
+        The adapter's function for each setting, by its short name; the first is the default.
 
     """
 
@@ -91,11 +91,11 @@ INSTALLED = {
         "Box2D", "box2d", "Linux, macOS and Windows", {"friction-joint": "simulate_with_friction_joints"}
     ),
 }
-"""By the name on the command line, which is that of the adapter, ``<name>_engine``, too."""
+"""Engines by their names on the command line; the adapter's module is ``<name>_engine``."""
 
 
 def installed_engine(name: str, setting: str) -> Engine:
-    """Return the engine ``name`` with that setting, "" for its first; raise ``ValueError`` if it is not installed."""
+    """Return the engine ``name`` with this setting, "" for the default; raise ``ValueError`` if not installed."""
     known = INSTALLED[name]
     setting = _known_setting(name, setting)
     module = f"{__package__}.{name}_engine"
@@ -104,7 +104,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     except ImportError as error:
         raise ValueError(
             f"engine {name!r}: {known.title} is not installed ({error}): pip install {known.package}; "
-            f"wheels are for {known.wheels}"
+            f"wheels exist for {known.wheels}"
         ) from None
     simulate = getattr(adapter, known.settings[setting])
     return Engine(

@@ -1,23 +1,23 @@
-"""MuJoCo as an engine: its elliptic and its pyramidal cone, and our law as a force of the user.
+"""MuJoCo as an engine: with its elliptic and pyramidal cones, and with our law as a user force.
 
-Written for MuJoCo 4.0 (``pip install mujoco``; wheels for Linux, macOS and Windows). Pin or disc is on two sliding
-joints, a disc on a hinge too; springs and dampers are the joints' own. Below it are n feet, spheres on vertical
-joints of their own, so that each is pressed on the plate by its weight N/n and by nothing else. The plate is a
-cylinder on a hinge that turns at ω, too heavy to notice.
+Written for MuJoCo 4.0 (``pip install mujoco``; wheels for Linux, macOS and Windows). The pin or disc is on two
+sliding joints; a disc also has a hinge. Springs and dampers are those of the joints. Below it are n feet, spheres on
+vertical joints, each pressed on the plate by its own weight N/n only. The plate is a cylinder on a hinge that turns
+at ω and is heavy enough not to be slowed.
 
-What MuJoCo leaves to choose, and why so:
+Settings and their reasons:
 
-- Contact is soft: friction is what within the cone brings (a + b·v) nearest to zero, with a compliance of 1e-4. It
-  acts along v + a₀/b, with a₀ the acceleration without it, so that b ~ 1/h makes an error of first order in the step.
-  At b = 2/h it acts along the slip midway in the step. Only ``solref`` in its direct form sets b.
-- As in every convex contact model a foot that slides rises with μ times its slip. With a small μ, no stiffness and a
-  margin that is wider than all it rises, it neither leaves the plate nor feels another load.
-- The solver's own tolerance is relative to all inertia and would be met at once with the heavy plate: it is 0, and
-  iterations are bounded. A pyramid takes more of them, with many points far more than an ellipse.
+- Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero, with a compliance of
+  1e-4. It acts along v + a₀/b, where a₀ is the acceleration without friction, so b ~ 1/h causes an error of first
+  order in the step. At b = 2/h it acts along the slip at mid-step. Only the direct form of ``solref`` sets b.
+- As in every convex contact model, a sliding foot rises at μ times its slip. With a small μ, zero stiffness and a
+  margin wider than the total rise, it neither leaves the plate nor changes its load.
+- The solver's own tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0,
+  and the iterations are limited. A pyramid needs more of them, with many points far more than an ellipse.
 
-What it can't do: a pyramid's friction acts along the nearest axis of the world, up to 45° off, at any step. With
-that and with Runge–Kutta steps a pin that sticks creeps in proportion to the step, with the ellipse to its square.
-There is no continuous ring of contact.
+Limits: a pyramid's friction acts along the nearest world axis, up to 45° off, at any step. With the pyramid or with
+Runge–Kutta steps, a sticking pin creeps in proportion to the step; with the ellipse, to its square. The continuous
+ring is not supported.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ from compare.engines.live.setting import Model, Setting, contact_arms, inertia_o
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 FRICTION_COEFFICIENT = 1e-5
-"""μ: the least that MuJoCo takes."""
+"""Smallest μ that MuJoCo accepts."""
 
 SIZE = 1e6
-"""Of feet and plate in m: more than a foot sinks or rises. It acts on nothing in the plane."""
+"""Size of feet and plate in m, larger than a foot sinks or rises. It has no effect in the plane."""
 
 
 class _Model(Model):
@@ -83,7 +83,7 @@ class _Model(Model):
         self.steps += number
         self.evaluations += self.stages * number
         state = np.concatenate((data.qpos[: self.half], data.qvel[: self.half]))
-        # Where it diverges, MuJoCo warns and starts from the beginning.
+        # If the motion diverges, MuJoCo warns and restarts from the initial state.
         return np.full_like(state, np.nan) if any(warning.number for warning in data.warning) else state
 
     def _add_friction(self, _: Any, data: Any) -> None:
@@ -92,11 +92,11 @@ class _Model(Model):
 
 
 def _xml(system: System, arms: list[complex], option: str, *, native: bool) -> str:
-    """Return the model: the joints of pin or disc first, then those of the feet, and that of the plate last."""
+    """Return the model, with joints in this order: pin or disc, feet, plate."""
     disc = isinstance(system, DiscOnDisc)
     inertia = inertia_of(system)
     feet = arms if native else []
-    # Half of what mass and inertia allow is in the feet.
+    # The feet take half of the largest mass that mass and inertia allow.
     foot = min(system.mass, inertia / abs(arms[0]) ** 2 if disc else system.mass) / 2.0 / len(arms)
     spin = 0.1 * inertia / len(arms)
     mass = system.mass - len(feet) * foot
@@ -134,7 +134,7 @@ def _xml(system: System, arms: list[complex], option: str, *, native: bool) -> s
 
 @contextmanager
 def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
-    """Let MuJoCo, which has one place for it in all, call ``add`` whenever it evaluates the equations of motion."""
+    """Set ``add`` as MuJoCo's only, global callback for passive forces, and restore the previous one on exit."""
     before = mujoco.get_mjcb_passive()
     mujoco.set_mjcb_passive(add)
     try:
@@ -145,28 +145,27 @@ def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
 
 simulate_elliptic = Setting(
     "elliptic cone",
-    "with the elliptic cone, by semi-implicit Euler steps: of order 1 where contact slides, of order 2 where it "
-    "sticks.",
+    "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
     {"cone": "elliptic", "friction_rate": 2.0, "iterations": 10},
 )
 simulate_elliptic_rk4 = Setting(
     "elliptic cone, RK4",
-    "with the elliptic cone, by Runge–Kutta steps with b = 1e4/h, Coulomb's law but in stick. There the friction "
-    "force jumps from side to side between steps, and the error is of order 1.",
+    "with the elliptic cone and Runge–Kutta steps with b = 1e4/h, which is Coulomb's law except in stick. In stick, "
+    "the friction force alternates between steps, and the error is of order 1.",
     _Model,
     {"integrator": "RK4", "cone": "elliptic", "friction_rate": 1e4, "iterations": 10},
 )
 simulate_pyramidal = Setting(
     "pyramidal cone",
-    "with the pyramidal cone, MuJoCo's default; it converges to that of friction along an axis.",
+    "with the pyramidal cone, MuJoCo's default. It converges to the motion with friction along an axis.",
     _Model,
     {"cone": "pyramidal", "friction_rate": 1.0, "iterations": 100},
 )
 simulate_with_our_force = Setting(
     "our force",
-    "with −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half of what friction changes of the "
-    "slip in a step: they would be unstable in stick with 0.7 times that.",
+    "with the force −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half the change of slip by "
+    "friction in a step; steps would be unstable in stick with 0.7 times this ε.",
     _Model,
     {"integrator": "RK4"},
 )

@@ -1,4 +1,4 @@
-"""What the foreign engines share: checks, steps, places of contact, our law of friction, and the result."""
+"""Common code of the foreign engines: checks, steps, contact points, our friction law, and results."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ from reference_model.trajectory import Phase, SimulationError, Solution, Traject
 
 
 class Model:
-    """The bodies in an ``engine``, in a state that moves on; made of a system, a state and a tolerance.
+    """The bodies in an ``engine`` and their current state, made from a system, an initial state and a tolerance.
 
-    ``method`` names integrator and contact, ``epsilon`` is the slip speed in m/s that smooths the friction law,
-    ``steps`` and ``evaluations`` have been taken so far.
+    ``method`` names integrator and contact, ``epsilon`` is the slip speed in m/s that regularises the friction law,
+    and ``steps`` and ``evaluations`` count the work so far.
     """
 
     engine = ""
@@ -38,7 +38,7 @@ class Model:
     evaluations = 0
 
     def __init__(self, system: System, state: FloatArray, tolerance: float) -> None:
-        """Build it."""
+        """Build the bodies."""
         raise NotImplementedError
 
     def advance(self, h: float, number: int) -> FloatArray:
@@ -46,36 +46,36 @@ class Model:
         raise NotImplementedError
 
     def close(self) -> None:
-        """Give back what the engine holds."""
+        """Release the engine's resources."""
 
 
 @dataclass(frozen=True)
 class Setting:
-    """One setting of an engine, which is called as any engine's ``simulate`` is.
+    """One setting of an engine, callable as the ``simulate`` of any engine.
 
-    With a ``step`` in s steps are as long as that; without one as long as 0.1·tolerance^(1/3) over the larger of k
-    and ω, so that errors of first order fall by half where they are estimated, but not below ``finest`` over that.
-    They divide each interval of ``times``.
+    Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
+    order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
+    fills each interval of ``times``.
 
     Parameters
     ----------
     name, says : str
-        What it is called, and how it is set.
+        Name and description.
     model : type
-        What is built of system, state and tolerance.
+        Subclass of ``Model``.
     options : mapping
-        What else its constructor takes.
+        Further arguments of its constructor.
     finest : float
-        The least step in units of 1/max(k, ω).
+        Least step in units of 1/max(k, ω).
     linear : bool
-        Whether the engine has no other springs.
+        True if the engine has linear springs only.
     kinds : tuple of str
-        What it promises to simulate, as in ``compare.engines.KINDS``.
+        Systems that it simulates, as in ``compare.engines.KINDS``.
     step : float, optional
-        What it declares as an engine by name: the fixed step in s for a tolerance of 1e-9, at which it simulates
-        in less than real time; None for an integrator that controls its error.
+        Fixed step in s for a tolerance of 1e-9, as in ``compare.engines.Engine``, short enough for accuracy but
+        faster than real time. None for an integrator that controls its error.
     precision : float
-        What it declares too, as in ``compare.engines.Engine``.
+        As in ``compare.engines.Engine``.
 
     """
 
@@ -91,7 +91,7 @@ class Setting:
 
     @property
     def __wrapped__(self) -> type[Model]:
-        """Where the code is that findings depend on."""
+        """The class with the code on which findings depend."""
         return self.model
 
     def __call__(
@@ -129,7 +129,10 @@ class Setting:
 
 
 def contact_arms(engine: str, system: System, most: float = math.inf) -> list[complex]:
-    """Return where the contact points are on the unturned disc, in m; ``most`` is how many ``engine`` takes."""
+    """Return the positions in m of the contact points on the disc at angle 0.
+
+    Raises ``UnsupportedSystemError`` for a ring, or if there are more than ``most`` points.
+    """
     if not isinstance(system, DiscOnDisc):
         return [0j]
     n = system.contact_points
@@ -137,13 +140,13 @@ def contact_arms(engine: str, system: System, most: float = math.inf) -> list[co
         raise UnsupportedSystemError(f"{engine} does not simulate a disc on a continuous ring")
     if n > most:
         raise UnsupportedSystemError(
-            f"contact_points = {n}: {engine} does not simulate a disc on more than {most:g}"
+            f"contact_points = {n}: {engine} does not simulate a disc on more than {most:g} points"
         )
     return [cmath.rect(system.contact_radius, 2.0 * math.pi * i / n) for i in range(n)]
 
 
 def rate(system: System) -> float:
-    """Return the larger of k and ω in 1/s, and 1/s where both are zero."""
+    """Return max(k, ω) in 1/s, or 1/s if both are zero."""
     return max(system.natural_frequency, abs(system.disc_speed)) or 1.0
 
 
@@ -154,24 +157,24 @@ def mobility(system: System) -> float:
 
 
 def inertia_of(system: System) -> float:
-    """Return J, and for a pin, which does not turn, its mass as a number in the place of J."""
+    """Return J; for a pin, which does not turn, return its mass as a stand-in."""
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
 
 
 def shaft_torque(system: System, spin: float) -> float:
-    """Return what the shaft turns a disc with that ``spin`` in rad/s by, in N m; a pin has none."""
+    """Return the torque in N m of the shaft on a disc with this ``spin`` in rad/s; 0 for a pin."""
     return system.shaft_damping * (system.shaft_speed - spin) if isinstance(system, DiscOnDisc) else 0.0
 
 
 def support_force(system: System, z: complex, v: complex) -> complex:
-    """Return the force in N of springs, stop and dampers at the place ``z`` in m, with the velocity ``v`` in m/s."""
+    """Return the force in N of springs, stop and dampers at the position ``z`` in m and velocity ``v`` in m/s."""
     w = z - system.offset
     stop = system.stop_stiffness * max(0.0, 1.0 - system.stop_gap / abs(w)) if w else 0.0
     return -(system.stiffness + system.hardening * abs(w) ** 2 + stop) * w - system.damping * v
 
 
 def our_friction(system: System, arms: list[complex], state: Sequence[float], epsilon: float) -> Any:
-    """Return the forces in N, and of a disc the moment in N m, of −μN·v/max(|v|, ε) at all points of contact."""
+    """Return the total force in N, and for a disc the moment in N m, of −μN·v/max(|v|, ε) at the contact points."""
     half = len(state) // 2
     z, v = complex(*state[:2]), complex(*state[half : half + 2])
     turned, spin = (cmath.rect(1.0, state[2]), state[5]) if half > 2 else (1.0 + 0j, 0.0)
@@ -185,17 +188,16 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
     return (force.real, force.imag, moment)[:half]
 
 
-# --- What engines of the plane share: a world that is looked at from above, where contact with the disc is a joint.
+# --- Common code of planar engines, with contact as a joint.
 #
-# Such an engine has no third axis along which a load could press. Its authors let things that are looked at
-# from above slide by a joint between two bodies that removes their relative velocity with no more than a
-# greatest force, which here is N/n at each point of contact. The second body is a kinematic one for each
-# point: it has the velocity that the disc below has there. Springs, dampers and the shaft are forces, so that
-# any support will do. All of that is set anew in each step. Steps are semi-implicit, of order 1.
+# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint between
+# two bodies that removes their relative velocity up to a force limit, here μN/n at each contact point. The second
+# body at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
+# forces, so any support is possible. All of these are set in each step. Steps are semi-implicit, of order 1.
 
 
 class TopDown(Model):
-    """A body with a kinematic partner for each point of contact; the subclass knows the engine."""
+    """A body with a kinematic partner at each contact point; subclasses implement it in an engine."""
 
     def __init__(self, system: System, state: FloatArray, _: float) -> None:
         self.system, self.arms = system, contact_arms(self.engine, system)
@@ -203,11 +205,11 @@ class TopDown(Model):
         self.build(state)
 
     def build(self, state: FloatArray) -> None:
-        """Make body, partners and joints."""
+        """Create body, partners and joints."""
         raise NotImplementedError
 
     def state(self) -> tuple[float, ...]:
-        """Return x, y, angle, vx, vy and spin of the body."""
+        """Return x, y, angle, vx, vy and spin."""
         raise NotImplementedError
 
     def load(self, force: complex, torque: float, below: list[complex]) -> None:
@@ -215,11 +217,11 @@ class TopDown(Model):
         raise NotImplementedError
 
     def step(self, h: float) -> None:
-        """Take a step of ``h`` s, and call ``load_now`` before velocities change."""
+        """Take a step of ``h`` s; call ``load_now`` before velocities change."""
         raise NotImplementedError
 
     def load_now(self) -> None:
-        """Set the forces, and the velocities of the partners, that belong to the state now."""
+        """Set the forces and the partners' velocities for the current state."""
         system = self.system
         x, y, angle, vx, vy, spin = self.state()
         turned, z = cmath.rect(1.0, angle), complex(x, y)

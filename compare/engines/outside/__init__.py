@@ -1,1 +1,1 @@
-"""Engines that are no functions of Python: programs that talk, folders of answers, and models for co-simulation."""
+"""Engines outside this process: programs asked by JSON, folders of computed motions, and co-simulation models."""

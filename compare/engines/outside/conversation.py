@@ -1,7 +1,7 @@
-"""A program that is kept alive and asked one line after the other, and that never outlives who asks.
+"""A program that answers questions line by line until this process ends.
 
-Whatever it does ends in a sentence: a time limit ends a program that does not answer, one that has answered nonsense
-is ended too, and after either the next question goes to a new one.
+Every failure raises an error with a clear message. A program that does not answer in time, or answers nonsense, is
+ended, and the next question starts a new process.
 """
 
 from __future__ import annotations
@@ -37,30 +37,30 @@ from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0
-"""In s: a program may have to be compiled when it starts."""
+"""Time limit in s for the first line; a program may have to be compiled when it starts."""
 
 GREETING_BYTES = 100_000
 
 TICK = 0.1
-"""In s: how often the time limit is looked at."""
+"""Interval in s between checks of the time limit."""
 
 FAREWELL = 1.0
-"""Time in s that a program has to end by itself when nothing more is asked."""
+"""Time in s for a program to end after its input is closed."""
 
 AT_ONCE = 1 << 18
-"""Bytes that are read from a pipe at once: all that it may hold."""
+"""Bytes read from a pipe at once, at least its capacity."""
 
 LAST_LINES, LAST_BYTES = 3, 4000
-"""What is kept of a program's standard error."""
+"""Lines shown and bytes kept from the end of a program's standard error."""
 
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
-"""For a shell whose standard input we hold: it is closed when we are gone, killed perhaps."""
+"""Command of a shell that waits on its standard input, which closes when this process ends, even if killed."""
 
 
 class ProgramError(RuntimeError):
-    """A program has no answer; the message says why, with the last lines of its standard error."""
+    """A program did not answer; the message says why, with the last lines of its standard error."""
 
 
 def simulate(
@@ -71,16 +71,16 @@ def simulate(
     times: ArrayLike,
     **accuracy: float,
 ) -> Trajectory:
-    """Return what the program of ``command`` answers, started in ``folder`` if it does not run yet.
+    """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
     Raises
     ------
     UnsupportedSystemError
-        If the program says that it does not simulate this.
+        If the program replies that it does not simulate the system.
     ProgramError
-        If it says that it failed, ends, hangs, or writes something else.
+        If it reports an error, ends, hangs, or writes an invalid line.
     OSError
-        If it can't be started.
+        If it cannot be started.
 
     """
     conversation = conversation_with(command, folder)
@@ -95,43 +95,39 @@ def simulate(
 
 
 def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
-    """Return what the program promises; raise ``ValueError`` if it can't be started or does not greet."""
+    """Return the program's greeting; raise ``ValueError`` if it cannot be started or does not greet."""
     check_command(command, folder)
     try:
         return conversation_with(command, folder).greeting
     except OSError as error:
-        raise ValueError(f"{command[0]} can't be started: {error.strerror}") from None
+        raise ValueError(f"{command[0]} cannot be started: {error.strerror}") from None
     except ProgramError as error:
         raise ValueError(str(error)) from None
 
 
 def check_command(command: tuple[str, ...], folder: str) -> None:
-    """Raise ``ValueError`` unless there is a program of that name."""
+    """Raise ``ValueError`` unless the program exists and is executable."""
     program = command[0]
     if os.path.dirname(program):
         found = Path(folder, program)
         reason = (
-            ""
-            if os.access(found, os.X_OK)
-            else "it is not executable"
-            if found.exists()
-            else "it is not there"
+            "" if os.access(found, os.X_OK) else "not executable" if found.exists() else "command not found"
         )
-        reason = "it is a folder" if found.is_dir() else reason
+        reason = "this is a folder, not a program" if found.is_dir() else reason
     else:
-        reason = "" if shutil.which(program) else "no folder of PATH has it"
+        reason = "" if shutil.which(program) else "command not found in PATH"
         if reason and Path(folder, program).is_file():
-            reason += f", write ./{program} for the one in this folder"
+            reason += f"; use ./{program} for the program in this folder"
     if reason:
-        raise ValueError(f"{program} can't be started: {reason}")
+        raise ValueError(f"{program}: {reason}")
 
 
 _OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}
 
 
 def conversation_with(command: tuple[str, ...], folder: str) -> Conversation:
-    """Return this process's conversation with the program, a new one if the last has ended."""
-    key = os.getpid(), command, folder  # a process that was forked from this one has to have its own
+    """Return this process's conversation with the program; start a new one if the last has ended."""
+    key = os.getpid(), command, folder  # a forked process needs its own
     found = _OPEN.get(key)
     if found is None or found.over:
         found = _OPEN[key] = Conversation(command, folder)
@@ -140,7 +136,7 @@ def conversation_with(command: tuple[str, ...], folder: str) -> Conversation:
 
 @atexit.register
 def end_all() -> None:
-    """End the programs that this process has started."""
+    """End all programs that this process has started."""
     for (process, _, _), conversation in list(_OPEN.items()):
         if process == os.getpid():
             conversation.end(FAREWELL)
@@ -155,14 +151,14 @@ class Conversation:
     command : sequence of str
         The program and its arguments.
     folder : str
-        Where it is started.
+        Its working directory.
 
     Attributes
     ----------
     greeting : Greeting
-        What it promises.
+        The program's first line.
     over : bool
-        Whether it has ended.
+        True once the program has ended.
 
     """
 
@@ -170,7 +166,7 @@ class Conversation:
         self._name = own_name(command)
         self.over = False
         self._asking = threading.Lock()
-        # A session of its own: Ctrl-C is not for it, and all that it starts in turn can be ended with it.
+        # A new session: Ctrl-C does not reach the program, and its children can be ended with it.
         self._process = subprocess.Popen(
             command,
             cwd=folder,
@@ -193,17 +189,17 @@ class Conversation:
             raise ProgramError(self.sentence(str(error))) from None
 
     def ask(self, line: bytes, most: int) -> bytes:
-        """Write ``line`` and return the line that comes back, of at most some ``most`` bytes."""
+        """Write ``line`` and return the answer, a line of at most about ``most`` bytes."""
         with self._asking:
             return self._exchanged(line, most, self.greeting.limit, "answer")
 
     def sentence(self, what: str) -> str:
-        """Return "NAME did what", with its last words."""
+        """Return the name of the program, ``what``, and the end of its standard error, as a sentence."""
         said = self._errors.text(ended=self.over)
         return f"{self._name} {what}" + (f"; its standard error ends with: {said}" if said else "")
 
     def end(self, patience: float = 0.0) -> None:
-        """End the program, which has ``patience`` in s to do so by itself when its input is closed."""
+        """Close the program's input, and kill it if it does not end within ``patience`` in s."""
         if self.over:
             return
         self.over = True
@@ -228,13 +224,13 @@ class Conversation:
                 self._process.kill()
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
-        """Write ``line`` and return the next line; end the program where there is none, or more than one."""
+        """Write ``line`` and return the next line; end the program and raise unless it writes exactly one."""
         self._watch.begin(limit)
         try:
-            with suppress(BrokenPipeError):  # its end shows when it is read from
+            with suppress(BrokenPipeError):  # _read detects that the program has ended
                 _write(self._input, line)
             answer = _read(self._output, most)
-        except BaseException:  # Ctrl-C: what comes back then is no answer to the next question
+        except BaseException:  # e.g. Ctrl-C; a late answer would be taken for the next one
             self.end()
             raise
         in_time = self._watch.in_time()
@@ -243,7 +239,7 @@ class Conversation:
         if not in_time:
             why = f"gave no {what} within {limit:g} s"
         elif len(answer) > most:
-            why = f"wrote {len(answer)} bytes as its {what} and no end of it"
+            why = f"wrote {len(answer)} bytes as its {what} without a newline"
         elif b"\n" in answer:
             why = f"wrote more than one line as its {what}"
         else:
@@ -252,7 +248,7 @@ class Conversation:
         raise ProgramError(self.sentence(why))
 
     def _cause(self) -> str:
-        """Return how the program ended, once it has closed its output."""
+        """Return how a program that has closed its output ended."""
         try:
             code = self._process.wait(FAREWELL)
         except subprocess.TimeoutExpired:
@@ -261,15 +257,15 @@ class Conversation:
 
 
 def _environment() -> dict[str, str]:
-    """Return that of this process, without what it was given as a worker, see ``compare.run.workers``."""
+    """Return this process's environment without the variable set for workers, see ``compare.run.workers``."""
     environment = dict(os.environ)
     if multiprocessing.parent_process() is not None:
-        environment.pop("PYTHONSAFEPATH", None)  # a program in Python may import what is beside it
+        environment.pop("PYTHONSAFEPATH", None)  # a Python program may import modules from its folder
     return environment
 
 
 def _guard_of(group: int) -> subprocess.Popen[bytes]:
-    """Return a process that ends those of ``group`` when this one is no more."""
+    """Start and return a process that kills those of ``group`` when this process has ended."""
     return subprocess.Popen(
         ("/bin/sh", "-c", END_WITH_US, str(group)),
         stdin=subprocess.PIPE,
@@ -280,14 +276,14 @@ def _guard_of(group: int) -> subprocess.Popen[bytes]:
 
 
 def _write(stream: IO[bytes], line: bytes) -> None:
-    """Write all of ``line``: a pipe may take less at once."""
+    """Write all of ``line``; a pipe may accept less at once."""
     rest = memoryview(line)
     while rest:
         rest = rest[stream.write(rest) :]
 
 
 def _read(stream: IO[bytes], most: int) -> bytes:
-    """Return what comes up to the end of a line, or of the stream, or up to some more than ``most`` bytes."""
+    """Return bytes up to the end of a line or of the stream, or slightly more than ``most`` bytes."""
     parts: list[bytes] = []
     length = 0
     while length <= most:
@@ -300,7 +296,7 @@ def _read(stream: IO[bytes], most: int) -> bytes:
 
 
 class _Watch:
-    """Calls ``expire`` when a time limit has passed, at a cost of next to nothing where none does."""
+    """A thread that calls ``expire`` when a time limit has passed; setting a limit costs next to nothing."""
 
     def __init__(self, expire: Callable[[], None]) -> None:
         self._expire = expire
@@ -310,18 +306,18 @@ class _Watch:
         threading.Thread(target=self._run, daemon=True).start()
 
     def begin(self, limit: float) -> None:
-        """Let the limit of ``limit`` in s begin."""
+        """Start a time limit of ``limit`` in s."""
         self._deadline = time.monotonic() + limit
 
     def in_time(self) -> bool:
-        """Return whether the limit has not passed, and will not any more."""
+        """Return whether the limit has not passed, and clear it."""
         with self._deciding:
             expired = self._deadline == -math.inf
             self._deadline = math.inf
         return not expired
 
     def close(self) -> None:
-        """Look no more."""
+        """Stop the thread."""
         self._closed.set()
 
     def _run(self) -> None:
@@ -333,7 +329,7 @@ class _Watch:
 
 
 class _LastWords:
-    """Reads a program's standard error, so that it never waits for that, and keeps the end."""
+    """A thread that reads a program's standard error, so the program never blocks on it, and keeps the end."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream
@@ -342,9 +338,9 @@ class _LastWords:
         self._reader.start()
 
     def text(self, *, ended: bool) -> str:
-        """Return the last lines as one; where the program has ``ended``, all of them are waited for."""
+        """Return the last lines as one; if the program has ``ended``, wait for the rest."""
         if ended:
-            self._reader.join(FAREWELL)  # no longer: others may hold it open
+            self._reader.join(FAREWELL)  # limited, because other processes may hold the stream open
         lines = self._kept.decode(errors="replace").split("\n")
         return printable(" / ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]))
 

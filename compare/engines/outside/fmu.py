@@ -1,8 +1,9 @@
-"""``fmu:FILE``: a model for co-simulation by the standards FMI 2 and 3 as an engine, by FMPy.
+"""``fmu:FILE``: a model for co-simulation (FMI 2 or 3) as an engine, by FMPy.
 
-Its parameters are called as those of the systems, and its outputs as their states: x, y, vx, vy, and angle and spin
-of a disc. A motion starts with ``x_start`` where there is such a variable, else with x itself, and so do the others.
-Phases are told by models that have the outputs of ``stick_events``; for all others stick is found from states.
+The parameters have the names of the systems' parameters, and the outputs those of the states: x, y, vx, vy, and for
+a disc angle and spin. The initial x is set by ``x_start`` if the model has this variable, otherwise by x, and
+likewise for the other states. Models with the outputs of ``stick_events`` report phases; for others, stick is found
+from states.
 """
 
 from __future__ import annotations
@@ -33,24 +34,25 @@ POINTS = "contact_points"
 NONLINEAR = ("hardening", "stop_gap", "stop_stiffness")
 
 OPTIONAL = ("offset", *NONLINEAR)
-"""Parameters that a model may leave out: then they are 0."""
+"""Parameters that a model may omit; they are then 0."""
 
 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
-"""The parameter with the slip speed below which points creep, and that over tolerance times speed of the motion.
+"""Parameter for the regularisation speed of points, and the ratio of this speed to tolerance times speed.
 
-A model that tells when its contact sticks does so for pins and rings. Errors of creep have to fall with tolerance.
+The speed is that of the motion. Even a model that reports stick, for pins and rings, may regularise friction at
+points. The error of the resulting creep must fall with the tolerance.
 """
 
 LEAST_CREEP = 1e-12
-"""In m/s: of a motion without any speed."""
+"""Regularisation speed in m/s for a motion without any speed."""
 
 MOST_BYTES = 2**30
-"""Largest size of an unpacked archive; models of pins and discs are far smaller."""
+"""Largest size in bytes of an unpacked archive; models of pins and discs are far smaller."""
 
 
 class FmuError(RuntimeError):
-    """A model has no answer; the message says why."""
+    """A model failed; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,7 @@ class Fmu:
     Parameters
     ----------
     file : str
-        Where it is.
+        Path of the model.
 
     """
 
@@ -68,18 +70,18 @@ class Fmu:
 
     @property
     def files(self) -> set[Path]:
-        """The archive: all that the model consists of."""
+        """The model's archive."""
         return {Path(self.file)}
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Return the motion, in communication steps of at most the step in s, or from one time to the next.
+        """Return the motion, with communication steps up to ``step`` in s if given, else from time to time.
 
         Raises
         ------
         UnsupportedSystemError
-            If the system has a parameter that the model has not.
+            If the model lacks a parameter of the system.
         FmuError
             If a call of the model fails.
 
@@ -89,13 +91,11 @@ class Fmu:
         values = _values(system, state, model.variables)
         try:
             instance = model.instance()
-        except (
-            Exception
-        ) as error:  # of the library: for another platform, or without what a model has to have
-            raise FmuError(f"{name} can't be started: {_reason(error, model.folder)}") from None
+        except Exception as error:  # from the library, e.g. for another platform or with missing functions
+            raise FmuError(f"{name} cannot be started: {_reason(error, model.folder)}") from None
         try:
             return _motion(instance, model, values, system, at, **accuracy)
-        except Exception as error:  # of FMPy, which has one class for each version of the standard
+        except Exception as error:  # FMPy has a separate class for each version of the standard
             raise FmuError(f"{name}: {_reason(error, model.folder)}") from None
         finally:
             instance.freeInstance()
@@ -103,7 +103,7 @@ class Fmu:
 
 @dataclass(frozen=True)
 class _Model:
-    """What is known of a model, and where its files are; ``folder`` is removed with this."""
+    """A model's description, unpacked files and variables; ``folder`` is removed with this object."""
 
     description: Any
     folder: tempfile.TemporaryDirectory[str]
@@ -111,16 +111,16 @@ class _Model:
 
     @property
     def newer(self) -> bool:
-        """Whether it is of FMI 3, which calls the same things by other names."""
+        """True for FMI 3, which has other names for the same functions."""
         return str(self.description.fmiVersion).startswith("3")
 
     @property
     def tells_stick(self) -> bool:
-        """Whether it tells when its contact sticks."""
+        """True if the model reports when its contact sticks."""
         return tells_stick(self.description, self.variables)
 
     def events(self, system: System) -> type[Events] | None:
-        """Return what follows its phases, if it tells those of a system."""
+        """Return the class that tracks the phases of ``system``, or None if the model does not report them."""
         if not self.tells_stick:
             return None
         if isinstance(system, DiscOnDisc) and system.contact_points is not None:
@@ -128,12 +128,12 @@ class _Model:
         return StickEvents
 
     def instance(self) -> Any:
-        """Return a new instance, which has to be freed."""
+        """Return a new instance; the caller must free it."""
         return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
 
 
 def _fmpy() -> Any:
-    """Return FMPy, which is loaded only when a model is asked for."""
+    """Return FMPy's simulation module, imported only if a model is used."""
     try:
         return importlib.import_module("fmpy.simulation")
     except ImportError as error:
@@ -142,7 +142,7 @@ def _fmpy() -> Any:
 
 @functools.cache
 def _model(file: str) -> _Model:
-    """Return the model of a file, unpacked; raise ``ValueError`` if it cannot be used."""
+    """Unpack and return the model of a file; raise ``ValueError`` if it cannot be used."""
     _fmpy()
     fmpy, name = importlib.import_module("fmpy"), Path(file).name
     folder = tempfile.TemporaryDirectory(prefix="friction-discs-")
@@ -153,25 +153,25 @@ def _model(file: str) -> _Model:
             raise ValueError(f"it would unpack to {size:.3g} bytes, the limit is {MOST_BYTES:.3g}")
         description = fmpy.read_model_description(file)
         if description.coSimulation is None or not str(description.fmiVersion).startswith(("2", "3")):
-            raise ValueError(f"FMI {description.fmiVersion}, but it must be for co-simulation by FMI 2 or 3")
+            raise ValueError(f"FMI {description.fmiVersion}, but co-simulation by FMI 2 or 3 is required")
         fmpy.extract(file, folder.name)
-    except Exception as error:  # of the archive, of its XML, or of what stands in it
+    except Exception as error:  # from the archive, its XML or the contents
         folder.cleanup()
         raise ValueError(f"{name} cannot be used as a model: {_reason(error, folder)}") from None
     return _Model(description, folder, {one.name: one for one in description.modelVariables})
 
 
 def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
-    """Return the message of an error in one line, with paths relative to ``folder``."""
+    """Return an error message in one line, with paths relative to ``folder``."""
     return " ".join(str(error).replace(f"{folder.name}{os.sep}", "").split()) or type(error).__name__
 
 
 def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> dict[str, float]:
-    """Return what to set: parameters of the system, and the start."""
+    """Return the values to set, by variable name: parameters of the system and initial state."""
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
     if lacking:
-        raise UnsupportedSystemError(f"the model has no {', '.join(lacking)}")
+        raise UnsupportedSystemError(f"the model lacks {', '.join(lacking)}")
     starts = zip((name for name, _ in COLUMNS[type(system)]), state.tolist(), strict=True)
     known = {name: value for name, value in parameters.items() if name in variables}
     if isinstance(system, DiscOnDisc) and POINTS in variables:
@@ -190,12 +190,12 @@ def _motion(
     tolerance: float | None = None,
     step: float = math.inf,
 ) -> Trajectory:
-    """Return the motion at ``times`` (n,) of an instance that was not asked before."""
+    """Return the motion at ``times`` (n,), computed by a new instance."""
     if model.tells_stick and isinstance(system, DiscOnDisc) and system.contact_points is not None:
         values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
-        whole = "Int" in variable.type  # the number of points, by any of the standard's types
+        whole = "Int" in variable.type  # the number of points has one of the integer types
         getattr(instance, f"set{variable.type}")(
             [variable.valueReference], [int(value) if whole else float(value)]
         )
@@ -228,7 +228,7 @@ def _motion(
 def _creep(
     system: DiscOnDisc, values: Mapping[str, float], variables: Mapping[str, Any], tolerance: float | None
 ) -> dict[str, float]:
-    """Return below which slip speed in m/s points creep, in proportion to the tolerance, if the model takes that."""
+    """Return the regularisation speed of points in m/s, proportional to the tolerance, if it is a parameter."""
     if CREEPS not in variables or tolerance is None:
         return {}
     x, y, _, vx, vy, spin = (
@@ -241,10 +241,10 @@ def _creep(
 
 
 def fmu_engine(text: str) -> Engine:
-    """Return the engine "fmu:TEXT"; raise ``ValueError`` if the file is no model of a system."""
+    """Return the engine "fmu:TEXT"; raise ``ValueError`` if the file is not a model of a system."""
     file = Path(text).resolve()
     if not file.is_file():
-        raise ValueError(f"fmu:{text}: there is no such file")
+        raise ValueError(f"fmu:{text}: file not found")
     model = _model(str(file))
     kinds = _kinds(file.name, model.variables)
     experiment = model.description.defaultExperiment
@@ -254,14 +254,14 @@ def fmu_engine(text: str) -> Engine:
 
 
 def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of systems that variables of these names are those of."""
+    """Return the kinds of systems that a model with these variables simulates."""
     disc = "spin" in variables
     system = DiscOnDisc if disc else PinOnDisc
     needed = [*(field.name for field in fields(system)), *(name for name, _ in COLUMNS[system])]
     lacking = [one for one in needed if one not in variables and one not in (*OPTIONAL, POINTS)]
     if lacking:
         raise ValueError(
-            f"{name} is no model of a {'disc' if disc else 'pin'}: it has no {', '.join(lacking)}"
+            f"{name} is not a model of a {'disc' if disc else 'pin'}: it lacks {', '.join(lacking)}"
         )
     if not disc:
         return ("pin",)

@@ -1,7 +1,6 @@
-"""What is said to a program that is an engine, and what it answers: a line of JSON each.
+"""Questions to a program that serves as an engine, and its answers, each a line of JSON.
 
-The contract for authors is in ``docs/judge-your-engine.md``. Numbers are written with as many digits as they need to
-come back to the last bit.
+``docs/judge-your-engine.md`` specifies them. Numbers are written with enough digits to be exact.
 """
 
 from __future__ import annotations
@@ -25,31 +24,31 @@ from reference_model.trajectory import Phase, Trajectory, phases_of
 PROTOCOL = 1
 
 ANSWER_LIMIT = 60.0
-"""In s, for one motion, unless the program asks for another."""
+"""Default time limit in s for one motion."""
 
 _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 
 class BadLineError(RuntimeError):
-    """A program wrote what is no answer to the question; the message says why, as the end of "NAME ..."."""
+    """A program wrote an invalid line; the message says why and continues a sentence that begins with its name."""
 
 
 class RefusedError(RuntimeError):
-    """A program says that it has no answer; the message is its own."""
+    """A program reported an error; the message is its own."""
 
 
 @dataclass(frozen=True)
 class Greeting:
-    """The first line of a program: what it promises, all of it optional.
+    """The first line of a program; every entry is optional.
 
     Parameters
     ----------
     promises : dict
         Parameters of ``Engine``.
     name, version : str
-        As the program calls itself.
+        The program's own name and version.
     limit : float
-        Time in s after which an answer is no longer waited for.
+        Time limit in s for one answer.
 
     """
 
@@ -60,20 +59,20 @@ class Greeting:
 
     @property
     def who(self) -> str:
-        """Name and version in a word or two, "" if neither is told."""
+        """Name and version, "" if the program gave neither."""
         return " ".join(filter(None, (self.name, self.version)))
 
 
 def greeting(line: bytes) -> Greeting:
-    """Return what the first line of a program says; raise ``ValueError`` if it is none."""
+    """Return the greeting in a program's first line; raise ``ValueError`` if it is invalid."""
     try:
         content = _object(line)
     except BadLineError as error:
         raise ValueError(str(error)) from None
     for key in content:
-        one_of("word in its greeting", key, ("protocol", "name", "version", "limit", *DECLARED))
+        one_of("field in its greeting", key, ("protocol", "name", "version", "limit", *DECLARED))
     if content.get("protocol", PROTOCOL) != PROTOCOL:
-        raise ValueError(f"speaks protocol {content['protocol']!r}: known is {PROTOCOL}")
+        raise ValueError(f"uses protocol {content['protocol']!r}: it must be {PROTOCOL}")
     if not isinstance(content.get("kinds", []), list):
         raise ValueError(f'greets with "kinds": {json.dumps(content["kinds"])}: it must be a list')
     limit = finite_number("limit", content.get("limit", ANSWER_LIMIT))
@@ -84,7 +83,7 @@ def greeting(line: bytes) -> Greeting:
 
 
 def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
-    """Return the line that asks for a motion; ``accuracy`` is its tolerance, or the step in s."""
+    """Return the line that requests a motion; ``accuracy`` is its tolerance, or its step in s."""
     ((name, value),) = accuracy.items()
     numbers = (_written(np.asarray(values, dtype=float).tolist()) for values in (state, times))
     text = '{{"system":{},"state":{},"times":{},"{}":{!r}}}\n'.format(
@@ -93,32 +92,32 @@ def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[
     return text.encode("ascii")
 
 
-@functools.lru_cache(maxsize=64)  # the same system is asked for many times after each other
+@functools.lru_cache(maxsize=64)  # successive questions often have the same system
 def _system(system: System) -> str:
     return _written({"kind": kind_of(system)} | asdict(system))
 
 
 def kind_of(system: System) -> str:
-    """Return what a program knows a system as: "pin", "ring" or "points"."""
+    """Return the kind of a system in a question: "pin", "ring" or "points"."""
     if isinstance(system, PinOnDisc):
         return "pin"
     return "ring" if system.contact_points is None else "points"
 
 
 def most_bytes(system: System, times: ArrayLike) -> int:
-    """Return a length that no answer exceeds: numbers with all their digits and much white space, and phases."""
+    """Return a length that no answer exceeds, even with all digits, generous white space, and phases."""
     return 1_000_000 + 100 * system.state_size * np.size(times)
 
 
 def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
-    """Return the motion that a line tells, in the times (n,) that were asked for.
+    """Return the motion in ``line`` at the requested times (n,); its shapes and numbers are not yet checked.
 
     Raises
     ------
     UnsupportedSystemError, RefusedError
         If the line says so.
     BadLineError
-        If it is no answer. Shapes and numbers of the states are still to be looked at.
+        If the line is not a valid answer.
 
     """
     content = _object(line)
@@ -137,9 +136,9 @@ def _object(line: bytes) -> dict[str, Any]:
     try:
         content = json.loads(line)
     except (ValueError, RecursionError):
-        raise BadLineError(f"wrote a line that is no JSON: {_short(line)}") from None
+        raise BadLineError(f"wrote a line that is not JSON: {_short(line)}") from None
     if not isinstance(content, dict):
-        raise BadLineError(f"wrote a line that is no JSON object: {_short(line)}")
+        raise BadLineError(f"wrote a line that is not a JSON object: {_short(line)}")
     return content
 
 
@@ -147,16 +146,16 @@ def _array(name: str, rows: object) -> Any:
     try:
         array = np.array(rows, dtype=float)
         if not set(map(type, np.array(rows, dtype=object).flat)) <= {int, float, type(None)}:
-            raise TypeError  # NumPy takes "1" and true for numbers
+            raise TypeError  # NumPy accepts "1" and true as numbers
         return array
     except (TypeError, ValueError, OverflowError):
         raise BadLineError(
-            f'answered with "{name}" that are no rows of numbers, all as long: {reprlib.repr(rows)}'
+            f'answered with "{name}" that are not rows of numbers of equal length: {reprlib.repr(rows)}'
         ) from None
 
 
 def _phases(told: object, system: System, end: float) -> tuple[Phase, ...]:
-    """Return the phases that are told as objects with kind, start and the state there."""
+    """Return the phases from a list of objects with kind, start and state at the start."""
     begun = []
     for phase in told if isinstance(told, list) else [told]:
         if not isinstance(phase, dict) or phase.get("kind") not in PHASES:

@@ -1,9 +1,8 @@
-"""``files:DIR``: motions that somebody computed beforehand as an engine, from a folder that ``plan`` has laid out.
+"""``files:DIR``: motions computed beforehand as an engine, in a folder created by ``plan``.
 
-``plan.json`` says which motions there are. Each is a file as ``0f3a.json`` with a question, of the form in which
-programs are asked (``json_lines`` beside this), and waits for ``0f3a.csv`` with the answer: a line for each time,
-with the time and the state, below a line of names if there is one. The names come from the questions: no answer is
-taken for that to another one when there is another plan.
+``plan.json`` lists the motions. For each there is a file such as ``0f3a.json`` with a question in the form of
+``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
+header. The file names are hashes of the questions, so an answer cannot be confused with one to another plan.
 """
 
 from __future__ import annotations
@@ -30,56 +29,56 @@ FORMAT = 1
 
 
 class BadFileError(RuntimeError):
-    """A file has something else in it than a motion; the message says in which line."""
+    """A file does not contain a valid motion; the message names the line."""
 
 
 @dataclass(frozen=True)
 class MotionFiles:
-    """The ``simulate`` that reads what stands in the folder ``folder``."""
+    """A ``simulate`` that reads its motions from ``folder``."""
 
     folder: str
 
     @property
     def files(self) -> set[Path]:
-        """The plan and the motions."""
+        """Paths of the plan and the motions."""
         return {Path(self.folder, INDEX), *Path(self.folder).glob("*.csv")}
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Return what the file of this motion says.
+        """Return this motion from its file.
 
         Raises
         ------
         UnsupportedSystemError
-            If it is not among those of the plan, is missing, or ends too early.
+            If the motion is not in the plan, or its file is missing or ends too early.
         BadFileError
-            If the file holds anything else.
+            If the file is otherwise invalid.
 
         """
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):
             raise UnsupportedSystemError(
-                f"{Path(self.folder).name} has no such motion: {INDEX} is of another version, "
-                "or what is asked for depends on the answers"
+                f"{Path(self.folder).name} does not contain this motion: {INDEX} has another version, "
+                "or the motion depends on answers to others"
             )
         return read_motion(Path(self.folder, f"{name}.csv"), system, np.array(times, dtype=float))
 
 
 def name_of(line: bytes) -> str:
-    """Return what the files of the motion of a question are called, without their endings."""
+    """Return the name, without extension, of the files for a question."""
     return hashlib.sha256(line).hexdigest()[:12]
 
 
 def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
-    """Return the motion of ``system`` at ``times`` (n,) in s that a file holds."""
+    """Return the motion of ``system`` at ``times`` (n,) in s from a file."""
     place = f"{path.parent.name}/{path.name}"
     try:
         lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
     except FileNotFoundError:
         raise UnsupportedSystemError(f"{place} is missing") from None
     except OSError as error:
-        raise BadFileError(f"{place} can't be read: {error.strerror}") from None
+        raise BadFileError(f"{place} cannot be read: {error.strerror}") from None
     columns = ("t", *(name for name, _ in COLUMNS[type(system)]))
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
     if rows and not any(map(_is_number, rows[0][1])):
@@ -91,7 +90,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             f"{place} ends after {whole} of {len(times)} times, before t = {times[whole]:g} s"
         )
     if found > len(times):
-        raise BadFileError(f"{place} has {found} rows: {len(times)} times were asked for")
+        raise BadFileError(f"{place} has {found} rows: expected {len(times)}, one per time")
     numbers = np.empty((found, len(columns)))
     for i, (number, row) in enumerate(rows):
         if len(row) != len(columns):
@@ -102,7 +101,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
             numbers[i] = row
         except ValueError:
             raise BadFileError(
-                f"{place}, line {number}, is not made of numbers: {','.join(row)[:60]!r}"
+                f"{place}, line {number}, does not consist of numbers: {','.join(row)[:60]!r}"
             ) from None
         if not np.isfinite(numbers[i]).all():
             raise BadFileError(f"{place}, line {number}, has a number that is not finite")
@@ -110,7 +109,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
 
 
 def files_engine(text: str) -> Engine:
-    """Return the engine "files:TEXT"; raise ``ValueError`` if the folder was laid out by no plan."""
+    """Return the engine "files:TEXT"; raise ``ValueError`` if the folder does not contain a valid plan."""
     folder = str(Path(text or ".").resolve())
     content = _index(folder)
     return Engine(Path(folder).name, MotionFiles(folder), tuple(content["kinds"]), phases=False)
@@ -123,12 +122,12 @@ def _index(folder: str) -> dict[str, Any]:
             raise ValueError
         frozenset(content["motions"])
     except OSError as error:
-        reason = f"{error.strerror}; friction-discs plan writes it"
+        reason = f"{error.strerror}; create it with friction-discs plan"
     except (ValueError, KeyError, TypeError):
-        reason = "it is no plan of this version"
+        reason = "it is not a plan of this version"
     else:
         return content
-    raise ValueError(f"{Path(folder).name}/{INDEX} can't be read: {reason}")
+    raise ValueError(f"{Path(folder).name}/{INDEX} cannot be read: {reason}")
 
 
 @functools.cache

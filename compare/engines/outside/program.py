@@ -1,4 +1,4 @@
-"""``exec:COMMAND``: a program of any language as an engine, asked by lines of JSON."""
+"""``exec:COMMAND``: a program in any language as an engine, connected by lines of JSON."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ INTERPRETERS = re.compile(
     r"(python|pypy|node|deno|bun|julia|ruby|perl|lua|php|java|mono|dotnet|octave|Rscript|sbcl|guile|sh|bash|env|wine)"
     r"[\d.]*"
 )
-"""Programs that are known by what they run."""
+"""Interpreters, whose engines are named after the script."""
 
 
 def _conversation() -> Any:
-    """Return the module that starts programs, loaded only when one is asked for."""
+    """Return the module that starts programs, imported only if a program is used."""
     return importlib.import_module("compare.engines.outside.conversation")
 
 
 @dataclass(frozen=True)
 class Program:
-    """The ``simulate`` of a program: whichever process calls it has a process of the program for itself.
+    """The ``simulate`` of a program; each calling process has its own process of the program.
 
     Parameters
     ----------
     command : tuple of str
         The program and its arguments.
     folder : str
-        Where it is started.
+        Its working directory.
 
     """
 
@@ -50,9 +50,9 @@ class Program:
 
     @property
     def files(self) -> set[Path]:
-        """The program, the files among its arguments, and what lies next to a script and is of its language.
+        """The program, the files among its arguments, and the files next to a script in its language.
 
-        None if an interpreter runs something else than a file, as ``python -m`` does.
+        Empty if an interpreter runs anything other than a file, for example ``python -m``.
         """
         program, *arguments = self.command
         found = shutil.which(program) if not os.path.dirname(program) else os.path.join(self.folder, program)
@@ -69,7 +69,7 @@ class Program:
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Ask for a motion."""
+        """Return the motion computed by the program."""
         trajectory: Trajectory = _conversation().simulate(
             self.command, self.folder, system, initial_state, times, **accuracy
         )
@@ -77,19 +77,19 @@ class Program:
 
 
 def program_engine(text: str) -> Engine:
-    """Return the engine "exec:TEXT" with what the program promises; raise ``ValueError`` if there is none."""
+    """Return the engine "exec:TEXT" as described by the program's greeting; raise ``ValueError`` if it fails."""
     program = _program(text)
     greeting = _conversation().greeting_of(program.command, program.folder)
     name = name_of(program.command)
-    about = f"{name} is a program that calls itself {greeting.who}." if greeting.who else ""
+    about = f"{name} runs the program {greeting.who}." if greeting.who else ""
     try:
         return Engine(name, program, about=about, **{"phases": False, **greeting.promises})
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} greets with {greeting.promises}: {error}") from None
+        raise ValueError(f"{name} has an invalid greeting, {greeting.promises}: {error}") from None
 
 
 def check_program(text: str) -> None:
-    """Raise ``ValueError`` unless "exec:TEXT" names a program that is there."""
+    """Raise ``ValueError`` unless "exec:TEXT" names an existing program."""
     program = _program(text)
     _conversation().check_command(program.command, program.folder)
 
@@ -100,17 +100,17 @@ def _program(text: str) -> Program:
     except ValueError as error:
         raise ValueError(f"exec:{text}: {str(error).lower()}") from None
     if not command or not command[0]:
-        raise ValueError(f"exec:{text}: a command has to follow, as in exec:./my_engine")
+        raise ValueError(f"exec:{text}: give a command, for example exec:./my_engine")
     return Program(command, os.getcwd())
 
 
 def name_of(command: Sequence[str]) -> str:
-    """Return what an engine is called: its program's own name, and the arguments that follow."""
+    """Return the name of an engine: the program's own name and the arguments after it."""
     return " ".join([own_name(command), *_run(command)[1:]])
 
 
 def own_name(command: Sequence[str]) -> str:
-    """Return the name of the program, or of what an interpreter runs, without folder and ending."""
+    """Return the name of the program, or of an interpreter's script, without folder and extension."""
     path = PurePath(_run(command)[0])
     return path.stem if path.suffix.lstrip(".").isalpha() else path.name
 
@@ -130,16 +130,16 @@ def _is_interpreter(program: str) -> bool:
 register_scheme("exec", Scheme(program_engine, check_program))
 
 
-# --- Files of other people's code, found by their endings: nothing is imported or run.
+# --- Files of foreign code, found by their extensions, without importing or running anything.
 
 MODULES = tuple(set(all_suffixes()) - set(BYTECODE_SUFFIXES))
-"""Endings of what Python imports: sources and compiled extensions."""
+"""Extensions of importable files: Python sources and compiled modules."""
 
 
 def code_below(folders: Iterable[str | Path], endings: tuple[str, ...] = MODULES) -> set[Path]:
-    """Return the files in folders with one of the ``endings``, and those in packages inside.
+    """Return the files with one of the ``endings`` in folders and their packages.
 
-    A folder whose name is not an identifier, as ``site-packages`` or ``.venv``, is not a package and is left out.
+    A folder whose name is not an identifier, such as ``site-packages`` or ``.venv``, is not a package.
     """
     found, seen = set[Path](), set[str]()
     for folder in folders:

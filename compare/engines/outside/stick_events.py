@@ -1,8 +1,8 @@
-"""When the contact of a model sticks and is let go, by what the model itself tells of its last events.
+"""Stick phases from a model's own record of its last events.
 
-It has as outputs how often it stuck and was let go, when it did last, and where it then was: ``NAMES``; and of single
-points how many rest, how often that changed, when it did last, and the state then: ``NAMES_OF_POINTS``. It is asked
-at communication points, and a step in which there was more than the last of each is taken back and halved.
+The outputs ``NAMES`` count sticks and releases and give the times of the last ones and the position of the last
+stick. ``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the
+last change. They are read at communication points. A step with several events of a kind is rejected and halved.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ COUNTS = ("stick_count", "release_count")
 TIMES = ("stick_time", "release_time")
 
 NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")
-"""What a model has to have, and ``stick_angle`` for a disc."""
+"""Required outputs; a disc also needs ``stick_angle``."""
 
 STATE_OF_POINTS = tuple(f"rest_{name}" for name, _ in COLUMNS[DiscOnDisc])
 
 NAMES_OF_POINTS = ("rest_count", "rest_time", "resting_points", *STATE_OF_POINTS)
-"""What a model that tells of sticking has to have besides, to tell when single points rest."""
+"""Further outputs for the rest of single points."""
 
 Kind = Literal["slip", "pivot", "stick"]
 
 
 def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
-    """Return whether a model tells it: one whose ``exact`` is off from the start creeps, and knows no events."""
+    """Return whether a model reports stick; if ``exact`` is off by default, it creeps and has no events."""
     exact = variables.get("exact")
     return (
         set(NAMES) <= set(variables)
@@ -43,25 +43,25 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
 
 
 class Events:
-    """The phases of an instance, which was initialised, while it takes steps.
+    """The phases of an initialised instance, collected while it takes steps.
 
     Parameters
     ----------
-    instance : FMPy's
-        Of FMI 3 if ``newer``.
+    instance : FMPy instance
+        Instance of FMI 3 if ``newer``, else of FMI 2.
     variables : mapping
-        Those of its model by name.
+        Variables of its model by name.
     system : PinOnDisc or DiscOnDisc
-        Which it simulates.
+        The simulated system.
     time : float
-        Where it starts, in s.
+        Initial time in s.
     state : array of shape (4,) or (6,)
-        From where.
+        Initial state.
 
     """
 
     counts: ClassVar[tuple[str, ...]]
-    """Outputs that count what happened."""
+    """Outputs that count events."""
 
     def __init__(
         self,
@@ -85,7 +85,7 @@ class Events:
         self._begun: list[tuple[Kind, float, FloatArray]] = [(self._first(), time, np.array(state))]
 
     def step(self, begin: float, end: float) -> None:
-        """Let the instance go from ``begin`` to ``end`` in s."""
+        """Advance the instance from ``begin`` to ``end``, in s."""
         before, middle = self._kept(), 0.5 * (begin + end)
         try:
             self._instance.doStep(begin, end - begin)
@@ -104,7 +104,7 @@ class Events:
             self.step(middle, end)
 
     def phases(self, end: float) -> tuple[Phase, ...]:
-        """Return them up to ``end`` in s."""
+        """Return the phases up to ``end`` in s."""
         return phases_of(self._begun, end)
 
     def _of(self, *names: str) -> list[int]:
@@ -112,16 +112,16 @@ class Events:
         return [self._variables[name].valueReference for name in names]
 
     def _first(self) -> Kind:
-        """Return the kind of phase in which the motion starts."""
+        """Return the kind of the first phase."""
         raise NotImplementedError
 
     def _note(self, counts: list[int]) -> None:
-        """Note what happened, each at most once, since ``_counts``."""
+        """Record the events since ``_counts``, at most one of each kind."""
         raise NotImplementedError
 
 
 class PointRests(Events):
-    """Those of a disc on single points, of which one may rest while the disc turns about it."""
+    """Phases of a disc on single points, which may pivot about one of them."""
 
     counts = ("rest_count",)
 
@@ -135,7 +135,7 @@ class PointRests(Events):
 
 
 class StickEvents(Events):
-    """Those of a contact that rests as a whole."""
+    """Phases of a contact that sticks as a whole."""
 
     counts = COUNTS
 
@@ -148,7 +148,7 @@ class StickEvents(Events):
         return "stick" if self._counts[0] > self._counts[1] else "slip"
 
     def _note(self, counts: list[int]) -> None:
-        """Note the last of each that is new: what sticks is let go before it sticks again."""
+        """Record the new stick and release in their order: a stuck contact is released before it sticks again."""
         changed = [now > then for now, then in zip(counts, self._counts, strict=True)]
         stuck, released = self._real(self._timed)
         happened: dict[Kind, tuple[bool, float, Callable[[float], FloatArray]]] = {
@@ -162,12 +162,12 @@ class StickEvents(Events):
                 self._begun.append((kind, time, state(time)))
 
     def _released(self, time: float) -> FloatArray:
-        """Return the state at release: where the disc below has carried it since it stuck."""
+        """Return the state at release, carried by the master disc since the contact stuck."""
         _, stuck, state = self._begun[-1]
         return self._carried(state[: len(self._placed)], time - stuck)
 
     def _carried(self, place: Any, lasted: float) -> FloatArray:
-        """Return the state of what turned with the disc below for a time in s."""
+        """Return the state of a body that the master disc has carried from ``place`` for ``lasted`` in s."""
         omega = self._system.disc_speed
         z = complex(*place[:2]) * cmath.exp(1j * omega * lasted)
         velocity = 1j * omega * z

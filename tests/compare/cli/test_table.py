@@ -35,12 +35,12 @@ HELP = [
 BAD = [
     ("report verdict", "unknown study 'verdict': did you mean 'verdicts'?"),
     ("report --engine exudin", "unknown engine 'exudin': did you mean 'exudyn'?"),
-    ("report --engine exec:./missing", "./missing can't be started: it is not there"),
+    ("report --engine exec:./missing", "./missing: command not found"),
     (
         "report --engine files:.",
-        "…/plan.json can't be read: No such file or directory; friction-discs plan writes it",
+        "…/plan.json cannot be read: No such file or directory; create it with friction-discs plan",
     ),
-    ("report --engine fmu:missing.fmu", "…there is no such file…"),
+    ("report --engine fmu:missing.fmu", "…file not found…"),
     ("report --jobs 0", "jobs = 0: it must lie between 1 and 1000"),
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),

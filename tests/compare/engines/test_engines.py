@@ -90,8 +90,8 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function_and_says_what_it_
 @pytest.mark.parametrize(
     ("code", "reason"),
     [
-        ("1 / 0", " can't be imported: ZeroDivisionError: division by zero"),
-        ("def (", " can't be imported: SyntaxError: "),
+        ("1 / 0", " cannot be imported: ZeroDivisionError: division by zero"),
+        ("def (", " cannot be imported: SyntaxError: "),
         ("simulate.kinds = ('rings',)", ", attribute kinds = … did you mean 'ring'"),
         ("simulate.kinds = 'ring'", ", attribute kinds = …'r'"),
         ("simulate.kinds = 7", ", attribute kinds = …not iterable"),
@@ -224,14 +224,14 @@ BROKEN_STATES = np.zeros((5, 4))
 BROKEN_STATES[3, 2] = np.inf
 
 NO_ANSWERS = [
-    ({"times": TIMES[:-1]}, "the trajectory's times have shape (4,): (5,) were asked for"),
-    ({"times": TIMES + 1e-9}, "the trajectory's times[0] = 1e-09 s: 0.0 s was asked for"),
-    ({"times": TIMES * np.nan}, "the trajectory's times[0] = nan s: 0.0 s was asked for"),
-    ({"times": TIMES + 0j}, f"the trajectory's times are of the type complex128: {NOT_REAL}"),
-    ({"states": np.zeros((5, 6))}, "the trajectory's states have shape (5, 6): they must have (5, 4)"),
+    ({"times": TIMES[:-1]}, "the trajectory's times have shape (4,): expected (5,)"),
+    ({"times": TIMES + 1e-9}, "the trajectory's times[0] = 1e-09 s: expected 0.0 s"),
+    ({"times": TIMES * np.nan}, "the trajectory's times[0] = nan s: expected 0.0 s"),
+    ({"times": TIMES + 0j}, f"the trajectory's times have the type complex128: {NOT_REAL}"),
+    ({"states": np.zeros((5, 6))}, "the trajectory's states have shape (5, 6): expected (5, 4)"),
     ({"states": BROKEN_STATES}, "the state at t = 0.75 s is not finite: [0.0, 0.0, inf, 0.0]"),
-    ({"states": np.full((5, 4), "1")}, f"the trajectory's states are of the type <U1: {NOT_REAL}"),
-    ({"states": np.full((5, 4), True)}, f"the trajectory's states are of the type bool: {NOT_REAL}"),
+    ({"states": np.full((5, 4), "1")}, f"the trajectory's states have the type <U1: {NOT_REAL}"),
+    ({"states": np.full((5, 4), True)}, f"the trajectory's states have the type bool: {NOT_REAL}"),
     (spans((0.0, 1.0), kind="glide"), f"phases[0] is 'glide': {NO_PHASE}"),
     ({"phases": ("slip",)}, f"phases[0] is 'slip': {NO_PHASE}"),
     ({"phases": (Phase("slip", True, 1.0, np.zeros(3)),)}, f"phases[0] {NO_NUMBERS}"),

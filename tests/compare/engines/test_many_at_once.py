@@ -86,14 +86,14 @@ def shorter(runs):
         (
             lambda runs: runs[:1],
             BadTrajectoryError,
-            "simulate_many() returned 1 trajectories: 2 were asked for",
+            "simulate_many() returned 1 trajectories: expected 2",
         ),
         (lambda runs: runs[0], TypeError, "it must be a list of trajectories"),
         (lambda runs: None, TypeError, "simulate_many() returned None: it must be a list of trajectories"),
         (
             shorter,
             BadTrajectoryError,
-            "motion 2 of 2: the trajectory's times have shape (1,): (2,) were asked for",
+            "motion 2 of 2: the trajectory's times have shape (1,): expected (2,)",
         ),
         (
             lambda runs: runs[::-1],

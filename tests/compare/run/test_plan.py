@@ -105,7 +105,7 @@ def test_the_plan_of_the_command_line_is_judged_when_it_is_answered(tmp_path, mo
         "The radius is found once more, from what is kept",
     ]
     assert {claim.verdict.name for claim in judged.claims} == {"AGREES"}
-    assert "plan has no such motion" in judged.not_simulated
+    assert "plan does not contain this motion" in judged.not_simulated
 
 
 def _asked_first(path):

@@ -83,14 +83,14 @@ def test_what_is_missing_is_named_and_not_scored(answer, folder):
     (engine,) = engines([f"files:{folder}"])
     with pytest.raises(UnsupportedSystemError, match=f"^motions/{answer.path.name} is missing$"):
         engine.simulate(FIG5, START, TIMES)
-    with pytest.raises(UnsupportedSystemError, match=r"^motions has no such motion"):
+    with pytest.raises(UnsupportedSystemError, match=r"^motions does not contain this motion"):
         engine.simulate(FIG5, START, TIMES, tolerance=1e-8)
 
 
 @pytest.mark.parametrize(
     ("change", "kind", "reason"),
     [
-        (lines(lambda rows: [*rows, rows[-1]]), BadFileError, " has 4 rows: 3 times were asked for"),
+        (lines(lambda rows: [*rows, rows[-1]]), BadFileError, " has 4 rows: expected 3, one per time"),
         (
             lines(lambda rows: [rows[0], rows[1], rows[2] + ",1", rows[3]]),
             BadFileError,
@@ -99,7 +99,7 @@ def test_what_is_missing_is_named_and_not_scored(answer, folder):
         (
             lines(lambda rows: [rows[0], rows[1], "1,2,three,4,5", rows[3]]),
             BadFileError,
-            ", line 3, is not made of numbers: '1,2,three,4,5'",
+            ", line 3, does not consist of numbers: '1,2,three,4,5'",
         ),
         (
             lines(lambda rows: [rows[0], rows[1], "0.3,2,nan,4,5", rows[3]]),
@@ -109,7 +109,7 @@ def test_what_is_missing_is_named_and_not_scored(answer, folder):
         (
             lines(lambda rows: [rows[0], rows[1], rows[1], rows[3]]),
             BadTrajectoryError,
-            "times[1] = 0.0 s: 0.3333333333333333 s was asked for",
+            "times[1] = 0.0 s: expected 0.3333333333333333 s",
         ),
     ],
 )
@@ -123,10 +123,10 @@ def test_what_is_wrong_in_a_file_is_told_with_its_line(change, kind, reason, ans
 @pytest.mark.parametrize(
     ("index", "reason"),
     [
-        (None, "No such file or directory; friction-discs plan writes it"),
-        ("{", "it is no plan of this version"),
-        (json.dumps({"format": 0, "kinds": [], "motions": []}), "it is no plan of this version"),
-        (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is no plan of this version"),
+        (None, "No such file or directory; create it with friction-discs plan"),
+        ("{", "it is not a plan of this version"),
+        (json.dumps({"format": 0, "kinds": [], "motions": []}), "it is not a plan of this version"),
+        (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is not a plan of this version"),
     ],
 )
 def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folder):
@@ -135,7 +135,7 @@ def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folde
     else:
         (folder / "plan.json").write_text(index)
     for look in (lambda name: engines([name]), known_name):
-        with pytest.raises(ValueError, match=f"^motions/plan.json can't be read: {reason}$"):
+        with pytest.raises(ValueError, match=f"^motions/plan.json cannot be read: {reason}$"):
             look(f"files:{folder}")
 
 

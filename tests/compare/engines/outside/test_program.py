@@ -117,20 +117,20 @@ def test_the_greeting_promises_what_attributes_of_a_function_would():
     assert engine.about == ""
     usual = faulty("none", name="Drehwurm", version="1.2")
     assert (usual.kinds, usual.sticks, usual.nonlinear, usual.phases) == (("pin",), True, True, False)
-    assert usual.about.endswith("is a program that calls itself Drehwurm 1.2.")
+    assert usual.about.endswith("runs the program Drehwurm 1.2.")
 
 
 @pytest.mark.parametrize(
     ("greeting", "reason"),
     [
-        ("hello", "wrote a line that is no JSON: 'hello'"),
-        ("[1]", "wrote a line that is no JSON object: '[1]'"),
-        ('{"kind": ["pin"]}', "unknown word in its greeting 'kind': did you mean 'kinds'?"),
+        ("hello", "wrote a line that is not JSON: 'hello'"),
+        ("[1]", "wrote a line that is not a JSON object: '[1]'"),
+        ('{"kind": ["pin"]}', "unknown field in its greeting 'kind': did you mean 'kinds'?"),
         ('{"kinds": "pin"}', 'greets with "kinds": "pin": it must be a list'),
         ('{"kinds": ["sphere"]}', "unknown kind of system 'sphere'"),
         ('{"sticks": 1}', "sticks = 1: it must be True or False"),
         ('{"limit": -1}', 'greets with "limit": -1: it must be > 0 s'),
-        ('{"protocol": 2}', "speaks protocol 2: known is 1"),
+        ('{"protocol": 2}', "uses protocol 2: it must be 1"),
         ("{}\n{}", "wrote more than one line as its greeting"),
     ],
 )
@@ -143,12 +143,12 @@ def test_a_program_that_does_not_greet_is_refused_in_one_sentence(greeting, reas
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        ("./missing", "./missing can't be started: it is not there"),
-        ("missing-program", "missing-program can't be started: no folder of PATH has it"),
-        ("here", "no folder of PATH has it, write ./here for the one in this folder"),
-        ("./here", "./here can't be started: it is not executable"),
-        ("./folder", "./folder can't be started: it is a folder"),
-        ("", "a command has to follow, as in exec:./my_engine"),
+        ("./missing", "./missing: command not found"),
+        ("missing-program", "missing-program: command not found in PATH"),
+        ("here", "command not found in PATH; use ./here for the program in this folder"),
+        ("./here", "./here: not executable"),
+        ("./folder", "./folder: this is a folder, not a program"),
+        ("", "give a command, for example exec:./my_engine"),
         ("'open", "no closing quotation"),
     ],
 )
@@ -173,18 +173,18 @@ def phases(*begun, state=(0.0,) * 4):
     return states(*START, phases=told)
 
 
-ROWS = "no rows of numbers, all as long"
+ROWS = "not rows of numbers of equal length"
 BY_FAULT = {
     "exit": "ended without answer (exit status 3); its standard error ends with: a first line / it went wrong here",
     "closed": "ended without answer (it closed its output)",
-    "no end": "and no end of it",
+    "no end": "bytes as its answer without a newline",
     **({"crash": "ended without answer (SIGKILL)"} if os.name == "posix" else {}),
 }
 BY_ANSWER = {
-    "step 1 done": "wrote a line that is no JSON: 'step 1 done'",
-    "": "wrote a line that is no JSON: ''",
-    "[" * 50_000: "wrote a line that is no JSON: '[[[",
-    "[1, 2]": "wrote a line that is no JSON object: '[1, 2]'",
+    "step 1 done": "wrote a line that is not JSON: 'step 1 done'",
+    "": "wrote a line that is not JSON: ''",
+    "[" * 50_000: "wrote a line that is not JSON: '[[[",
+    "[1, 2]": "wrote a line that is not a JSON object: '[1, 2]'",
     '{"states": []}\n{"states": []}': "wrote more than one line as its answer",
     '{"state": [1.0]}': 'answered without "states": \'{"state": [1.0]}\'',
     '{"states": [[1.0], [1.0, 2.0]]}': f"{ROWS}: [[1.0], [1.0, 2.0]]",
@@ -192,7 +192,7 @@ BY_ANSWER = {
     states("0.1", "1", "1", "1"): ROWS,
     states(1.0, True, 1.0, 1.0): ROWS,
     states(10**400, 1, 1, 1): ROWS,
-    phases(("slip", True)): f'answered with "start" that are {ROWS.partition(",")[0]}',
+    phases(("slip", True)): f'answered with "start" that are {ROWS}',
     phases(("glide", 0.0)): "a phase {'kind': 'glide', … its \"kind\" must be one of",
     phases(("slip", 0.0), state=(1.0,)): 'and "state" 4 numbers',
 }
@@ -207,8 +207,8 @@ UNSUPPORTED = {
 BAD = {
     phases(("slip", 0.5), ("stick", 0.2)): "phases[0] lasts from 0.5 to 0.2 s: phases must follow each other",
     phases(("slip", -1.0)): "phases[0] lasts from -1 to 1 s: phases must follow each other",
-    '{"states": [[1, 1, 1, 1], [1, 1, 1, 1]]}': "states have shape (2, 4): they must have (3, 4)",
-    json.dumps({"states": [[1, 1, 1]] * 3}): "states have shape (3, 3): they must have (3, 4)",
+    '{"states": [[1, 1, 1, 1], [1, 1, 1, 1]]}': "states have shape (2, 4): expected (3, 4)",
+    json.dumps({"states": [[1, 1, 1]] * 3}): "states have shape (3, 3): expected (3, 4)",
     states(1.0, float("nan"), 1.0, 1.0): "the state at t = 1 s is not finite",
     states(1.0, None, 1.0, 1.0): "the state at t = 1 s is not finite",
 }
