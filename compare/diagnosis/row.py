@@ -1,4 +1,4 @@
-"""A row of the matrix: what was found of one engine, and what that means in sentences."""
+"""A row of the matrix: results for one engine, and sentences that explain them."""
 
 from __future__ import annotations
 
@@ -20,41 +20,41 @@ from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
 LEAST_DEVIATION = 1e-8
-"""Of a force or its direction, relative, that is told."""
+"""Smallest reported relative deviation of a force or its direction."""
 
 FALLS = 0.3
-"""Order in the step from which on something is taken to fall with it."""
+"""Order in the step above which a quantity counts as decreasing with it."""
 
 RESTS = 1e-9
-"""Speed in m/s, over that of what slides, below which a block is at rest."""
+"""Ratio of speed to sliding speed below which a block is at rest."""
 
 LEAST_LAG = 1e-6
-"""In s, that is told, if the force is known as well: slip turns by about 1 rad/s in the probe."""
+"""Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)
-"""Lags in steps that are called a step's."""
+"""Range of lags, in steps, that are reported in steps."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What was found of an engine.
+    """Results for an engine.
 
     Parameters
     ----------
     engine, version : str
-        What it calls itself.
+        Name and version of the engine.
     step : float
-        Of the finest rung, in s; NaN where the engine has a tolerance.
+        Step in s at the finest rung; NaN if the engine has a tolerance.
     law, creep, lag
-        What the probes say; None where they were not asked or gave nothing.
+        Results of the probes; None if not measured.
     motions : mapping
-        Of each motion that it was asked for, by name.
+        Errors of the simulated motions, by name.
     gaps : mapping
-        Why a part has no result, by its name.
+        Reason why a part has no result, by name.
     not_simulated : tuple of str
-        Parts that the engine says it does not simulate.
+        Parts that the engine does not support.
     seconds : float
-        That all took, on the clock.
+        Total wall-clock time in s.
 
     """
 
@@ -71,7 +71,7 @@ class Row:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What the engine is, in a few sentences, the law first."""
+        """Diagnosis in a few sentences, the friction law first."""
         said = []
         if self.law is not None:
             said.append(_of_law(self.law))
@@ -93,27 +93,27 @@ class Row:
 
     @property
     def _refined(self) -> str:
-        """What falls from rung to rung."""
+        """Quantity that decreases from rung to rung: "tolerance" or "step"."""
         return "tolerance" if math.isnan(self.step) else "step"
 
     @property
     def _is_coulombs(self) -> bool:
-        """Whether it acts against the slip with μN: against that of an earlier time, then, if it lags."""
+        """True if friction opposes the slip with μN, possibly with a lag."""
         return self.law is not None and self.law.sure and not _is_other(self.law)
 
     @property
     def _least_lag(self) -> float:
-        """The lag in s that is told."""
+        """Smallest reported lag in s."""
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
 
     @property
     def empty(self) -> bool:
-        """Whether nothing was measured, and nothing failed."""
+        """True if nothing was measured and nothing failed."""
         return not (self.law or self.creep or self.lag or self.motions or self.gaps)
 
     @property
     def wrong(self) -> bool:
-        """Whether something was found that no smaller step cures."""
+        """True if a deviation was found that persists at smaller steps."""
         return (
             (self.law is not None and _is_other(self.law))
             or (self.creep is not None and _creeps_for_good(self.creep))
@@ -141,12 +141,12 @@ def _of_law(law: Friction) -> str:
 
 
 def _is_other(law: Friction) -> bool:
-    """Return whether a law is surely not Coulomb's."""
+    """Return whether a law certainly differs from Coulomb's."""
     return (law.sure and law.shape != CONE) or bool(_deviations(law))
 
 
 def _deviations(law: Friction) -> list[str]:
-    """Return in words in what a force is off its own law."""
+    """Return descriptions of the deviations of a force from its own law."""
     found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION)
     if abs(law.strength - 1.0) > least:
@@ -197,7 +197,7 @@ def _lags_for_good(lag: Lag, least: float) -> bool:
 
 
 def _of_motions(motions: dict[str, Motion], refined: str) -> str:
-    """Return how errors fall, and which motions tend to another end than the exact one."""
+    """Return a sentence on the order of the errors and the motions that do not converge to the exact one."""
     others = {name: motion for name, motion in motions.items() if not motion.converges}
     said = []
     orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
@@ -218,19 +218,19 @@ def _of_motions(motions: dict[str, Motion], refined: str) -> str:
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
-# --- The picture of the matrix: how far each engine is off each exact motion, rung by rung.
+# --- The figure of the matrix: error of each engine in each motion against the rung.
 #
-# From rung to rung a fixed step is halved; a tolerance falls to an eighth. The dotted line is a tenth of what
-# another law would change.
+# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to
+# another friction law.
 
 MARKERS = "os^Dvx+*"
 
 LEAST = 1e-16
-"""In m: what is shown of less."""
+"""Smallest plotted error in m; smaller errors are drawn there."""
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """Return a panel for each motion that any engine was asked for, with a line for each engine."""
+    """Return a figure with a panel for each simulated motion and a line for each engine."""
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
     columns = min(4, len(names))
     figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
@@ -250,11 +250,11 @@ def drawn(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-# --- The files of a matrix: numbers and sentences as JSON, and the picture.
+# --- Files of a matrix: numbers and sentences as JSON, and the figure.
 
 
 def write_rows(rows: Sequence[Row], folder: Path) -> None:
-    """Write what is found so far into ``folder``/matrix.json; a file that is there is complete."""
+    """Write the rows available so far to ``folder``/matrix.json; the file is replaced atomically."""
     content = [as_json(row) | {"sentences": list(row.sentences), "wrong": row.wrong} for row in rows]
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 
