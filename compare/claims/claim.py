@@ -26,7 +26,7 @@ that simulation.
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 THEORY = "theory"
-"""Engine name of claims that need no engine."""
+"""Engine name of claims about the theory alone."""
 
 Evidence = Literal["independent", "self-check", "algebra", "implied"]
 """Kind of evidence that agreement provides, see ``EVIDENCE``."""

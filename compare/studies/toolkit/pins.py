@@ -33,7 +33,7 @@ def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
 
 
 def first_release(run: Trajectory) -> float:
-    """Return the end of the first stick phase in s; inf if it does not end, NaN if the motion starts with slip."""
+    """Return the end of the first stick phase in s: inf if it does not end, NaN if the motion starts with slip."""
     first = run.phases[0]
     if first.kind != "stick":
         return math.nan

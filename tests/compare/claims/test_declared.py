@@ -1,4 +1,4 @@
-"""Claims as declarations: what is known of them without measuring, and what a measurement makes of them."""
+"""Declared claims: properties known before the measurement, and results of the measurement."""
 
 import pickle
 from dataclasses import replace
@@ -20,7 +20,7 @@ ENGINE = Engine("exact", simulate)
 
 
 def study_of(*names):
-    """Return a study with the claims of these names, declared in this order."""
+    """Return a study with the named claims, declared in this order."""
     study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
 
     def rests(engine, loads=LOADS):
@@ -187,7 +187,7 @@ A caption.
 
 @pytest.fixture
 def folder(tmp_path):
-    """Of a study of the group pin."""
+    """Return the folder of a study in the group "pin"."""
     result = tmp_path / "pin" / "title"
     result.mkdir(parents=True)
     (result / "study.md").write_text(PROSE, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The matrix names the law that an engine has, and nothing that it has not."""
+"""The matrix names the friction law of an engine and reports no other deviations."""
 
 import functools
 import json
@@ -75,7 +75,7 @@ def test_coulombs_law_is_named_and_nothing_besides(made):
 
 
 def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
-    """MuJoCo's ellipse with Runge-Kutta steps has one of 5e-7 m/s per m/s, by which μ seemed 0.0025 % too large."""
+    """MuJoCo's ellipse with Runge-Kutta steps has an impulse of 5e-7 m/s per m/s; μ seemed 0.0025 % too large."""
 
     def simulate(pin, start, times, *, tolerance):
         found = reference.simulate(
@@ -107,7 +107,7 @@ def test_a_law_is_open_where_another_fits_as_well():
 
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
     fixed, said = sentences(engine("fixed", smooth=1e-2))
-    # What is smoothed acts on the slip before the step, which is larger by what the step takes.
+    # Smoothing acts on the slip before the step, which is larger by the change during the step.
     assert "smoothed as min(v/ε, 1), and ε = 0.00" in said
     assert said.endswith("m/s is the same at every step.")
     assert fixed.wrong
@@ -139,7 +139,7 @@ def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
 def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_faster(order):
-    """A smoothed law may converge as slowly as that, and is not another law."""
+    """A smoothed law may converge that slowly without being another law."""
     ladder = Ladder.of(RIGHT, lambda tolerance: 1.0 + RIGHT.step_at(tolerance) ** order)
     off = abs(ladder.finest - 1.0)
     assert off <= ladder.error <= 50.0 * off

@@ -1,4 +1,4 @@
-"""The matrix from the command line."""
+"""The matrix command."""
 
 import json
 import math
