@@ -18,7 +18,7 @@ Kind = Literal["formula", "conservation", "order", "trajectory"]
 """Source of the prediction.
 
 "formula": a closed form, an eigenvalue, the root of a balance, or the end state that a theory predicts.
-"conservation": energy or momentum, without another solution. "order": the order at which an error falls.
+"conservation": energy or momentum, without another solution. "order": the order of an error.
 "trajectory": another simulation, or a quantity read from it. An engine passes the last if it shares a mistake with
 that simulation.
 """
@@ -81,8 +81,8 @@ class ErrorBudget:
     model : float
         Size of the first neglected term of an approximation; zero for an identity.
     resolution : float
-        Largest total error at which agreement is conclusive. With a larger error the claim may still agree to a
-        coarser grade, see ``Claim.grade``.
+        Largest total error of a conclusive agreement. With a larger error the claim may still agree to a coarser
+        grade, see ``Claim.grade``.
 
     """
 
@@ -138,8 +138,7 @@ class Claim:
     answers : bool
         True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
     named : mapping
-        Names by which texts quote an element (its flat index), or all elements (None), see
-        ``compare.report.quotes``.
+        Names for quotes of an element (its flat index), or of all elements (None), see ``compare.report.quotes``.
     identity : str
         Permanent id, such as "fig06/rests"; "" for a claim made by hand.
     size : float or broadcastable array, optional
@@ -303,7 +302,7 @@ class Claim:
     def relative_error(self) -> float:
         """Largest ratio of total error to ``size``, by default the largest prediction of the same unit.
 
-        It is infinite for a size of zero and for orders and answers, which have no scale.
+        It is infinite for a size of zero, and for orders and answers because they lack a scale.
         """
         if self.answers or self.kind == "order":
             return math.inf
@@ -324,7 +323,7 @@ class Claim:
 
     @cached_property
     def grade(self) -> Grade | None:
-        """Finest grade at which the claim is conclusive; None if only its resolution can decide."""
+        """Finest grade that the relative error permits; None if only the resolution can decide."""
         relative = self.relative_error
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 

@@ -24,7 +24,7 @@ class Declared:
     sentence, equation, kind, unit, note, basis, implied_by, named
         As in :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the member's name.
     resolution : float, optional
-        Largest total error at which agreement is conclusive; None if the measurement contains it.
+        Largest total error of a conclusive agreement; None if the measurement contains it.
     swept : tuple of str
         Parameters of the system that the claim varies.
     each : mapping

@@ -71,7 +71,7 @@ def measured_eigenvalues(
     duration : float
         Duration in s, short enough for |Im λ|·duration < π.
     frame_speed : float
-        Angular velocity in rad/s of the axes in which the motion is steady.
+        Angular velocity in rad/s of the axes that make the motion steady.
 
     """
     state = np.asarray(state, dtype=float)

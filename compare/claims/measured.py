@@ -29,7 +29,7 @@ class Measured:
     model : float
         Size of the first neglected term of an approximation.
     resolution : float, optional
-        Largest total error at which agreement is conclusive; overrides the declared one.
+        Largest total error of a conclusive agreement; overrides the declared one.
     components : sequence of str
         Names along the last axis, such as "x in m"; () for one quantity.
     at : mapping
@@ -46,7 +46,7 @@ class Measured:
     data : mapping
         Arrays by name, for the figures.
     named : mapping
-        Names by which texts quote an element (its flat index), in addition to the declared ones.
+        Names for quotes of an element (its flat index), in addition to the declared ones.
     size : float or broadcastable array, optional
         Scale of a relative error, see ``Claim.relative_error``.
     answers : bool

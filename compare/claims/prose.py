@@ -45,7 +45,7 @@ class Prose:
     paper : str
         Statements of the paper.
     section : str
-        Heading under which the overview lists the study.
+        Heading of the study's group in the overview.
     finding : str
         Answer to a question that the paper leaves open, for the first screen; shown while all claims agree.
     figures : mapping

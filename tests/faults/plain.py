@@ -31,7 +31,7 @@ MOST_STEPS = 45_000
 """Twice the number of steps of the longest sound motion; a wrong equation may be singular."""
 
 MOST_ALIKE = 200
-"""Number of equal steps after which LSODA is restarted.
+"""Number of equal steps before LSODA is restarted.
 
 LSODA bounds its steps by the last stiffness that it computed. On a straight path its predictor is exact, so it never
 computes the stiffness again, and a released block would keep the steps of its first moment.

@@ -79,7 +79,7 @@ def steady_motion(
 ) -> SteadyMotion | None:
     """Return the steady motion near ``guess`` from the engine's flow; None if the search fails.
 
-    The unknowns are the state and the period T, after which the state repeats except for the disc's angle. Without
+    The unknowns are the state and the period T. After T the state repeats, except for the disc's angle. Without
     offset, the centre moves around the axis by an angle θ during T; then y = 0 at the start and θ is unknown instead.
 
     Parameters
@@ -145,7 +145,7 @@ def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float
 
 
 def _share(disc: DiscOnDisc) -> float:
-    """Return the angle in rad by which a disc turns in one period."""
+    """Return the rotation of a disc in one period, in rad."""
     return 2.0 * math.pi / (disc.contact_points or SYMMETRY)
 
 

@@ -63,7 +63,7 @@ class Harmonic:
 
 
 Pieces = Sequence[tuple[float, Harmonic]]
-"""Harmonics with the times in s at which each begins; the first is the start of the motion."""
+"""Harmonics with their start times in s; the first is the start of the motion."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Chain:
 
     @cached_property
     def breaks(self) -> list[float]:
-        """Times in s at which pieces begin."""
+        """Start times of all pieces in s."""
         return sorted({begin for pieces in (*self.torques, *self.capacities) for begin, _ in pieces})
 
     @cached_property
@@ -244,6 +244,6 @@ class Motion:
         return found
 
     def switches(self, clutch: int) -> list[tuple[float, int]]:
-        """Return the times in s at which a clutch changes mode, each with the new mode."""
+        """Return the times in s of a clutch's mode changes, each with the new mode."""
         modes = [(phase.begin, phase.modes[clutch]) for phase in self.phases]
         return [later for earlier, later in itertools.pairwise(modes) if later[1] != earlier[1]]
