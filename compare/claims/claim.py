@@ -32,10 +32,10 @@ Evidence = Literal["independent", "self-check", "algebra", "implied"]
 """Kind of evidence that agreement provides, see ``EVIDENCE``."""
 
 EVIDENCE: dict[Evidence, str] = {
-    "independent": "beside a formula, a conservation law, an order of convergence, or a code that shares nothing",
-    "self-check": "an engine against itself: at another tolerance, or with the same law of friction on both sides",
-    "algebra": "formulas of the theory against each other; no engine takes part",
-    "implied": "it follows from another verdict that agrees, to which it adds nothing",
+    "independent": "comparison with a formula, a conservation law, an order of convergence or an independent code",
+    "self-check": "an engine against itself, at another tolerance or with the same friction law on both sides",
+    "algebra": "formulas of the theory against each other, without an engine",
+    "implied": "consequence of another verdict that agrees; not counted as additional evidence",
 }
 """Descriptions of the kinds of evidence, the strongest kind first."""
 
@@ -95,7 +95,10 @@ class ErrorBudget:
         object.__setattr__(self, "model", float(model))
         object.__setattr__(self, "resolution", float(resolution))
         if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
-            raise ValueError("an error budget takes errors >= 0 and a resolution > 0")
+            raise ValueError(
+                f"error budget: numerical and model errors must be >= 0 (model = {self.model:g}), "
+                f"the resolution ({self.resolution:g}) must be > 0"
+            )
 
     @property
     def total(self) -> FloatArray:
@@ -225,7 +228,9 @@ class Claim:
                 f"claim {sentence!r}: basis = {self.basis!r}: it must be one of {', '.join(BASES)}"
             )
         if self.basis == "algebra" and self.engine != THEORY:
-            raise ValueError(f"claim {sentence!r} is about {self.engine}: algebra is of the theory alone")
+            raise ValueError(
+                f"claim {sentence!r}: basis = 'algebra' requires engine = {THEORY!r}, not {self.engine!r}"
+            )
         if self.predicted.shape != self.measured.shape:
             raise ValueError(
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
@@ -234,13 +239,16 @@ class Claim:
         mixed = [unit.strip() for unit in self.unit.split(",")]
         if len(mixed) > 1 and any(_unit(name) not in mixed for name in (self.axes or ((),))[-1] or ("",)):
             raise ValueError(
-                f"claim {sentence!r} has numbers in {self.unit}: each component must say which, as 'x in m'"
+                f"claim {sentence!r}: unit = {self.unit!r}: each component must name its unit, such as 'x in m'"
             )
         if self.predicted.size == 0:
-            raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+            raise ValueError(f"claim {sentence!r}: predicted is empty: it must contain at least one number")
         for name, place in self.named.items():
             if place is not None and not 0 <= place < self.predicted.size:
-                raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
+                raise ValueError(
+                    f"claim {sentence!r}: named[{name!r}] = {place}: "
+                    f"it must be from 0 to {self.predicted.size - 1}, or None"
+                )
         if np.broadcast_shapes(numerical.shape, self.predicted.shape) != self.predicted.shape:
             raise ValueError(
                 f"claim {sentence!r}: numerical error has shape {numerical.shape}, "

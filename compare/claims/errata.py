@@ -157,7 +157,7 @@ def _growth_beside_the_equilibrium() -> Evidence:
     simulated, _ = measured_eigenvalues(reference, FIG9, equilibrium.state, duration=1.0)
     return Evidence(
         f"growth rate in 1/s of the slowest deviation from the self-centred equilibrium of Fig. 9's disc at μN = "
-        f"{FIG9.friction_force:g} N, X0 = {FIG9.offset:g} m; exact: from simulated deviations; printed: of a pin",
+        f"{FIG9.friction_force:g} N, X0 = {FIG9.offset:g} m; exact: from simulated deviations; printed: for a pin",
         exact=float(np.max(simulated.real)),
         printed_value=equilibrium_eigenvalues(pin_of(FIG9))[0].real,
         corrected_value=equilibrium.eigenvalues[0].real,

@@ -191,7 +191,7 @@ def decided(
         except Exception as error:  # any error: the engine's own step succeeded
             return (
                 answer,
-                f"At a step {share:g} times as short as the engine's own it failed: {printable(error)}",
+                f"The run with 1/{share:g} of the engine's own step failed: {printable(error)}",
             )
-        note = f"Asked at a step {share:g} times as short as the engine's own, which leaves it open."
+        note = f"Measured with 1/{share:g} of the engine's own step, which leaves the claim inconclusive."
     return answer, note

@@ -87,8 +87,8 @@ class Measured:
             len(own) not in (0, n) for own, n in zip(names, shape, strict=True)
         ):
             raise ValueError(
-                f"numbers of shape {shape} have names for {tuple(len(own) for own in names)} places: "
-                "as many are needed"
+                f"numbers of shape {shape} have names for {tuple(len(own) for own in names)} elements: "
+                "both must be equal; change at or components"
             )
         return tuple(names)
 

@@ -70,7 +70,7 @@ class Prose:
         text = path.read_text(encoding="utf-8")
         for name, word in words.items():
             if f"{{{name}}}" not in text:
-                raise ValueError(f"{path} has no {{{name}}}")
+                raise ValueError(f"{path}: {{{name}}} is missing; add it or remove {name} from words")
             text = text.replace(f"{{{name}}}", word)
         parts = re.split(r"^(#+) +(.+)$", text, flags=re.MULTILINE)
         sections = [
@@ -81,7 +81,7 @@ class Prose:
         group = path.parents[path.name == NAME].name
         if depth != "#" or group not in SECTIONS:
             raise ValueError(
-                f"{path} must begin with a title, and lie in {', '.join(SECTIONS)}, not {group!r}"
+                f"{path} must begin with a title, and its folder must be one of {', '.join(SECTIONS)}, not {group!r}"
             )
         return cls(
             title,

@@ -16,11 +16,12 @@ IntArray = NDArray[np.int64]
 CONFIDENCE = 0.95
 
 SAMPLE = (
-    f"Wilson's interval of {100.0 * CONFIDENCE:g} % for independent starts; what is undecided may be any end"
+    f"Wilson's interval of {100.0 * CONFIDENCE:g} % for independent initial states; "
+    "undecided ones may have any end state"
 )
 GRID = (
-    "from the cells of which all corners end like this to those of which one does (or is undecided), as parts of the "
-    "area: a bound as long as the boundary passes only through cells whose corners differ"
+    "fractions of the area: cells with this end state at all corners, to cells with at least one such or undecided "
+    "corner; valid bounds if the boundary passes only through cells with different corners"
 )
 
 

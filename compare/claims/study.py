@@ -146,7 +146,9 @@ class Study:
         Raises ``TypeError`` for another name.
         """
         if unknown := functions.keys() - PROVIDED:
-            raise TypeError(f"{self.name} provides {', '.join(unknown)}: known are {', '.join(PROVIDED)}")
+            raise TypeError(
+                f"study {self.name} cannot provide {', '.join(unknown)}: expected {', '.join(PROVIDED)}"
+            )
         self.provided.update(functions)
 
     @property
@@ -221,7 +223,9 @@ class Study:
             names = {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
             for case, _ in declared.cases():
                 if declared.identity(self.name, case) in names:
-                    raise ValueError(f"{self.name} has two claims {declared.identity(self.name, case)}")
+                    raise ValueError(
+                        f"duplicate claim id {declared.identity(self.name, case)}: rename the function or the case"
+                    )
             self.declared.append(declared)
             return function
 
@@ -295,7 +299,7 @@ class Study:
         resolution = declared.resolution if measured.resolution is None else measured.resolution
         if resolution is None:
             raise ValueError(
-                f"claim {declared.sentence!r}: neither declaration nor measurement has a resolution"
+                f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
             )
         return Claim(
             declared.sentence_of(case),

@@ -127,7 +127,7 @@ CASES = {
         resolution=0.08,
     ),
     "whirl": Case(
-        title="radius of the whirl without an offset, (11)",
+        title="radius of the whirl without offset, (11)",
         sentence="The whirl's radius is that of (11)",
         kind="formula",
         system=_CENTRED,
@@ -151,8 +151,8 @@ CASES = {
         equation="(6)",
     ),
     "release": Case(
-        title="a pin that sticks for 1.5 s and lets go",
-        sentence="A pin lets go when Coulomb's law says",
+        title="a pin that sticks for 1.5 s and is then released",
+        sentence="The release of a pin follows Coulomb's law",
         kind="trajectory",
         system=FIG5,
         start=_UNTIL_RELEASE,

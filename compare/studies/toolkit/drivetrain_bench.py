@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel, EnergyBalance
 
 
-SOURCE = "the passenger car of exudyn_models.drivetrain.parameters; torque and slip: assumed"
+SOURCE = "passenger car of exudyn_models.drivetrain.parameters; torque and slip are assumed"
 
 RPM = math.pi / 30.0
 """One revolution per minute in rad/s."""
@@ -153,8 +153,8 @@ def balance_of(balances: Sequence[EnergyBalance], parameters: Mapping[str, float
         value=found,
         error=change_as_error(found, finer),
         parameters=parameters,
-        note="The largest of gains less losses less the growth of what is stored, over the energy turned over, "
-        f"{balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
+        note="Largest difference between gains, losses and the growth of stored energy, relative to the energy "
+        f"turned over, {balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
     )
 
 

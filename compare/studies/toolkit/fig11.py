@@ -25,7 +25,7 @@ DISCS = {"the continuous ring": RING, "six points": SIX}
 START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
 """x, y, angle, vx, vy, spin at the largest radius of the modulated cycle for X0 = 0, rounded."""
 
-SOURCE = "Fig. 11, which leaves out X0"
+SOURCE = "Fig. 11, which omits X0"
 
 
 def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:

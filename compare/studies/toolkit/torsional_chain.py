@@ -156,7 +156,7 @@ class Chain:
                 if signs[i] == 0.0 and mode != OPEN
             ):
                 return modes
-        raise ValueError(f"no combination of modes goes on from t = {t:g} s")
+        raise ValueError(f"no consistent combination of clutch modes after t = {t:g} s")
 
 
 @dataclass(frozen=True)
