@@ -62,12 +62,12 @@ def _shapes() -> tuple[Shape, ...]:
     for sides in SIDES:
         outside = 1.0 / math.cos(math.pi / sides)
         for tilt, across in ((0.0, "a corner on"), (math.pi / sides, "a side across")):
-            name = f"pyramid of {sides} sides with {across} the x axis"
-            names = {f"{name}, inside of the cone": 1.0, f"{name}, around the cone": outside}
+            name, end = f"pyramid with {sides} sides", f"with {across} the x axis"
+            names = {f"{name} inside the cone, {end}": 1.0, f"{name} around the cone, {end}": outside}
             if sides == 4 and tilt == 0.0:
-                names = {"pyramid of 4 sides: it acts along the nearest axis": 1.0} | names
+                names = {"pyramid with 4 sides that acts along the nearest axis": 1.0} | names
             if sides == 4 and tilt > 0.0:
-                names = {"box: each axis has its own": outside} | names
+                names = {"box with a separate limit for each axis": outside} | names
             found.append(Shape(functools.partial(_polygon, sides, tilt), names))
     return tuple(found)
 

@@ -81,7 +81,7 @@ class Row:
             said.append(_of_lag(self.lag, self.step, self._least_lag))
         said.append(_of_motions(self.motions, self._refined))
         for reason, names in self._gaps_by_reason.items():
-            said.append(f"No result of {', '.join(names)}: {reason}.")
+            said.append(f"No result for {', '.join(names)}: {reason}.")
         return tuple(filter(None, said))
 
     @property
@@ -125,19 +125,19 @@ class Row:
 def _of_law(law: Friction) -> str:
     if law.misfit > max(DISTINCT * law.error, FITS):
         return (
-            f"No known law fits the friction: the best one, the {law.shape}, "
-            f"misses it by {error_text(law.misfit)} times μN."
+            f"No known friction law fits: the best fit, a {law.shape}, "
+            f"deviates by {error_text(law.misfit)} times μN."
         )
     if not law.sure:
         return (
-            "Which law of friction it is stays open: "
-            f"forces are known only to within {error_text(law.error)} times μN."
+            "The friction law could not be identified: "
+            f"the error of the forces is {error_text(law.error)} times μN."
         )
     deviations = _deviations(law)
     name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
     if deviations:
         return f"{name}, but {' and '.join(deviations)}."
-    return f"{name}, its force right to within {error_text(law.error)} times μN."
+    return f"{name}, accurate to {error_text(law.error)} times μN."
 
 
 def _is_other(law: Friction) -> bool:
@@ -156,7 +156,7 @@ def _deviations(law: Friction) -> list[str]:
         )
     if abs(law.angle) > least:
         found.append(
-            f"its force is turned by {error_text(math.degrees(law.angle))}° from where it should act "
+            f"its force is rotated by {error_text(math.degrees(law.angle))}° "
             f"(±{error_text(math.degrees(law.error))}°)"
         )
     return found
@@ -164,17 +164,14 @@ def _deviations(law: Friction) -> list[str]:
 
 def _of_creep(creep: Creep, refined: str) -> str:
     if abs(creep.speed) < RESTS * SPEED:
-        return "A block that friction can hold rests."
-    how = f"falls with the {refined}" if creep.order > FALLS else f"is the same at every {refined}"
+        return "A block loaded below μN stays at rest."
+    how = f"decreasing with the {refined}" if creep.order > FALLS else f"independent of the {refined}"
     if creep.smoothing:
         return (
-            f"A block that friction can hold creeps: friction is smoothed as {creep.smoothing}, and "
-            f"ε = {error_text(creep.epsilon)} m/s {how}."
+            f"A block loaded below μN creeps: friction is regularised as {creep.smoothing} with "
+            f"ε = {error_text(creep.epsilon)} m/s, {how}."
         )
-    return (
-        f"A block that friction can hold creeps at {error_text(abs(creep.speed))} m/s under half of "
-        f"μN = {FRICTION:g} N, which {how}."
-    )
+    return f"A block loaded with half of μN = {FRICTION:g} N creeps at {error_text(abs(creep.speed))} m/s, {how}."
 
 
 def _creeps_for_good(creep: Creep) -> bool:
@@ -184,11 +181,11 @@ def _creeps_for_good(creep: Creep) -> bool:
 def _of_lag(lag: Lag, step: float, least: float) -> str:
     if abs(lag.seconds) < least:
         return ""
-    when = "earlier" if lag.seconds > 0.0 else "later"
+    verb = "lags" if lag.seconds > 0.0 else "leads"
     if _lags_for_good(lag, least):
-        return f"It acts along the slip {error_text(abs(lag.seconds))} s {when}, at every step."
+        return f"Friction {verb} the slip by {error_text(abs(lag.seconds))} s at every step size."
     if lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
-        return f"It acts along the slip {error_text(abs(lag.seconds) / step)} steps {when}."
+        return f"Friction {verb} the slip by {error_text(abs(lag.seconds) / step)} steps."
     return ""
 
 
@@ -203,17 +200,15 @@ def _of_motions(motions: dict[str, Motion], refined: str) -> str:
     orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
     if orders:
         least, most = (f"{order:.1f}" for order in (min(orders), max(orders)))
-        said.append(
-            f"Its errors fall as the {refined} to the power {least}" + f" to {most}" * (least != most)
-        )
+        said.append(f"errors are of order {least}" + f" to {most}" * (least != most) + f" in the {refined}")
     open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
     if open_:
         said.append(f"too coarse to tell: {', '.join(open_)}")
     if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
-        said.append(f"nothing changes with the {refined}, so that no error can be told from another law")
+        said.append(f"results do not change with the {refined}, so an error cannot be told from another law")
     elif others:
         off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
-        said.append(f"what it tends to is another motion than the exact one, off by: {off}")
+        said.append(f"converges to a motion that deviates from the exact one: {off}")
     text = "; ".join(said)
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
@@ -241,7 +236,9 @@ def drawn(rows: Sequence[Row]) -> Figure:
                 rungs = np.arange(RUNGS - len(errors), RUNGS) + 1
                 panel.semilogy(rungs, np.maximum(errors, LEAST), marker=marker, label=row.engine)
         panel.axhline(MOTIONS[name].resolution, color="0.6", linewidth=0.8, linestyle=":")
-        panel.set(title=name, xticks=range(1, RUNGS + 1), xlabel="rung, to finer steps", ylabel="error in m")
+        panel.set(
+            title=name, xticks=range(1, RUNGS + 1), xlabel="rung (finer to the right)", ylabel="error in m"
+        )
     for panel in panels[len(names) :]:
         panel.set_visible(False)
     lines = {str(line.get_label()): line for panel in panels for line in panel.get_lines()}
