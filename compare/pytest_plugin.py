@@ -52,15 +52,15 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="MODULE:FUNCTION",
-        help="engine to judge, the name of an installed one, exec:COMMAND, files:DIR or fmu:FILE; "
-        "several times for several",
+        help="Engine to test: MODULE:FUNCTION, the name of an installed engine, exec:COMMAND, files:DIR or fmu:FILE; "
+        "can be repeated",
     )
     group.addoption(
         "--level",
         dest="friction_discs_level",
         choices=("quick", "full"),
         default="full",
-        help="all studies, or those that take seconds (default: full)",
+        help="Studies to measure: all, or only those that take seconds (default: full)",
     )
     group.addoption(
         "--study",
@@ -68,7 +68,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="NAME",
-        help="study to measure, as friction-discs list names it; several times for several (default: all)",
+        help="Study to measure, by its name in friction-discs list; can be repeated (default: all)",
     )
     group.addoption(
         "--study-limit",
@@ -76,7 +76,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=float,
         default=120.0,
         metavar="SECONDS",
-        help="time after which a study of an engine is given up (default: 120)",
+        help="Time limit in s for one study of one engine (default: 120)",
     )
     group.addoption(
         "--min-conclusive",
@@ -84,8 +84,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=int,
         default=1,
         metavar="N",
-        help=f"how many claims have to pass, or pytest ends with status {NOTHING_SHOWN} if none fails (default: 1); "
-        f"it ends with status {NOTHING_MEASURED} if an engine has no verdict at all",
+        help=f"Smallest number of claims that must pass; otherwise the exit status is {NOTHING_SHOWN} (default: 1). "
+        f"The exit status is {NOTHING_MEASURED} if an engine has no verdict at all",
     )
 
 
@@ -133,7 +133,7 @@ def _instead_of(module: str) -> str:
     parts = module.partition("::")[0].removeprefix(f"{STUDY_MODULES}.").replace("_", "-").split(".")
     named = {"-".join(parts[i:j]) for i in range(len(parts)) for j in range(i + 1, len(parts) + 1)}
     name = next((study.name for study in ALL if study.name in named), "NAME")
-    return f"{module}: a study is asked for by its name, with --pyargs compare --study {name}"
+    return f"{module}: select a study by its name, with --pyargs compare --study {name}"
 
 
 def pytest_report_header(config: pytest.Config) -> str | None:
@@ -141,7 +141,7 @@ def pytest_report_header(config: pytest.Config) -> str | None:
     names = config.getoption("friction_discs_engines", None)
     if names is None:
         return None
-    return f"friction-discs: {', '.join(names) or 'no engine, name one with --engine MODULE:FUNCTION'}"
+    return f"friction-discs: {', '.join(names) or 'no engine given; use --engine MODULE:FUNCTION'}"
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
@@ -210,11 +210,11 @@ class ClaimTest(pytest.Item):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
         if not claims and self.study.only:
-            self._without_verdict(NOT_ATTEMPTED, f"of {self.engine} the study does not claim it")
+            self._without_verdict(NOT_ATTEMPTED, f"this claim does not apply to {self.engine}")
         elif not claims and outcome.not_simulated:
             self._without_verdict(NOT_ATTEMPTED, outcome.not_simulated)
         elif not claims:
-            pytest.fail("what the engine did gave no ground to measure this", pytrace=False)
+            pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
             pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS], self.engine), pytrace=False)
@@ -283,7 +283,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
     }
     if claim.answers:
-        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"
+        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} undecided"
         return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
     unit = f" {element.unit}" if element.unit else ""
     allowed = f"{error_text(element.total)}{unit}"
@@ -293,10 +293,10 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "predicted": f"{value_text(element.predicted, element.difference)}{unit}",
         "measured": f"{value_text(element.measured, element.difference)}{unit}",
         "difference": f"{error_text(element.difference)}{unit}",
-        "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, as the engine's own change says) "
+        "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, estimated from the engine) "
         f"+ {error_text(element.model)} (model)",
-        "resolution": f"{error_text(claim.budget.resolution)}{unit}: a larger budget shows nothing",
-        "element": f"{element.name}: of {element.count} the nearest to its budget or the farthest beyond"
+        "resolution": f"{error_text(claim.budget.resolution)}{unit}, the largest conclusive budget",
+        "element": f"{element.name}, the worst of {element.count} relative to the budget"
         if element.name
         else "",
         "largest": "; ".join(
@@ -306,9 +306,9 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         ),
     }
     first = (
-        f"differs by {error_text(element.difference)}{unit}, allowed are {allowed}"
+        f"differs by {error_text(element.difference)}{unit}; the error budget is {allowed}"
         if differs
-        else f"an error budget of {allowed} leaves it open"
+        else f"the error budget of {allowed} is too large for a verdict"
     )
     return _listed(first, lines | repeat)
 

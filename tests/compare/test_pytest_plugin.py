@@ -165,10 +165,10 @@ def test_a_failed_claim_shows_its_error_budget_and_how_to_repeat_it(judged):
     assert tag == "failure"
     for part in (
         "differs by ",
-        ", allowed are ",
+        "; the error budget is ",
         "predicted ",
         "measured ",
-        "(numerical, as the engine's own change says) + 0 (model)",
+        "(numerical, estimated from the engine) + 0 (model)",
         "friction-discs report sticking-domain --engine mine:resting",
     ):
         assert part in text, part
@@ -248,7 +248,7 @@ def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_
     assert f"{len(slide)} failed, {2 * len(slide) - left_open} passed" in output
     assert f" {3 * len(asked - slide)} not attempted" in output
     assert f" {left_open} inconclusive" in output or left_open == 0
-    assert ("inconclusive: an error budget of " in output) == (left_open > 0)
+    assert ("inconclusive: the error budget of " in output) == (left_open > 0)
     assert (
         "not attempted: example:runge_kutta does not simulate stick; "
         "example:runge_kutta does not simulate a disc on a continuous ring or a disc on single points ("
@@ -257,7 +257,7 @@ def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_
 
 FILE = str(ROOT / "compare" / "studies" / "pin" / "fig05" / "__init__.py")
 USAGE, NOTHING = pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED
-BY_ITS_NAME = "a study is asked for by its name, with --pyargs compare --study"
+BY_ITS_NAME = "select a study by its name, with --pyargs compare --study"
 REFUSED = [
     ("--pyargs compare --engine exudin", USAGE, "unknown engine 'exudin': did you mean 'exudyn'?"),
     ("--pyargs compare --engine exudyn --study-limit 0", USAGE, "--study-limit 0: it must be > 0 s"),
@@ -275,8 +275,8 @@ REFUSED = [
             "no_such_study": "NAME",
         }.items()
     ),
-    ("--pyargs compare", NOTHING, "name one with --engine MODULE:FUNCTION"),
-    (FILE, NOTHING, "name one with --engine MODULE:FUNCTION"),
+    ("--pyargs compare", NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
+    (FILE, NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
 ]
 
 
