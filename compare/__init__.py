@@ -1,1 +1,1 @@
-"""Engines compared with each other and with every formula: studies, claims, report, command line."""
+"""Comparison of engines with each other and with formulas: studies, claims, report and command line."""

@@ -1,12 +1,11 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
-Each study is a file, and each sentence that it claims a test, known without measuring. The
-first test of a study that runs measures all of it, in a process of its own that a time limit ends. A test fails
-where the claim differs or the engine has no answer. What the engine never promised is "not attempted", and what
-its errors leave open "inconclusive": neither is a pass.
+Each study is a file and each of its claim sentences a test, collected without measuring. The first test of a study
+measures the whole study in a separate process with a time limit. A test fails if the claim differs or the engine has
+no answer. Claims that the engine does not support are "not attempted", and claims that its errors leave open are
+"inconclusive"; neither is a pass.
 
-Without ``--pyargs compare``, or a file of this package, pytest does not notice this plugin: its options do not even
-exist.
+Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ STUDY_MODULES = "compare.studies"
 INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
 
 NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
-"""What a test without a verdict is called in pytest's totals, and its sign among the dots."""
+"""Names of tests without a verdict in pytest's totals, and their progress characters."""
 
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
@@ -40,7 +39,7 @@ NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses in addition to those of pytest: too few claims pass; an engine has no verdict."""
 
 
-# Options of these names may well be another's: they are there only for a run that asks for this package.
+# The option names may clash with another plugin, so they exist only in runs of this package.
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser) -> None:
     """Add the options to a run of ``compare``."""
     known = early_config.known_args_namespace
@@ -53,15 +52,15 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="MODULE:FUNCTION",
-        help="engine to judge, the name of an installed one, exec:COMMAND, files:DIR or fmu:FILE; "
-        "several times for several",
+        help="Engine to test: MODULE:FUNCTION, the name of an installed engine, exec:COMMAND, files:DIR or fmu:FILE; "
+        "can be repeated",
     )
     group.addoption(
         "--level",
         dest="friction_discs_level",
         choices=("quick", "full"),
         default="full",
-        help="all studies, or those that take seconds (default: full)",
+        help="Studies to measure: all, or only those that take seconds (default: full)",
     )
     group.addoption(
         "--study",
@@ -69,7 +68,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         action="append",
         default=[],
         metavar="NAME",
-        help="study to measure, as friction-discs list names it; several times for several (default: all)",
+        help="Study to measure, by its name in friction-discs list; can be repeated (default: all)",
     )
     group.addoption(
         "--study-limit",
@@ -77,7 +76,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=float,
         default=120.0,
         metavar="SECONDS",
-        help="time after which a study of an engine is given up (default: 120)",
+        help="Time limit in s for one study of one engine (default: 120)",
     )
     group.addoption(
         "--min-conclusive",
@@ -85,13 +84,13 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         type=int,
         default=1,
         metavar="N",
-        help=f"how many claims have to pass, or pytest ends with status {NOTHING_SHOWN} if none fails (default: 1); "
-        f"it ends with status {NOTHING_MEASURED} if an engine has no verdict at all",
+        help=f"Smallest number of claims that must pass; otherwise the exit status is {NOTHING_SHOWN} (default: 1). "
+        f"The exit status is {NOTHING_MEASURED} if an engine has no verdict at all",
     )
 
 
 def _is_own(argument: str, by_module: bool) -> bool:
-    """Return whether an argument is this package or in it: by its name after ``--pyargs``, else by its path."""
+    """Return whether an argument is within this package, by its name after ``--pyargs``, else by its path."""
     place = argument.partition("::")[0]
     if by_module and place.partition(".")[0] == __name__.partition(".")[0]:
         return True
@@ -104,7 +103,7 @@ def _engines(config: pytest.Config) -> list[str]:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuse a study or an engine that is not known, and a limit that is none."""
+    """Raise ``pytest.UsageError`` for an unknown study or engine, or an invalid time limit."""
     known = config.known_args_namespace
     for argument in known.file_or_dir if known.pyargs else ():
         if argument.startswith(f"{STUDY_MODULES}."):
@@ -128,25 +127,25 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _instead_of(module: str) -> str:
-    """Return what to ask for in place of a study's module, as "compare.studies.trajectories"."""
+    """Return the error message for a study's module, such as "compare.studies.trajectories"."""
     from compare.studies import STUDIES as ALL
 
     parts = module.partition("::")[0].removeprefix(f"{STUDY_MODULES}.").replace("_", "-").split(".")
     named = {"-".join(parts[i:j]) for i in range(len(parts)) for j in range(i + 1, len(parts) + 1)}
     name = next((study.name for study in ALL if study.name in named), "NAME")
-    return f"{module}: a study is asked for by its name, with --pyargs compare --study {name}"
+    return f"{module}: select a study by its name, with --pyargs compare --study {name}"
 
 
 def pytest_report_header(config: pytest.Config) -> str | None:
-    """Say what is judged, or how to say it."""
+    """Return the header line with the engines, or with the missing option."""
     names = config.getoption("friction_discs_engines", None)
     if names is None:
         return None
-    return f"friction-discs: {', '.join(names) or 'no engine, name one with --engine MODULE:FUNCTION'}"
+    return f"friction-discs: {', '.join(names) or 'no engine given; use --engine MODULE:FUNCTION'}"
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile | None:
-    """Take the modules of the studies, where an engine is to be judged."""
+    """Return the collector of a study's module, if an engine is given."""
     place = file_path.parent if file_path.name == "__init__.py" else file_path.with_suffix("")
     # a study is a module in the folder of its group, or a package
     if file_path.suffix != ".py" or STUDIES not in place.parents[1:2] or not _engines(parent.config):
@@ -163,7 +162,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile 
 
 
 class StudyFile(pytest.File):
-    """A study: the claims that it makes of each engine that it is about."""
+    """A study with a test for each claim and engine."""
 
     study: Study
 
@@ -191,14 +190,14 @@ class ClaimTest(pytest.Item):
 
     @classmethod
     def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
-        """Return the test of ``sentence``; its name is the sentence, and the engine's unless it is ``alone``."""
+        """Return the test of ``sentence``, named by the sentence and, unless ``alone``, the engine."""
         test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
         test.study, test.engine, test.sentence = parent.study, engine, sentence
         test.user_properties.append((ENGINE, engine))
         return test
 
     def reportinfo(self) -> tuple[Path, None, str]:
-        """Return where the claim is made, and its name."""
+        """Return the file of the claim, no line, and its name."""
         return self.path, None, f"{self.study.name}: {self.name}"
 
     def runtest(self) -> None:
@@ -211,11 +210,11 @@ class ClaimTest(pytest.Item):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
         if not claims and self.study.only:
-            self._without_verdict(NOT_ATTEMPTED, f"of {self.engine} the study does not claim it")
+            self._without_verdict(NOT_ATTEMPTED, f"this claim does not apply to {self.engine}")
         elif not claims and outcome.not_simulated:
             self._without_verdict(NOT_ATTEMPTED, outcome.not_simulated)
         elif not claims:
-            pytest.fail("what the engine did gave no ground to measure this", pytrace=False)
+            pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
             pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS], self.engine), pytrace=False)
@@ -225,7 +224,7 @@ class ClaimTest(pytest.Item):
             )
 
     def _asked_with(self) -> tuple[str, ...]:
-        """Return the parts of the study that the tests of this run are about, be it by -k, -m or their names."""
+        """Return the parts of the study that this run selects, including by -k, -m or node ids."""
         parts = self.study.sentences()
         tests = (test for test in self.session.items if isinstance(test, ClaimTest))
         mine = (test for test in tests if (test.study, test.engine) == (self.study, self.engine))
@@ -237,7 +236,7 @@ class ClaimTest(pytest.Item):
 
 
 class Bench:
-    """Measures each study with each engine once, as far as it is asked for, when its first claim is.
+    """Measures the selected parts of each study once for each engine, at its first claim.
 
     It is also a plugin that counts the results of each engine, including those from other processes.
     """
@@ -250,7 +249,7 @@ class Bench:
         self.counts: Counter[tuple[str, str]] = Counter()
 
     def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
-        """Return what ``parts`` of ``study`` find about the engine of that name, or why they find nothing."""
+        """Return the findings of ``parts`` of ``study`` for the engine of that name, or the failure."""
         from compare.run.runner import measured
 
         key = (study.name, engine)
@@ -264,7 +263,7 @@ class Bench:
             self.counts[_engine_of(report), _why_none(report) or report.outcome] += 1
 
     def pytest_unconfigure(self) -> None:
-        """End the process that measures."""
+        """End the measuring process."""
         self._workers.__exit__(None, None, None)
 
 
@@ -272,7 +271,7 @@ _BENCH = pytest.StashKey[Bench]()
 
 
 def _account(study: Study, claim: Claim, engine: str) -> str:
-    """Return a claim with the numbers that decide, and all that is needed to repeat it with the named engine."""
+    """Return a description of a claim: the deciding numbers, and the parameters and command that repeat it."""
     from compare.claims.claim import Verdict
     from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
 
@@ -284,7 +283,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
     }
     if claim.answers:
-        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"
+        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} undecided"
         return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
     unit = f" {element.unit}" if element.unit else ""
     allowed = f"{error_text(element.total)}{unit}"
@@ -294,10 +293,10 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "predicted": f"{value_text(element.predicted, element.difference)}{unit}",
         "measured": f"{value_text(element.measured, element.difference)}{unit}",
         "difference": f"{error_text(element.difference)}{unit}",
-        "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, as the engine's own change says) "
+        "error budget": f"{allowed} = {error_text(element.numerical)} (numerical, estimated from the engine) "
         f"+ {error_text(element.model)} (model)",
-        "resolution": f"{error_text(claim.budget.resolution)}{unit}: a larger budget shows nothing",
-        "element": f"{element.name}: of {element.count} the nearest to its budget or the farthest beyond"
+        "resolution": f"{error_text(claim.budget.resolution)}{unit}, the largest conclusive budget",
+        "element": f"{element.name}, the worst of {element.count} relative to the budget"
         if element.name
         else "",
         "largest": "; ".join(
@@ -307,9 +306,9 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         ),
     }
     first = (
-        f"differs by {error_text(element.difference)}{unit}, allowed are {allowed}"
+        f"differs by {error_text(element.difference)}{unit}; the error budget is {allowed}"
         if differs
-        else f"an error budget of {allowed} leaves it open"
+        else f"the error budget of {allowed} is too large for a verdict"
     )
     return _listed(first, lines | repeat)
 
@@ -319,13 +318,13 @@ def _listed(first: str, lines: dict[str, str]) -> str:
 
 
 def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] | None:
-    """Count claims without a verdict as what they are."""
+    """Return the category, character and word for a claim without a verdict."""
     why = _why_none(report)
     return (why, NO_VERDICT[why], why.upper()) if why else None
 
 
 def _why_none(report: pytest.TestReport) -> str:
-    """Return why a test has no verdict, "" for one that has, or that is another's."""
+    """Return why a test has no verdict; "" if it has one or is not a claim."""
     if report.when != "call" or not report.skipped:
         return ""
     return next((str(value) for name, value in report.user_properties if name == PROPERTY), "")
@@ -333,7 +332,7 @@ def _why_none(report: pytest.TestReport) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """End with status 7 if an engine has no verdict, or 6 if too few claims pass."""
+    """Set exit status 7 if an engine has no verdict, or 6 if too few claims pass."""
     config, names = session.config, _engines(session.config)
     if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return
@@ -345,7 +344,7 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 
 def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
-    """Yield in a line for each engine that failed what law of friction it has, and how its errors fall."""
+    """Yield a line with the short diagnosis of each engine that failed."""
     from compare.diagnosis.run import IN_SHORT, in_short
     from compare.run.runner import loaded
     from compare.run.workers import Workers
@@ -355,17 +354,17 @@ def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
             try:
                 (engine,) = loaded([name], workers)
                 yield f"{name}: {' '.join(in_short(engine, workers).sentences)}"
-            except ValueError as error:  # it can't even be imported
+            except ValueError as error:  # the engine cannot be imported
                 yield str(error)
 
 
 def _engine_of(report: pytest.TestReport) -> str:
-    """Return the engine that a test is about, "" for a test of somebody else."""
+    """Return the engine of a test, "" if the test is not a claim."""
     return next((str(value) for name, value in report.user_properties if name == ENGINE), "")
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    """Say why claims have no verdict, each reason once, and what is behind those that differ."""
+    """Write the diagnosis of failed engines, and each reason for missing verdicts once."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
         for line in _diagnoses(failed):
@@ -379,7 +378,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Keep the claims of a study in one process, since they are measured together."""
+    """Return a scheduler that keeps the claims of a study in one process, because they are measured together."""
     if not _engines(config) or config.getoption("dist") != "load":
         return None
     from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]

@@ -1,7 +1,4 @@
-"""What a verdict is made of: claims and studies, their errors, what agreement is worth.
-
-The names that most studies need are here.
-"""
+"""Claims, studies and error estimates; this package exports the names that most studies need."""
 
 from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.error_estimates import (

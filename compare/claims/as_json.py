@@ -1,7 +1,7 @@
-"""The one way from values to JSON and back: numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
+"""Conversion to JSON and back for numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
 
-JSON has no numbers for NaN and infinity: they are "nan", "inf" and "-inf", which ``float`` reads. All others come
-back to the last bit. Arrays and tuples are lists, dataclasses are their fields by name.
+NaN and infinity become "nan", "inf" and "-inf", which ``float`` reads. All other numbers are restored exactly. Arrays
+and tuples become lists, dataclasses become mappings of their fields.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from compare.claims.claim import Claim, ErrorBudget
 Kind = TypeVar("Kind")
 
 TYPE = "type"
-"""Says which of several dataclasses a field holds."""
+"""Key with the name of the dataclass, if a field allows several."""
 
 
 def as_json(value: Any) -> Any:
-    """Return numbers, arrays, tuples, mappings and dataclasses as JSON values; what is none of these stays."""
+    """Return numbers, arrays, tuples, mappings and dataclasses as JSON values; other values are unchanged."""
     if isinstance(value, np.ndarray):
         numbers = value.astype(float).tolist()
         return numbers if np.all(np.isfinite(value)) else as_json(numbers)
@@ -43,24 +43,24 @@ def as_json(value: Any) -> Any:
 
 
 def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
-    """Return the dataclass ``kind`` that ``as_json`` made ``content`` of.
+    """Return an instance of the dataclass ``kind`` from the output of ``as_json``.
 
-    Fields may be numbers, words, arrays, tuples of one type, and dataclasses. Raises ``KeyError``, ``TypeError`` or
-    ``ValueError`` for what is no such content.
+    Fields may be numbers, strings, arrays, tuples of one type, and dataclasses. Raises ``KeyError``, ``TypeError`` or
+    ``ValueError`` if ``content`` does not fit.
     """
     kinds = get_type_hints(kind)
     return kind(**{name: _value(kinds[name], item) for name, item in content.items()})
 
 
 def _tag(kind: Any, value: Any) -> Any:
-    """Return the value of a field of type ``kind``, with the name of its own type where several are possible."""
+    """Return the JSON value of a field of type ``kind``, with the name of its dataclass if several are allowed."""
     content = as_json(value)
     tagged = value is not None and _dataclasses(kind)
     return {TYPE: type(value).__name__} | content if tagged else content
 
 
 def _value(kind: Any, content: Any) -> Any:
-    """Return the value of type ``kind``."""
+    """Return the value of type ``kind`` from JSON."""
     if possible := _dataclasses(kind):
         return from_json(
             possible[content[TYPE]], {name: item for name, item in content.items() if name != TYPE}
@@ -75,18 +75,18 @@ def _value(kind: Any, content: Any) -> Any:
 
 
 def _dataclasses(kind: Any) -> dict[str, type[Any]]:
-    """Return the dataclasses by name of which ``kind`` is a union; none where it is something else."""
+    """Return the dataclasses in the union ``kind`` by name; empty if it is not a union."""
     several = get_args(kind) if get_origin(kind) is UnionType else ()
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
 
 
 def numbers_from_json(content: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the array of ``as_json``."""
+    """Return the array from the output of ``as_json``."""
     return np.array(content, dtype=float)
 
 
 def claim_as_json(claim: Claim) -> dict[str, Any]:
-    """Return the claim as JSON values; ``claim_from_json`` gives the same claim again, to the last bit."""
+    """Return the claim as JSON values; ``claim_from_json`` restores it exactly."""
     return {
         "sentence": claim.sentence,
         "equation": claim.equation,
@@ -115,7 +115,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 
 
 def claim_from_json(content: dict[str, Any]) -> Claim:
-    """Return the claim of ``claim_as_json``."""
+    """Return the claim from the output of ``claim_as_json``."""
     return Claim(
         content["sentence"],
         equation=content["equation"],

@@ -1,4 +1,4 @@
-"""A claim: a measured number beside the predicted one, with the error that is allowed to lie between them."""
+"""A claim: a measured and a predicted number, and the difference allowed between them."""
 
 from __future__ import annotations
 
@@ -15,41 +15,42 @@ from numpy.typing import ArrayLike
 from reference_model.systems import FloatArray
 
 Kind = Literal["formula", "conservation", "order", "trajectory"]
-"""What the prediction is taken from.
+"""Source of the prediction.
 
-"formula": a closed form, an eigenvalue, the root of a balance, or which of several ends a theory says;
-"conservation": energy or momentum, with no other solution beside; "order": how an error falls; "trajectory": another
-simulation's motion, or what is read off it. An engine that shares a mistake with that simulation passes the last.
+"formula": a closed form, an eigenvalue, the root of a balance, or the end state that a theory predicts.
+"conservation": energy or momentum, without another solution. "order": the order of an error.
+"trajectory": another simulation, or a quantity read from it. An engine passes the last if it shares a mistake with
+that simulation.
 """
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 THEORY = "theory"
-"""Stands for the engine of a claim in which none takes part."""
+"""Engine name of claims about the theory alone."""
 
 Evidence = Literal["independent", "self-check", "algebra", "implied"]
-"""What agreement is worth, see ``EVIDENCE``."""
+"""Kind of evidence that agreement provides, see ``EVIDENCE``."""
 
 EVIDENCE: dict[Evidence, str] = {
-    "independent": "beside a formula, a conservation law, an order of convergence, or a code that shares nothing",
-    "self-check": "an engine against itself: at another tolerance, or with the same law of friction on both sides",
-    "algebra": "formulas of the theory against each other; no engine takes part",
-    "implied": "it follows from another verdict that agrees, to which it adds nothing",
+    "independent": "comparison with a formula, a conservation law, an order of convergence or an independent code",
+    "self-check": "an engine against itself, at another tolerance or with the same friction law on both sides",
+    "algebra": "formulas of the theory against each other, without an engine",
+    "implied": "consequence of another verdict that agrees; not counted as additional evidence",
 }
-"""Kinds of evidence, from the one that counts to those that do not add to it, in words."""
+"""Descriptions of the kinds of evidence, the strongest kind first."""
 
 Basis = Literal["independent", "reference", "self-check", "algebra"]
-"""What evidence a claim is, before it is known which engine it is about.
+"""Kind of evidence before the engine is known.
 
-"reference": the prediction is a motion of the reference, or is computed with its law of friction. That is a
-self-check of the reference and of what shares code with it, and independent of all others.
+"reference": the prediction is a motion of the reference, or is computed with its friction law. It is a self-check for
+the reference and for engines that share its code, and independent for all others.
 """
 
 BASES: tuple[Basis, ...] = get_args(Basis)
 
 
 class Verdict(Enum):
-    """What a claim has shown; only AGREES is a pass."""
+    """Verdict on a claim; only AGREES is a pass."""
 
     AGREES = "agrees"
     DIFFERS = "differs"
@@ -57,7 +58,7 @@ class Verdict(Enum):
 
 
 class Grade(Enum):
-    """How finely a claim agrees: by its error over the size of what is predicted, see ``Claim.grade``."""
+    """Precision of a claim: its error relative to the predicted quantity, see ``Claim.grade``."""
 
     EXACT = "exact"
     FINE = "fine"
@@ -65,23 +66,23 @@ class Grade(Enum):
 
 
 GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
-"""The largest relative error of each grade."""
+"""Largest relative error of each grade."""
 
 
 @dataclass(frozen=True)
 class ErrorBudget:
-    """The difference that the engine's and the formula's own errors can explain.
+    """Difference that the errors of the engine and the formula can explain.
 
     Parameters
     ----------
     numerical : float or array
-        Estimated from the run itself (same run at another tolerance, Richardson), in the claim's unit. Not a
-        number where an engine gave none to estimate it from: then the claim differs.
+        Error in the claim's unit, estimated from the run itself (same run at another tolerance, Richardson). NaN if
+        the engine gave no number to estimate it from; the claim then differs.
     model : float
-        Zero for an identity; for an approximation the derived size of the first term left out.
+        Size of the first neglected term of an approximation; zero for an identity.
     resolution : float
-        The largest total budget with which agreement says all that the claim says. With a larger one it may still
-        say that the engine is right to a coarser grade, see ``Claim.grade``.
+        Largest total error of a conclusive agreement. With a larger error the claim may still agree to a coarser
+        grade, see ``Claim.grade``.
 
     """
 
@@ -94,7 +95,10 @@ class ErrorBudget:
         object.__setattr__(self, "model", float(model))
         object.__setattr__(self, "resolution", float(resolution))
         if np.any(self.numerical < 0.0) or not (self.model >= 0.0 and self.resolution > 0.0):
-            raise ValueError("an error budget takes errors >= 0 and a resolution > 0")
+            raise ValueError(
+                f"error budget: numerical and model errors must be >= 0 (model = {self.model:g}), "
+                f"the resolution ({self.resolution:g}) must be > 0"
+            )
 
     @property
     def total(self) -> FloatArray:
@@ -109,43 +113,41 @@ class Claim:
     Parameters
     ----------
     sentence : str
-        What is claimed, the same for every engine; it names the row of the matrix.
+        Statement, the same for every engine; it names the row of the matrix.
     equation : str
-        Of the paper, as "(3)", or "" where the statement is ours.
+        Equation of the paper, such as "(3)"; "" if the statement is ours.
     kind : str
-        What the prediction is taken from, one of ``KINDS``.
+        Source of the prediction, one of ``KINDS``.
     engine : str
-        Name of the engine, or "theory" where no simulation takes part.
+        Name of the engine, or "theory" without a simulation.
     predicted, measured : float or array of the same shape
-        In ``unit``.
+        Numbers in ``unit``.
     budget : ErrorBudget
         Errors in the same unit.
     parameters : mapping
-        All that is needed to repeat the measurement: numbers, or words where a number says less.
+        Parameters that repeat the measurement, as numbers or words.
     source : str
-        Where the parameters come from: a figure, or an assumption in words.
+        Origin of the parameters: a figure, or an assumption in words.
     unit : str
-        "" for a dimensionless number.
+        Unit, "" for a dimensionless number.
     note : str
-        How the measurement or its error estimate was made, where that is not obvious.
+        Method of the measurement or its error estimate, if not obvious.
     basis : str
-        What evidence it is, one of ``BASES``. Without it: "reference" for the kind "trajectory", else "algebra" where
-        no engine takes part and "independent" where one does.
+        Kind of evidence, one of ``BASES``. Default: "reference" for the kind "trajectory", else "algebra" without an
+        engine and "independent" with one.
     implied_by : str
-        Sentence of a claim of the same study from which this one follows for the same engine, by algebra or because
-        it is read off the same numbers; "" for none.
+        Sentence of a claim of the same study that implies this one for the same engine, by algebra or because both
+        use the same numbers; "" for none.
     answers : bool
-        Whether the numbers count answers of yes or no, see ``compare.claims.measured.answers_of``.
+        True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
     named : mapping
-        Names by which texts quote an element (its flat index), or all of them at once (None), see
-        ``compare.report.quotes``.
+        Names for quotes of an element (its flat index), or of all elements (None), see ``compare.report.quotes``.
     identity : str
-        What the claim is called for good, as "fig06/rests"; "" where it is made by hand.
-    size : float or array that fits to the numbers, optional
-        Beside which an error is small, where the prediction does not say it, as a zero doesn't, see
-        ``relative_error``.
+        Permanent id, such as "fig06/rests"; "" for a claim made by hand.
+    size : float or broadcastable array, optional
+        Scale of a relative error, required if the prediction is zero, see ``relative_error``.
     axes : tuple
-        Names of the places along each axis of the numbers, () for an axis where they have none; () for none at all.
+        Names of the elements along each axis, () for an axis without names; () for none at all.
 
     """
 
@@ -215,7 +217,7 @@ class Claim:
         self._check()
 
     def _check(self) -> None:
-        """Raise ``ValueError`` for what does not fit together."""
+        """Raise ``ValueError`` for inconsistent fields."""
         sentence, numerical = self.sentence, self.budget.numerical
         if self.kind not in KINDS:
             raise ValueError(
@@ -226,7 +228,9 @@ class Claim:
                 f"claim {sentence!r}: basis = {self.basis!r}: it must be one of {', '.join(BASES)}"
             )
         if self.basis == "algebra" and self.engine != THEORY:
-            raise ValueError(f"claim {sentence!r} is about {self.engine}: algebra is of the theory alone")
+            raise ValueError(
+                f"claim {sentence!r}: basis = 'algebra' requires engine = {THEORY!r}, not {self.engine!r}"
+            )
         if self.predicted.shape != self.measured.shape:
             raise ValueError(
                 f"claim {sentence!r}: predicted has shape {self.predicted.shape}, "
@@ -235,13 +239,16 @@ class Claim:
         mixed = [unit.strip() for unit in self.unit.split(",")]
         if len(mixed) > 1 and any(_unit(name) not in mixed for name in (self.axes or ((),))[-1] or ("",)):
             raise ValueError(
-                f"claim {sentence!r} has numbers in {self.unit}: each component must say which, as 'x in m'"
+                f"claim {sentence!r}: unit = {self.unit!r}: each component must name its unit, such as 'x in m'"
             )
         if self.predicted.size == 0:
-            raise ValueError(f"claim {sentence!r} has no numbers: it would agree whatever the engine does")
+            raise ValueError(f"claim {sentence!r}: predicted is empty: it must contain at least one number")
         for name, place in self.named.items():
             if place is not None and not 0 <= place < self.predicted.size:
-                raise ValueError(f"claim {sentence!r}: {name!r} is element {place} of {self.predicted.size}")
+                raise ValueError(
+                    f"claim {sentence!r}: named[{name!r}] = {place}: "
+                    f"it must be from 0 to {self.predicted.size - 1}, or None"
+                )
         if np.broadcast_shapes(numerical.shape, self.predicted.shape) != self.predicted.shape:
             raise ValueError(
                 f"claim {sentence!r}: numerical error has shape {numerical.shape}, "
@@ -249,22 +256,22 @@ class Claim:
             )
 
     def unit_of(self, index: int) -> str:
-        """Return the unit of element ``index`` (flat), "1" where several are mixed and it has none."""
+        """Return the unit of element ``index`` (flat)."""
         return self.units[index % len(self.units)]
 
     @cached_property
     def units(self) -> tuple[str, ...]:
-        """The unit of each place along the last axis where they are mixed, or the one of all."""
+        """Units along the last axis if they are mixed, else the one unit."""
         if "," not in self.unit:
             return (self.unit,)
         return tuple(_unit(name) for name in self.axes[-1])
 
     def element(self, index: int) -> str:
-        """Return in words which element ``index`` (flat) is, as "μN = 0.05 N, x in m"; "" where nothing names it."""
+        """Return the name of element ``index`` (flat), such as "μN = 0.05 N, x in m"; "" without names."""
         return self._named(np.unravel_index(index, self.predicted.shape))
 
     def elements(self) -> Iterator[str]:
-        """Yield in words which element each is, in their flat order."""
+        """Yield the names of all elements in flat order."""
         return map(self._named, np.ndindex(self.predicted.shape))
 
     def _named(self, places: Sequence[Any]) -> str:
@@ -277,10 +284,10 @@ class Claim:
 
     @property
     def ratio(self) -> FloatArray:
-        """Difference over budget, elementwise: agreement is up to 1.
+        """Difference over budget, elementwise: at most 1 for agreement.
 
-        Without a difference it is 0, whatever the budget; a difference without a budget, and a number that is
-        missing, is infinitely far off.
+        The ratio is 0 without a difference, even if the budget is 0. It is infinite for a difference without a
+        budget and for a missing number.
         """
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -290,21 +297,20 @@ class Claim:
 
     @cached_property
     def worst(self) -> int:
-        """Flat index of the element with the largest ratio; among several, of the largest difference."""
+        """Flat index of the element with the largest ratio; ties are resolved by the largest difference."""
         ratio = self.ratio
         return _place_of_largest(np.where(ratio == np.max(ratio), self.difference, -1.0))
 
     @cached_property
     def largest(self) -> int:
-        """Flat index of the element with the largest difference, a missing one before all."""
+        """Flat index of the element with the largest difference; a missing number counts as the largest."""
         return _place_of_largest(self.difference)
 
     @cached_property
     def relative_error(self) -> float:
-        """The largest total error over the size of what is predicted; infinite where that has none.
+        """Largest ratio of total error to ``size``, by default the largest prediction of the same unit.
 
-        Without a ``size`` it is that of the largest prediction, of each unit where they are mixed.
-        Orders and answers have no size beside which an error is small.
+        It is infinite for a size of zero, and for orders and answers because they lack a scale.
         """
         if self.answers or self.kind == "order":
             return math.inf
@@ -314,7 +320,7 @@ class Claim:
         return float(np.max(np.nan_to_num(relative, nan=math.inf), initial=0.0))
 
     def _size(self) -> FloatArray:
-        """Return what an error is small beside, of a shape that fits to the numbers."""
+        """Return the scale of a relative error, broadcastable to the numbers."""
         if self.size is not None:
             return self.size
         numbers = np.abs(self.predicted)
@@ -325,19 +331,19 @@ class Claim:
 
     @cached_property
     def grade(self) -> Grade | None:
-        """The finest grade to which the claim is conclusive; None where only its resolution says what is small."""
+        """Finest grade that the relative error permits; None if only the resolution can decide."""
         relative = self.relative_error
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 
     @cached_property
     def verdict(self) -> Verdict:
-        """Differs beyond the budget or without a number, else agrees within the resolution or to a grade.
+        """Verdict: differs beyond the budget or without a number.
 
-        It is inconclusive where the error is larger than both.
+        Otherwise the claim agrees if its error is within the resolution or a grade, else it is inconclusive.
         """
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         missing = ~np.isfinite(self.measured)
-        open_ = missing & np.isinf(total)  # there at one tolerance and not at another
+        open_ = missing & np.isinf(total)  # present at one tolerance but not at another
         if not np.all((difference <= total) & ~missing | open_):  # False for NaN
             return Verdict.DIFFERS
         if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
@@ -346,7 +352,7 @@ class Claim:
 
 
 def _unit(name: str) -> str:
-    """Return the unit that the name of a component ends with, as "x in m"; "" where it has none."""
+    """Return the unit in the name of a component, such as "m" for "x in m"; "" without one."""
     return name.rpartition(" in ")[2] if " in " in name else ""
 
 
@@ -355,7 +361,7 @@ def _place_of_largest(values: FloatArray) -> int:
 
 
 def usual_basis(kind: Kind, engine: str) -> Basis:
-    """Return what evidence a claim of this kind is, where nothing else is said of it."""
+    """Return the default basis of a claim."""
     if kind == "trajectory":
         return "reference"
     return "algebra" if engine == THEORY else "independent"

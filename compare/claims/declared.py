@@ -1,4 +1,4 @@
-"""A claim before it is measured: what ``Study.claim`` declares on the function that measures it."""
+"""A claim before its measurement, as declared by ``Study.claim``."""
 
 from __future__ import annotations
 
@@ -14,22 +14,21 @@ from compare.claims.prose import slug
 
 @dataclass(frozen=True)
 class Declared:
-    """A claim as it is known before anything is measured: all that does not vary with the engine.
+    """All properties of a claim that do not depend on the engine.
 
     Parameters
     ----------
     function : callable
-        ``function(engine) -> Measured``, or without an engine for a claim of the theory; None where the claim is not
-        made of an engine. Of a family it takes one of ``each`` besides.
+        ``function(engine) -> Measured``, without an argument for a claim of the theory. It returns None if the claim
+        does not apply to the engine. For a family it also takes one of the values of ``each``.
     sentence, equation, kind, unit, note, basis, implied_by, named
-        As in :class:`compare.claims.claim.Claim`; in a family the sentence has braces for the name of each, and
-        ``implied_by`` is the sentence of the same one.
+        As in :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the member's name.
     resolution : float, optional
-        The largest total error with which agreement still says something; None where the function says it.
+        Largest total error of a conclusive agreement; None if the measurement contains it.
     swept : tuple of str
-        Parameters of the system that are varied, so that it stands for none of their values.
+        Parameters of the system that the claim varies.
     each : mapping
-        Of a family the name and the value of each; empty for a single claim.
+        Names and values of the members of a family; empty for a single claim.
 
     """
 
@@ -48,11 +47,11 @@ class Declared:
 
     @property
     def of_engine(self) -> bool:
-        """Whether an engine takes part."""
+        """True if the claim is about an engine."""
         return takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and what its function takes besides the engine."""
+        """Yield the name of each member of the family and the additional arguments of its function."""
         if not self.each:
             yield "", ()
         for name, value in self.each.items():
@@ -63,15 +62,15 @@ class Declared:
         return self.sentence.format(case) if self.each else self.sentence
 
     def part(self, case: str) -> str:
-        """Return what chooses one member of the family, "function/case", or the claim, "function"."""
+        """Return the selector of one member of the family, "function/case", or of the claim, "function"."""
         return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
 
     def identity(self, study: str, case: str) -> str:
-        """Return what the claim is called for good, as "fig06/rests": whatever else is claimed beside it."""
+        """Return the permanent id of the claim, such as "fig06/rests"; it does not depend on other claims."""
         parts = (study, self.function.__name__.strip("_"), case)
         return "/".join(slug(part) for part in parts if part)
 
 
 def takes_engine(function: Callable[..., Any]) -> bool:
-    """Return whether an engine is the first argument."""
+    """Return whether the first argument is an engine."""
     return next(iter(inspect.signature(function).parameters), "") == "engine"

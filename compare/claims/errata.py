@@ -1,4 +1,4 @@
-"""Where the printed formulas of the paper are wrong or incomplete, with the numbers that show it."""
+"""Errors in the printed formulas of the paper, with numerical evidence."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ from reference_model.steady.steady_states import self_centred_equilibria
 
 @dataclass(frozen=True)
 class Evidence:
-    """One quantity, found independently of both formulas and from each of them.
+    """One quantity, computed from both formulas and independently of them.
 
     Parameters
     ----------
     quantity : str
-        What is compared, with its unit and the parameters.
+        Name of the quantity, with its unit and the parameters.
     exact : float
-        From the equations of motion themselves.
+        Value from the equations of motion.
     printed_value, corrected_value : float
-        From the printed and from the corrected formula.
+        Values from the printed and from the corrected formula.
 
     """
 
@@ -53,16 +53,16 @@ class Evidence:
 
 @dataclass(frozen=True)
 class Erratum:
-    """A printed formula beside its correction.
+    """A printed formula and its correction.
 
     Parameters
     ----------
     equation : str
-        Number and place: "(13), coefficient of λ²"; or a section and its words.
+        Number and term, such as "(13), coefficient of λ²"; or a section and its words.
     printed, correct : str
         Both formulas as plain text.
     explanation : str
-        Why the printed one is wrong and how the corrected one follows.
+        Reason for the error and derivation of the correction.
     evidence : callable
         Computes the numbers.
 
@@ -76,7 +76,7 @@ class Erratum:
 
     @property
     def heading(self) -> str:
-        """The place as a heading: "Equation (13), coefficient of λ²"."""
+        """Heading, such as "Equation (13), coefficient of λ²"."""
         return f"Equation {self.equation}" if self.equation.startswith("(") else self.equation
 
 
@@ -98,7 +98,7 @@ def _force_on_the_circle() -> Evidence:
     z, w = complex(radius, 0.0), 1j * (k - pin.disc_speed) * radius
     friction = -pin.friction_force * w / abs(w)
     force = -pin.damping * 1j * k * z - pin.stiffness * z + friction
-    # Uniform motion on a circle takes no tangential force; the printed statement says that none is left.
+    # Uniform circular motion requires zero tangential force, as the printed statement implies.
     corrected = pin.friction_force * math.copysign(1.0, pin.disc_speed - k) - pin.damping * k * radius
     return Evidence(
         "tangential force in N on a pin on the circle (11) at Fig. 4's parameters with ω = 0.8 rad/s < k",
@@ -119,7 +119,7 @@ def _shift_of_the_whirl() -> Evidence:
 
 
 def _moment_of_the_expansion() -> Evidence:
-    """Return the moment on a ring whose centre slips as fast as its rim, from averages over the ring."""
+    """Return the moment on a ring at equal slip speeds of centre and rim, from averages over the ring."""
     slip, rim_speed = 1j, 1.0
     mean_speed = math.hypot(abs(slip), rim_speed)
     places = 2.0 * math.pi * np.arange(16) / 16  # averages are exact: cubic at most in sine and cosine
@@ -127,7 +127,7 @@ def _moment_of_the_expansion() -> Evidence:
         slip.real * math.sin(place) - slip.imag * math.cos(place) + rim_speed for place in places
     ]  # ν̃_r
     corrected = [inverse_slip_speed(slip, rim_speed, place) for place in places]
-    # As printed the first line is ν̃_r/|ν_r| itself, corrected it is ν̄_r/|ν_r|.
+    # The first line is ν̃_r/|ν_r| as printed, and ν̄_r/|ν_r| as corrected.
     return Evidence(
         "moment over μN·R where U = R(ω − φ̇), from the average of the first line over the ring; exact: (23)",
         exact=ThreeTermRing(radius=1.0).shares(abs(slip), rim_speed).moment,
@@ -152,12 +152,12 @@ def _spin_of_the_self_centred_disc() -> Evidence:
 
 
 def _growth_beside_the_equilibrium() -> Evidence:
-    """Return how fast the slowest deviation from the self-centred equilibrium of Fig. 9's disc grows."""
+    """Return the growth rate of the slowest deviation from the self-centred equilibrium of Fig. 9's disc."""
     (equilibrium,) = self_centred_equilibria(FIG9)
     simulated, _ = measured_eigenvalues(reference, FIG9, equilibrium.state, duration=1.0)
     return Evidence(
         f"growth rate in 1/s of the slowest deviation from the self-centred equilibrium of Fig. 9's disc at μN = "
-        f"{FIG9.friction_force:g} N, X0 = {FIG9.offset:g} m; exact: from simulated deviations; printed: of a pin",
+        f"{FIG9.friction_force:g} N, X0 = {FIG9.offset:g} m; exact: from simulated deviations; printed: for a pin",
         exact=float(np.max(simulated.real)),
         printed_value=equilibrium_eigenvalues(pin_of(FIG9))[0].real,
         corrected_value=equilibrium.eigenvalues[0].real,
@@ -220,4 +220,4 @@ ERRATA: tuple[Erratum, ...] = (
         evidence=_growth_beside_the_equilibrium,
     ),
 )
-"""In the order of the paper."""
+"""All errata in the order of the paper."""

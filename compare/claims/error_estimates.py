@@ -1,4 +1,4 @@
-"""Numerical error of a measured quantity, and observed orders, estimated from the measurement itself."""
+"""Estimates of numerical errors and of observed orders from the measurements themselves."""
 
 from __future__ import annotations
 
@@ -19,33 +19,33 @@ from compare.output.outside_text import printable
 from reference_model.systems import FloatArray
 
 WORKING = USUAL_TOLERANCE
-"""Tolerance at which an engine is asked, unless a study says why by a factor."""
+"""Default tolerance of engines in studies."""
 
 TIGHTEST = 1e-12
-"""The smallest tolerance that is asked of an engine or of shooting: an eighth of it is near to rounding."""
+"""Smallest tolerance for engines and for shooting; an eighth of it is close to rounding error."""
 
 TRUTH = 1e-13
-"""Tolerance of the reference where it stands for the exact motion."""
+"""Tolerance of the reference as a substitute for the exact motion."""
 
 SAFETY = 8.0
-"""Estimate of an error over the change to the result at the smaller tolerance.
+"""Ratio of the error estimate to the change at the smaller tolerance.
 
-With errors in proportion to the tolerance that is 8·(1 − 1/8) = 7 times the error, by construction. It covers the
-error unless that of the other result is by chance as large, to within an eighth: also where errors fall slowly or
-irregularly with the tolerance, as tolerance^(1/10), or from one of a few steps to the next. The change to a result at
-a *larger* tolerance would be 7 times the error too; but it falls short wherever the other result is less than twice
-as far off in place of 8 times, which is so in one number of twenty of the reference, and in one of fifty of Exudyn.
+If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It covers the error
+unless the two errors are equal by chance to within an eighth. That includes errors that fall slowly or irregularly
+with the tolerance, as tolerance^(1/10) or from one of a few steps to the next. The change against a *larger*
+tolerance would also be 7 times the error, but it is too small if the other error is less than twice as large instead
+of 8 times. That happens for one number in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
-"""Relative error of states from which on what is read off them may come and go: a stick phase, a release."""
+"""Relative error of states above which events read from them may appear or vanish: a stick phase, a release."""
 
 ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
 
 
 class Measurement(NamedTuple):
-    """A number, or an array of them, and the error of each."""
+    """A number or an array, and the error of each element."""
 
     value: FloatArray
     error: FloatArray
@@ -57,11 +57,11 @@ class Measurement(NamedTuple):
 
     @property
     def rows(self) -> FloatArray:
-        """The largest error of each row (along the last axis), for all numbers of the row; of the errors' shape."""
+        """Largest error of each row (along the last axis), broadcast to the shape of the errors."""
         return np.broadcast_to(np.max(self.error, axis=-1, keepdims=True), self.error.shape)
 
     def plus(self, error: float | FloatArray) -> Measurement:
-        """Return the same numbers with errors larger by ``error``, of any shape that fits."""
+        """Return the same numbers with errors larger by ``error`` (broadcastable)."""
         return Measurement(self.value, np.asarray(self.error + error))
 
 
@@ -70,12 +70,11 @@ def refined(
 ) -> Measurement:
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
-    The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, and never less than the
-    largest change in its row (along the last axis), if the numbers there are ``alike``, of one unit and size: one of
-    several numbers may change by next to nothing by chance, but not all. Nor is it less than rounding. No engine
-    takes notice of ever smaller tolerances: where that changes nothing at all, the change against the next larger
-    tolerance that does counts in its place. How often the estimate covers the true error, and how far it lies above,
-    the study "error-estimates" measures.
+    The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
+    If the numbers of a row (along the last axis) are ``alike``, of one unit and size, it is also at least the largest
+    change in the row, because a single number may hardly change by chance. If the smaller tolerance changes nothing,
+    the estimate uses the next larger tolerance that does, because engines do not follow ever smaller tolerances. The
+    study "error-estimates" measures how often the estimate covers the true error, and by how much it exceeds it.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
@@ -86,17 +85,17 @@ def refined(
 
 
 def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
-    """Return ``errors``, infinite where they are no number although the value is one.
+    """Return ``errors`` with NaN replaced by infinity if the value is a number.
 
-    Where the value is missing too they stay so: that is a mistake, and no doubt.
+    If the value is also missing, the error stays NaN: that is a failure, not an uncertainty.
     """
     return np.where(np.isnan(errors) & np.isfinite(values), np.inf, errors)
 
 
 def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
-    """Return ``found`` with infinite errors of what is missing in it, if the ``states`` it is read off are coarse.
+    """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse.
 
-    Whether a body sticks once more, or when it is let go at last, may hang on less than they are off by.
+    Errors of that size may add or remove a stick phase, or delay the last release.
     """
     coarse = states.largest > COARSE * float(np.max(np.abs(states.value)))
     missing = ~np.isfinite(found.value)
@@ -104,11 +103,11 @@ def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
 
 
 def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:
-    """Return the error of ``found`` that is estimated from ``other``, see ``refined``; all of the same shape.
+    """Return the error of ``found`` estimated from ``other``, see ``refined``; all of the same shape.
 
-    It is infinite where only one of them has a number: what comes and goes with the tolerance is not known.
+    It is infinite if only one of them is a number, because a value that depends on the tolerance is unknown.
     """
-    with np.errstate(invalid="ignore"):  # of two infinite numbers
+    with np.errstate(invalid="ignore"):  # difference of two infinite numbers
         change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
     numbers = np.where(np.isfinite(change), change, 0.0)
     largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
@@ -121,9 +120,9 @@ def observed_exponent(
 ) -> tuple[float, float, float]:
     """Return p of errors ~ x^p·(1 + b·x^next_term) as x → 0, its numerical and its model error.
 
-    Least squares of ln e = a + p·ln x + b·x^next_term. The numerical error is the 95 % interval that the scatter of
-    successive errors gives, and what ``noise``, the error of the errors themselves, can add. The model error is the
-    size of the next term: the change of p when it is left out. All shapes are (n,). Without numbers p is none either.
+    The fit is a least-squares fit of ln e = a + p·ln x + b·x^next_term. The numerical error is the 95 % interval from
+    the scatter of successive errors, plus the effect of ``noise``, the error of the errors. The model error is the
+    change of p without the next term. All shapes are (n,). p is NaN if an error is not a positive number.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0
@@ -144,9 +143,9 @@ def observed_exponent(
 def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, float]:
     """Return the order in h of ``errors`` at halved steps (shape (n,), n >= 4), its numerical and its model error.
 
-    Orders observed between neighbours are a series in h, so that twice the last less the one before is better by one
-    power. The model error is that extrapolation's own step, the numerical one its change from one step to the
-    next, and what ``noise`` in the errors can add.
+    Orders observed between neighbours are a series in h, so 2·(last) − (second last) gains one power. The model error
+    is the last change of the observed orders. The numerical error is the last change of the extrapolated orders, plus
+    the effect of ``noise`` in the errors.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0
@@ -160,16 +159,16 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     )
 
 
-# --- Engines whose fixed step is too long for a question: they are asked again at shorter ones.
+# --- Engines with a fixed step that is too long for a claim: repeated at shorter steps.
 #
-# At a longer step the engine's own error may be larger than what a claim can tell. That says nothing about
-# the engine, and a shorter step often decides.
+# The error of a long step may exceed the resolution of a claim. That does not count against the engine, and a shorter
+# step often decides.
 
 SHORTER = 4.0
-"""By which steps become shorter from one time to the next."""
+"""Ratio of successive steps."""
 
 LONGEST = 4.0
-"""Time in s that an answer is expected to take, up to which it is asked for at a shorter step."""
+"""Largest expected time in s of an attempt at a shorter step."""
 
 Answer = TypeVar("Answer")
 
@@ -177,9 +176,9 @@ Answer = TypeVar("Answer")
 def decided(
     engine: Engine | None, ask: Callable[[Engine | None], Answer], is_open: Callable[[Answer], bool]
 ) -> tuple[Answer, str]:
-    """Return what ``engine`` answers, at a shorter step than its own if that leaves it open, and a note of that.
+    """Return the engine's answer, at a shorter step if its own leaves the claim open, and a note.
 
-    What the engine or the question raises at the engine's own step is raised; at a shorter one the note says it.
+    An exception at the engine's own step is raised; an exception at a shorter step goes into the note.
     """
     began, share, note = time.perf_counter(), 1.0, ""
     answer = ask(engine)
@@ -189,10 +188,10 @@ def decided(
         began, share = time.perf_counter(), SHORTER * share
         try:
             answer = ask(replace(engine, step=engine.step / share))
-        except Exception as error:  # whatever the engine may raise: its own step was no failure
+        except Exception as error:  # any error: the engine's own step succeeded
             return (
                 answer,
-                f"At a step {share:g} times as short as the engine's own it failed: {printable(error)}",
+                f"The run with 1/{share:g} of the engine's own step failed: {printable(error)}",
             )
-        note = f"Asked at a step {share:g} times as short as the engine's own, which leaves it open."
+        note = f"Measured with 1/{share:g} of the engine's own step, which leaves the claim inconclusive."
     return answer, note

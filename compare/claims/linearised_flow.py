@@ -1,4 +1,4 @@
-"""The linearised flow of an engine, its eigenvalues from simulations, and what eigenvalues need to be compared."""
+"""Linearised flow of an engine, its eigenvalues from simulations, and helpers to compare eigenvalues."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 ComplexArray = NDArray[np.complex128]
 
 DIFFERENCE = 4e-3
-"""Step of the differences that give the linearised flow, as a fraction of the slip."""
+"""Step of the central differences, as a fraction of the slip."""
 
 FLOW_TOLERANCE = 10.0 * TIGHTEST
-"""Of the simulations that are subtracted from each other: their differences are small."""
+"""Tolerance of the simulations; their differences are small."""
 
 
 def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
@@ -35,9 +35,9 @@ def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
 
 
 def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArray]:
-    """Return the places in a state in which it may deviate, and the sizes beside which deviations are small.
+    """Return the indices of the components that deviate, and their scales.
 
-    Friction changes with the direction of slip: a deviation is small if it is so beside the slip.
+    Friction changes with the direction of slip, so deviations must be small compared with the slip.
     """
     half, omega = len(state) // 2, system.disc_speed
     (x, y), (vx, vy) = state[:2], state[half : half + 2]
@@ -53,26 +53,25 @@ def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArra
 def measured_eigenvalues(
     engine: Engine, system: System, state: ArrayLike, *, duration: float, frame_speed: float = 0.0
 ) -> tuple[ComplexArray, float]:
-    """Return the eigenvalues in 1/s with which small deviations from a steady motion grow, and their error.
+    """Return the eigenvalues in 1/s of small deviations from a steady motion, and their error.
 
-    Central differences of the engine's flow over ``duration`` seconds, each column two simulations, give the
-    linearised flow; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The
-    error is the change with 2h and 4h in their place, plus what ``refined`` says of the tolerance, plus the tolerance
-    itself as an error of the states; the largest of the four eigenvalues counts for all, since one alone may be
-    right by chance.
+    Central differences of the engine's flow over ``duration`` give the linearised flow, with two simulations for each
+    column; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
+    change with 2h and 4h instead, plus the estimate of ``refined`` for the tolerance, plus the tolerance itself as an
+    error of the states. The largest error counts for all eigenvalues, because a single one may be right by chance.
 
     Parameters
     ----------
     engine : Engine
         The engine.
     system : PinOnDisc or DiscOnDisc
-        The parameters. A disc is taken on a continuous ring, on which its angle drops out: it has five eigenvalues.
+        The parameters. A disc has a continuous ring, so its angle drops out and five eigenvalues remain.
     state : array of shape (4,) or (6,)
-        Of the steady motion, which slides.
+        State of the steady motion, which must slide.
     duration : float
-        In s, short enough for |Im λ|·duration < π.
+        Duration in s, short enough for |Im λ|·duration < π.
     frame_speed : float
-        Of the axes in which the motion is steady, in rad/s.
+        Angular velocity in rad/s of the axes that make the motion steady.
 
     """
     state = np.asarray(state, dtype=float)
@@ -108,16 +107,16 @@ def measured_eigenvalues(
 
 
 def _unseen(eigenvalues: ComplexArray, duration: float, size: float) -> float:
-    """Return the error in 1/s of a motion that is ``size`` deviations large, where these change nothing.
+    """Return the error in 1/s due to the tolerance; ``size`` is the ratio of the state to the smallest deviation.
 
-    A small deviation from a state of rest may be within the tolerance all the time.
+    Deviations from rest may stay within the tolerance, so ``refined`` sees no change.
     """
     smallest = float(np.min(np.abs(np.exp(eigenvalues * duration))))
     return FLOW_TOLERANCE * size / (smallest * duration)
 
 
 def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:
-    """Return complex ``values`` in the order in which they lie nearest to ``to``, both of shape (n,)."""
+    """Return complex ``values`` in the order that is nearest to ``to``, both of shape (n,)."""
     from scipy.optimize import linear_sum_assignment
 
     values, to = np.asarray(values, dtype=complex), np.asarray(to, dtype=complex)
@@ -127,7 +126,7 @@ def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:
 
 
 def real_and_imaginary(values: Any) -> FloatArray:
-    """Return complex ``values`` (shape (...)) as real numbers, shape (..., 2), for a claim or for data."""
+    """Return complex ``values`` (shape (...)) as real numbers, shape (..., 2)."""
     values = np.asarray(values, dtype=complex)
     return np.stack((values.real, values.imag), axis=-1)
 
@@ -135,8 +134,8 @@ def real_and_imaginary(values: Any) -> FloatArray:
 def eigenvalues_with_rounding(matrices: ArrayLike) -> tuple[ComplexArray, FloatArray]:
     """Return the eigenvalues of ``matrices`` (shape (..., n, n)) and the rounding error of each.
 
-    The error is that of a backward stable algorithm, n·ε·‖A‖, times the condition of the eigenvalue, which is
-    the product of the lengths of its right and left eigenvectors.
+    The error is n·ε·‖A‖, as for a backward stable algorithm, times the condition of the eigenvalue: the product of
+    the norms of its right and left eigenvectors.
     """
     matrices = np.asarray(matrices, dtype=float)
     values, right = np.linalg.eig(matrices)

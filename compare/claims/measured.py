@@ -1,4 +1,4 @@
-"""What the function of a claim returns: numbers, their errors, and what each of them is."""
+"""Result of a claim's function: numbers, their errors and their names."""
 
 from __future__ import annotations
 
@@ -13,44 +13,44 @@ from compare.claims.error_estimates import COARSENING, change_as_error
 from reference_model.systems import FloatArray, System
 
 ONE = 0.5
-"""Resolution of a count of which no answer may be open."""
+"""Resolution of a count without open answers."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Measured:
-    """What was predicted and what an engine, or the theory, gives.
+    """Predicted and measured values of a claim.
 
     Parameters
     ----------
     predicted, value : float or array of the same shape
-        In the claim's unit.
-    error : float or array that fits to it
+        Numbers in the claim's unit.
+    error : float or broadcastable array
         Numerical error of both, see ``ErrorBudget``.
     model : float
-        For an approximation the derived size of the first term left out.
+        Size of the first neglected term of an approximation.
     resolution : float, optional
-        The largest total error with which agreement still says something, in place of the declared one.
+        Largest total error of a conclusive agreement; overrides the declared one.
     components : sequence of str
-        What stands along the last axis, as "x in m"; () for one quantity.
+        Names along the last axis, such as "x in m"; () for one quantity.
     at : mapping
-        What was varied, in the order of the other axes: a name with its unit, as "μN in N", and the value, number or
-        word, at each place.
+        Varied quantities in the order of the other axes: a name with its unit, such as "μN in N", and the numbers or
+        words along that axis.
     system : PinOnDisc or DiscOnDisc, optional
-        The one to repeat it with, in place of the study's.
+        System to repeat the measurement; overrides the study's.
     parameters : mapping
-        What is to be known besides to repeat it.
+        Additional parameters to repeat the measurement.
     source : str
-        Where the parameters come from, in place of the study's source.
+        Origin of the parameters; overrides the study's source.
     note : str
-        How it was measured, where that depends on what was; it follows on the declared note.
+        Method, if it depends on the measurement; appended to the declared note.
     data : mapping
         Arrays by name, for the figures.
     named : mapping
-        Names by which texts quote an element (its flat index), besides the declared ones.
-    size : float or array that fits to the numbers, optional
-        Beside which an error is small, where the prediction does not say it, see ``Claim.relative_error``.
+        Names for quotes of an element (its flat index), in addition to the declared ones.
+    size : float or broadcastable array, optional
+        Scale of a relative error, see ``Claim.relative_error``.
     answers : bool
-        Whether the numbers count answers of yes or no, see ``answers_of``.
+        True if the numbers count yes-or-no answers, see ``answers_of``.
 
     """
 
@@ -72,9 +72,9 @@ class Measured:
 
     @property
     def axes(self) -> tuple[tuple[str, ...], ...]:
-        """Names of the places along each axis, () where they have none.
+        """Names along each axis, () for an axis without names.
 
-        Raises ``ValueError`` where the names are not as many as the numbers.
+        Raises ``ValueError`` if the number of names does not fit the shape.
         """
         shape = np.shape(self.predicted)
         if not (self.at or self.components):
@@ -87,8 +87,8 @@ class Measured:
             len(own) not in (0, n) for own, n in zip(names, shape, strict=True)
         ):
             raise ValueError(
-                f"numbers of shape {shape} have names for {tuple(len(own) for own in names)} places: "
-                "as many are needed"
+                f"numbers of shape {shape} have names for {tuple(len(own) for own in names)} elements: "
+                "both must be equal; change at or components"
             )
         return tuple(names)
 
@@ -101,21 +101,20 @@ def _place(name: str, value: Any) -> str:
 
 
 def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int = 0, **more: Any) -> Measured:
-    """Return the measurement of a claim that is to hold in all of n cases: it differs where one is surely no.
+    """Return the measurement of a claim that must hold in all of n cases; it differs if one case certainly fails.
 
-    It is inconclusive where none is, but more than ``may_be_open`` are too close to tell.
+    It is inconclusive if no case fails but more than ``may_be_open`` cases are undecided.
 
     Parameters
     ----------
     margins : array of n numbers or truth values
-        By how much each quantity is on the right side of its threshold, in any unit; a number that is missing is no.
-    errors : array that fits to it
-        What each margin can be off; not a number where an engine gave none to estimate it from, which is a no;
-        infinite where nothing is known.
+        Distance of each quantity from its threshold, positive if the case holds, in any unit; NaN is a failure.
+    errors : broadcastable array
+        Error of each margin; NaN if it could not be estimated, which is a failure; infinite if the margin is unknown.
     may_be_open : int
-        How many answers may be open in a claim that still says something.
+        Largest number of undecided cases in a conclusive claim.
     more
-        As :class:`Measured` takes it.
+        Fields of :class:`Measured`.
 
     """
     margins, errors = np.broadcast_arrays(_as_numbers(margins), np.asarray(errors, dtype=float))
@@ -133,16 +132,16 @@ def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int 
 
 
 def asked(question: Callable[[float], ArrayLike], tolerance: float) -> tuple[FloatArray, FloatArray]:
-    """Return the margins, see ``answers_of``, that an engine gives at ``tolerance``, and their errors.
+    """Return the margins (see ``answers_of``) at ``tolerance`` and their errors.
 
-    The error is estimated as in ``compare.claims.error_estimates.refined``, but from the smaller tolerance only. An
-    answer without a margin, yes or no, is open if it changes.
+    The error is estimated as in ``compare.claims.error_estimates.refined``, but only from the smaller tolerance. A
+    truth value is undecided if it changes.
     """
     found, finer = (_as_numbers(question(asked_at)) for asked_at in (tolerance, tolerance / COARSENING))
     return found, change_as_error(found, finer)
 
 
 def _as_numbers(margins: ArrayLike) -> FloatArray:
-    """Return margins; those of truth values are 1 and −1."""
+    """Return the margins; truth values become 1 and −1."""
     found = np.asarray(margins)
     return np.where(found, 1.0, -1.0) if found.dtype == np.bool_ else found.astype(float)

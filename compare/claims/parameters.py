@@ -1,4 +1,4 @@
-"""Parameter sets that the paper prints, and the parameters of a claim for those who want to repeat it."""
+"""Parameter sets of the paper, and the parameters that repeat a claim."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc, System
 # --- Parameter sets that the paper prints.
 
 FIG4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.1)
-"""Fig. 4, whose axis is ω; Fig. 6 has the same parameters with ω = 1.2 and the load as its axis."""
+"""Parameters of Fig. 4, which varies ω. Fig. 6 has the same parameters with ω = 1.2 and varies the load."""
 
 CENTRED = replace(FIG4, offset=0.0)
-"""Fig. 4 without its offset, as (10) to (16) assume."""
+"""Fig. 4 without offset, as (10) to (16) assume."""
 
 FIG5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 
 FIG5_STARTS = {"equilibrium": (0.1, 0.0, 0.0, 0.0), "whirl": (0.1, 0.0, 0.03, 0.0)}
-"""x, y, vx, vy by what they lead to."""
+"""Initial x, y, vx, vy by the motion that they lead to."""
 
 FIG8 = DiscOnDisc(
     mass=1.0,
@@ -35,15 +35,15 @@ FIG8 = DiscOnDisc(
     shaft_damping=0.01,
     shaft_speed=0.5,
 )
-"""Fig. 8, whose axis is the load: the one here is a choice.
+"""Parameters of Fig. 8, which varies the load; the load here is our choice.
 
-The paper leaves out X0: it is that of Figs. 4 to 6 here.
+The paper omits X0; we use that of Figs. 4 to 6.
 """
 
 FIG9 = replace(FIG8, disc_speed=1.5, shaft_speed=1.25)
-"""Figs. 9 and 10, whose axis is the load, "for the same parameter values as above" but for the two speeds.
+"""Parameters of Figs. 9 and 10, "for the same parameter values as above" except the two speeds; they vary the load.
 
-We take it that β and b are those of Fig. 8. X0 is left out here too.
+We assume β and b of Fig. 8. The paper omits X0 here too.
 """
 
 FIG11 = DiscOnDisc(
@@ -58,21 +58,21 @@ FIG11 = DiscOnDisc(
     shaft_damping=0.015,
     shaft_speed=1.25,
 )
-"""Fig. 11. The paper leaves out the initial conditions and X0: zero here, which makes the whirl a circle."""
+"""Parameters of Fig. 11. The paper omits the initial conditions and X0; zero makes the whirl a circle."""
 
 
-# --- The parameters of a claim, for those who want to repeat it.
+# --- Parameters that repeat a claim.
 
 BEYOND_THE_SPRING = ("hardening", "stop_gap", "stop_stiffness")
-"""Parameters of a support that are zero in the paper."""
+"""Parameters of the support that are zero in the paper."""
 
 
 def parameters_of(
     system: System, *, without: Collection[str] = (), **changes: float
 ) -> dict[str, float | str]:
-    """Return the parameters of ``system`` for a claim, but those that it sweeps; ``changes`` adds or replaces some.
+    """Return the parameters of ``system`` except those in ``without``; ``changes`` adds or replaces some.
 
-    A disc without contact points has "continuous ring" in their place; what no linear support has is left out.
+    ``contact_points`` is "continuous ring" if it is None. Zero parameters of a nonlinear support are omitted.
     """
     parameters: dict[str, float | str] = {
         name: "continuous ring" if value is None else value
@@ -88,5 +88,5 @@ def at_each(name: str, values: ArrayLike) -> str:
 
 
 def components_of(system: System) -> tuple[str, ...]:
-    """Return the components of a state with their units, "x in m"."""
+    """Return the names of the state's components with their units, such as "x in m"."""
     return tuple(f"{name} in {unit}" for name, unit in COLUMNS[type(system)])

@@ -1,7 +1,7 @@
-"""The prose of a study, which people read and edit as prose: ``fig04.md`` beside ``fig04.py``, or ``study.md``.
+"""Texts of a study, from a Markdown file next to its module, such as ``fig04.md``, or from ``study.md``.
 
-The first heading is the title; under it stands what the paper says. "## Finding" and "## Figures" may follow, the
-latter with a heading for the name of each figure and its caption::
+The first heading is the title, followed by the statements of the paper. The sections "## Finding" and "## Figures"
+are optional; the latter contains the name of each figure as a heading, and its caption::
 
     # Branches under increasing friction force
 
@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NAME = "study.md"
-"""Of the prose in the folder of a study that has one."""
+"""File name of the texts in a study's own folder."""
 
 SECTIONS = {
     "pin": "The friction pin",
@@ -31,7 +31,7 @@ SECTIONS = {
     "drivetrain": "The drivetrain",
     "engines": "The engines",
 }
-"""Of the report, by the folder in which a study lies."""
+"""Sections of the report by the folder that contains the study."""
 
 
 @dataclass(frozen=True)
@@ -41,15 +41,15 @@ class Prose:
     Parameters
     ----------
     title : str
-        A line.
+        Title in one line.
     paper : str
-        What the paper says, in a paragraph.
+        Statements of the paper.
     section : str
-        Heading under which the overview lists the study with its neighbours.
+        Heading of the study's group in the overview.
     finding : str
-        What the paper leaves open and the study answers, for the first screen; shown while all claims agree.
+        Answer to a question that the paper leaves open, for the first screen; shown while all claims agree.
     figures : mapping
-        Caption for each figure and animation name.
+        Captions by the names of figures and animations.
 
     """
 
@@ -61,16 +61,16 @@ class Prose:
 
     @classmethod
     def of(cls, file: Path, words: Mapping[str, str]) -> Prose:
-        """Return the prose of the module ``file``, in its folder, or in the folder above it.
+        """Return the texts of the module ``file``, from its folder or the folder above.
 
-        ``words`` stand in it for their names in braces. Raises ``ValueError`` for a file that is not as above.
+        ``words`` replace their names in braces. Raises ``ValueError`` if the file is not structured as above.
         """
         places = (file.with_suffix(".md"), *(folder / NAME for folder in file.parents[:2]))
         path = next(place for place in places if place.is_file())
         text = path.read_text(encoding="utf-8")
         for name, word in words.items():
             if f"{{{name}}}" not in text:
-                raise ValueError(f"{path} has no {{{name}}}")
+                raise ValueError(f"{path}: {{{name}}} is missing; add it or remove {name} from words")
             text = text.replace(f"{{{name}}}", word)
         parts = re.split(r"^(#+) +(.+)$", text, flags=re.MULTILINE)
         sections = [
@@ -81,7 +81,7 @@ class Prose:
         group = path.parents[path.name == NAME].name
         if depth != "#" or group not in SECTIONS:
             raise ValueError(
-                f"{path} must begin with a title, and lie in {', '.join(SECTIONS)}, not {group!r}"
+                f"{path} must begin with a title, and its folder must be one of {', '.join(SECTIONS)}, not {group!r}"
             )
         return cls(
             title,
@@ -93,13 +93,13 @@ class Prose:
 
 
 def _paragraphs(text: str) -> str:
-    """Return paragraphs with a line each, and an empty one between them."""
+    """Return the paragraphs, each in one line, separated by empty lines."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
 
 
 @dataclass(frozen=True)
 class Table:
-    """Words and numbers in rows as long as ``header``, under a ``caption``."""
+    """A table of texts with a caption; all rows have the length of ``header``."""
 
     caption: str
     header: tuple[str, ...]
@@ -107,5 +107,5 @@ class Table:
 
 
 def slug(words: str) -> str:
-    """Return ``words`` as part of a name: small letters and digits, between hyphens."""
+    """Return ``words`` as lower-case letters and digits, joined by hyphens."""
     return "-".join("".join(c if c.isalnum() else " " for c in words).lower().split())

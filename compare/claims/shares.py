@@ -1,4 +1,4 @@
-"""How large a share of the starts ends as what, and between which bounds it lies."""
+"""Shares of initial states by their end states, with bounds."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ IntArray = NDArray[np.int64]
 CONFIDENCE = 0.95
 
 SAMPLE = (
-    f"Wilson's interval of {100.0 * CONFIDENCE:g} % for independent starts; what is undecided may be any end"
+    f"Wilson's interval of {100.0 * CONFIDENCE:g} % for independent initial states; "
+    "undecided ones may have any end state"
 )
 GRID = (
-    "from the cells of which all corners end like this to those of which one does (or is undecided), as parts of the "
-    "area: a bound as long as the boundary passes only through cells whose corners differ"
+    "fractions of the area: cells with this end state at all corners, to cells with at least one such or undecided "
+    "corner; valid bounds if the boundary passes only through cells with different corners"
 )
 
 
@@ -33,17 +34,17 @@ class Share(NamedTuple):
 
 
 def counted(ends: Ends) -> IntArray:
-    """Return how many of ``ends`` are which, in the order of ``EndState``."""
+    """Return the number of each end state, in the order of ``EndState``."""
     return np.bincount(ends.ravel(), minlength=len(EndState))
 
 
 def of_sample(ends: Ends) -> dict[EndState, Share]:
-    """Return the shares among independent random starts of the ends ``ends``, shape (n,)."""
+    """Return the shares of the end states ``ends`` (shape (n,)) of independent random starts."""
     return of_counts(counted(ends))
 
 
 def of_counts(counts: IntArray) -> dict[EndState, Share]:
-    """Return the shares among independent random starts of which so many ended as each of ``EndState``."""
+    """Return the shares of independent random starts from the number of each end state."""
     total, doubtful = int(np.sum(counts)), int(counts[EndState.UNDECIDED])
     shares = {}
     for end in EndState:
@@ -53,8 +54,8 @@ def of_counts(counts: IntArray) -> dict[EndState, Share]:
 
 
 def of_count(count: int, total: int, doubtful: int = 0) -> Share:
-    """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may belong to it."""
-    from scipy.stats import binomtest  # takes long to load, and grids do without
+    """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may count."""
+    from scipy.stats import binomtest  # slow to import, and not needed for grids
 
     low, high = (
         binomtest(k, total).proportion_ci(CONFIDENCE, method="wilson") for k in (count, count + doubtful)
@@ -63,9 +64,9 @@ def of_count(count: int, total: int, doubtful: int = 0) -> Share:
 
 
 def of_grid(ends: Ends) -> dict[EndState, Share]:
-    """Return the shares of a rectangle's area from the ends on a grid that covers it, shape (y, x).
+    """Return the shares of a rectangle's area from the end states on a grid over it, shape (y, x).
 
-    The value counts each corner of a cell as a quarter of it.
+    Each corner counts for a quarter of its cell.
     """
     uniform = ~mixed(ends)
     doubtful = _corners(ends == EndState.UNDECIDED) > 0
@@ -82,14 +83,14 @@ def of_grid(ends: Ends) -> dict[EndState, Share]:
 
 
 def mixed(ends: Ends) -> BoolArray:
-    """Return which cells have corners that differ, of one less along each axis than ``ends``."""
+    """Return a mask of the cells with different corners, one element shorter than ``ends`` along each axis."""
     corner = ends[:-1, :-1]
     result: BoolArray = (corner != ends[1:, :-1]) | (corner != ends[:-1, 1:]) | (corner != ends[1:, 1:])
     return result
 
 
 def _corners(chosen: np.ndarray) -> np.ndarray:
-    """Return how many corners of each cell are chosen."""
+    """Return the number of chosen corners of each cell."""
     one = chosen.astype(np.uint8)
     result: np.ndarray = one[:-1, :-1] + one[1:, :-1] + one[:-1, 1:] + one[1:, 1:]
     return result

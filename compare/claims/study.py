@@ -1,4 +1,4 @@
-"""A study: what the paper says, how an engine is measured against it, and how the result is drawn."""
+"""A study: statements of the paper, measurements that test engines against them, and figures."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from reference_model.systems import FloatArray, System
 Data = dict[str, FloatArray]
 
 ByEngine = Mapping[str, Data]
-"""What figures are drawn from: data by the names of engines, of those that found any, and of "theory"."""
+"""Data of the figures by the names of the engines that produced any, and by "theory"."""
 
 Figures: TypeAlias = "dict[str, Figure]"
-"""Of matplotlib, by the names under which a study's prose has their captions."""
+"""Matplotlib figures by the names of their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
 Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
@@ -34,16 +34,16 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """What one study found for one engine.
+    """Results of one study for one engine.
 
     Parameters
     ----------
     claims : tuple of Claim
-        Those that could be measured.
+        Measured claims.
     data : dict
-        Arrays that the figures are drawn from.
+        Arrays for the figures.
     not_simulated : str
-        Why claims are missing that other engines have, in a sentence, see ``Engine.lacking``; "" if none is.
+        Reason why claims are missing, in a sentence, see ``Engine.lacking``; "" if none is missing.
 
     """
 
@@ -54,17 +54,18 @@ class Findings:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What was found of one setting of an engine when that was recorded: no part of a run.
+    """Recorded results for one setting of an engine, not measured in a run.
 
     Parameters
     ----------
     engine, setting, version, date : str
-        "" for the setting of an engine that has one only; when it was recorded.
+        Engine, its setting ("" if it has only one), its version and the date of the recording.
     claims : tuple of Claim
-        Findings about that engine.
-    own, cases
-        Whether friction is the engine's own, and no force of its user's; and by the sentence of each claim a name for
-        its motion, and whether it is about "slip" or "stick".
+        Claims about that engine.
+    own : bool
+        True if the friction is the engine's own, False if it is a user-defined force.
+    cases : mapping
+        Name of the motion and "slip" or "stick", by the sentence of each claim.
 
     """
 
@@ -78,38 +79,36 @@ class Recorded:
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded")
-"""What a study may provide in addition to its claims."""
+"""Functions that a study may provide in addition to its claims."""
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """One figure or group of statements.
-
-    Its claims are declared on the functions that measure them, see ``claim``.
+    """One figure or group of statements, with claims declared by the decorator ``claim``.
 
     Parameters
     ----------
     name : str
-        As on the command line: "fig03".
+        Name on the command line, such as "fig03".
     prose : Prose
-        Title, what the paper says, finding and captions.
+        Title, statements of the paper, finding and captions.
     only : tuple of str
         Names of the engines that the study is about; empty for all.
     source : str
-        Where the parameters come from: a figure, or an assumption in words.
+        Origin of the parameters: a figure, or an assumption in words.
     system : PinOnDisc or DiscOnDisc, optional
-        The one whose parameters repeat the measurements.
+        System whose parameters repeat the measurements.
     seconds : float
-        About how long an engine takes: the longest work starts first, which keeps all cores busy to the end.
+        Approximate time in s for one engine; the longest work starts first to keep all cores busy.
     quick : bool
-        Whether the study belongs to the quick level: seconds for an engine, and something of every kind of claim.
+        True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
     contact : bool
-        Whether an engine's code of contact decides in it, see ``Engine.contact_only``. Where other parts decide
-        too, its claims leave those out for an engine of which that is true.
+        True if the study tests an engine's contact code, see ``Engine.contact_only``. For engines with that flag,
+        its claims leave out cases that depend on other code.
     declared : list of Declared
-        The claims, in the order of the report.
+        Claims in the order of the report.
     provided : dict
-        What else the study provides, see ``provides``.
+        Additional functions, see ``provides``.
 
     """
 
@@ -126,47 +125,49 @@ class Study:
 
     @classmethod
     def beside(cls, file: str, name: str, *, words: Mapping[str, str] | None = None, **more: Any) -> Study:
-        """Return the study of the module ``file``, whose prose lies beside it, see :meth:`Prose.of`.
+        """Return the study of the module ``file`` with the texts next to it, see :meth:`Prose.of`.
 
-        ``words`` stand in it for their names in braces; ``more`` is what :class:`Study` takes.
+        ``words`` replace their names in braces; ``more`` are fields of :class:`Study`.
         """
         return cls(name, Prose.of(Path(file), words or {}), **more)
 
     def provides(self, **functions: Callable[..., Any]) -> None:
-        """Add functions of a module (no lambdas, because they are sent to other processes) under these names.
+        """Add functions under these names; no lambdas, because the functions are sent to other processes.
 
         ==============  ==========================================================================================
-        ``figures``     ``draw(data: ByEngine) -> Figures``; must cope with a missing engine
+        ``figures``     ``draw(data: ByEngine) -> Figures``; must accept missing engines
         ``animations``  ``animate(data: ByEngine) -> {name: GIF}``, see ``compare.report.animation``
-        ``curves``      ``curves() -> Data``: curves of formulas, for the figures
-        ``tables``      ``tables() -> (Table, ...)``: what the report shows in addition, none of it measured
-        ``recorded``    ``recorded() -> (Recorded, ...)``: a matrix of its own in the report, counted apart; all make
-                        the same claims, in the same order
+        ``curves``      ``curves() -> Data``: curves of formulas for the figures
+        ``tables``      ``tables() -> (Table, ...)``: additional tables for the report, not measured
+        ``recorded``    ``recorded() -> (Recorded, ...)``: a separate matrix in the report, counted separately; all
+                        make the same claims in the same order
         ==============  ==========================================================================================
 
         Raises ``TypeError`` for another name.
         """
         if unknown := functions.keys() - PROVIDED:
-            raise TypeError(f"{self.name} provides {', '.join(unknown)}: known are {', '.join(PROVIDED)}")
+            raise TypeError(
+                f"study {self.name} cannot provide {', '.join(unknown)}: expected {', '.join(PROVIDED)}"
+            )
         self.provided.update(functions)
 
     @property
     def title(self) -> str:
-        """The line above the study."""
+        """Title of the study."""
         return self.prose.title
 
     @property
     def figures(self) -> Mapping[str, str]:
-        """The caption of each figure; a study without captions that draws has one figure with its name and title."""
+        """Captions by figure; without captions, a study that draws has one figure with its name and title."""
         return self.prose.figures or ({self.name: self.title} if "figures" in self.provided else {})
 
     def draw(self, data: ByEngine) -> Figures:
-        """Return the figures of the data that were found, by name."""
+        """Return the figures by name."""
         figures: Figures = self.provided["figures"](data) if "figures" in self.provided else {}
         return figures
 
     def animate(self, data: ByEngine) -> dict[str, bytes]:
-        """Return the animations (GIF) of the data that were found, by name."""
+        """Return the animations (GIF) by name."""
         animations: dict[str, bytes] = (
             self.provided["animations"](data) if "animations" in self.provided else {}
         )
@@ -178,7 +179,7 @@ class Study:
         return tables
 
     def recorded(self) -> tuple[Recorded, ...]:
-        """Return what was recorded of engines, no part of a run."""
+        """Return recorded results of engines, which are not part of a run."""
         settings: tuple[Recorded, ...] = self.provided["recorded"]() if "recorded" in self.provided else ()
         return settings
 
@@ -197,10 +198,11 @@ class Study:
         swept: Sequence[str] = (),
         each: Mapping[str, Any] | Sequence[str] = (),
     ) -> Callable[[Measure], Measure]:
-        """Declare that the decorated function measures ``sentence``; the function stays as it is.
+        """Declare that the decorated function measures ``sentence``; the function is unchanged.
 
-        It takes an ``engine`` first, or none for a claim of the theory. All else is as in :class:`Declared`;
-        ``implied_by`` is the function of another claim of this study, and ``each`` may be a sequence of names.
+        Its first argument is ``engine``, except for a claim of the theory. The parameters are those of
+        :class:`Declared`; ``implied_by`` is the function of another claim of this study, and ``each`` may be a
+        sequence of names.
         """
 
         def declare(function: Measure) -> Measure:
@@ -221,7 +223,9 @@ class Study:
             names = {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
             for case, _ in declared.cases():
                 if declared.identity(self.name, case) in names:
-                    raise ValueError(f"{self.name} has two claims {declared.identity(self.name, case)}")
+                    raise ValueError(
+                        f"duplicate claim id {declared.identity(self.name, case)}: rename the function or the case"
+                    )
             self.declared.append(declared)
             return function
 
@@ -232,20 +236,20 @@ class Study:
 
     @property
     def has_theory(self) -> bool:
-        """Whether there is anything to find without an engine."""
+        """True if the study has claims or curves that need no engine."""
         return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims on ``engine``, or without one those of the theory.
+        """Measure all claims on ``engine``, or the claims of the theory if it is None.
 
         Parameters
         ----------
         engine : Engine, optional
-            Where it does not promise what a claim needs, that claim is missing, and the findings say so.
+            The engine. If it does not support a claim, that claim is missing and the findings contain the reason.
         few : mapping, optional
-            Arguments of claims' functions by the functions' names, to measure less than all.
+            Arguments of claims' functions by their names, to measure fewer cases.
         only : collection of str
-            Names of the functions that are to be called, or "function/case" for one of a family; empty for all.
+            Names of the functions to call, or "function/case" for one member of a family; empty for all.
 
         """
         claims: list[Claim] = []
@@ -270,7 +274,7 @@ class Study:
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
 
     def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure all claims of the theory, or ``only`` some as in ``measure``, and take the curves with all."""
+        """Measure the claims of the theory, or ``only`` some as in ``measure``; without ``only`` add the curves."""
         found = self.measure(None, few, only)
         if "curves" in self.provided and not only:
             found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
@@ -295,7 +299,7 @@ class Study:
         resolution = declared.resolution if measured.resolution is None else measured.resolution
         if resolution is None:
             raise ValueError(
-                f"claim {declared.sentence!r}: neither declaration nor measurement has a resolution"
+                f"claim {declared.sentence!r}: no resolution given; set it in the declaration or in Measured"
             )
         return Claim(
             declared.sentence_of(case),
@@ -319,7 +323,7 @@ class Study:
         )
 
     def sentences(self) -> dict[str, str]:
-        """Return the sentences that are claimed of engines, and for each what ``only`` of ``measure`` calls it."""
+        """Return the sentences about engines, and for each its selector in ``only`` of ``measure``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 

@@ -1,1 +1,1 @@
-"""Which law of friction an engine has, how fast its errors fall, and to what: from short motions, at four steps."""
+"""Diagnosis of an engine: friction law, order and limit of its errors, from short motions at four steps."""

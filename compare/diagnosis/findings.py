@@ -1,4 +1,4 @@
-"""What is found of one engine in parts, each measured by itself: one that hangs costs itself only."""
+"""Parts of an engine's diagnosis, measured separately so that a hanging part does not affect the others."""
 
 from __future__ import annotations
 
@@ -21,53 +21,53 @@ from compare.foreign import CASES, Quantity
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
-# --- The same question at ever smaller tolerances or steps, and what the answers tend to.
+# --- Convergence of a quantity at successively smaller tolerances or steps.
 
 RUNGS = 4
-"""Of a ladder, for every engine and on every machine: what one costs depends on neither."""
+"""Number of rungs of a ladder, the same for every engine and machine."""
 
 HALVED = 2.0
 """Ratio of fixed steps from rung to rung."""
 
 SAFETY = 3.0
-"""Error of the finest rung over its change. Of a first order and halved steps that is three times the error."""
+"""Ratio of the error estimate to the last change: three times the error for first order and halved steps."""
 
 
 def tolerances(engine: Engine) -> FloatArray:
-    """Return the tolerances of the rungs, from the largest, shape (RUNGS,); the last one is the usual."""
+    """Return the tolerances of the rungs in descending order, shape (RUNGS,); the last one is the default."""
     factor = COARSENING if engine.step is None else HALVED**engine.root
     return USUAL_TOLERANCE * factor ** np.arange(RUNGS - 1, -1, -1.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Ladder:
-    """Answers to one question, an array of numbers at each rung, shape (RUNGS, ...)."""
+    """Values of one quantity at each rung, shape (RUNGS, ...)."""
 
     values: FloatArray
 
     @classmethod
     def of(cls, engine: Engine, question: Callable[[float], ArrayLike]) -> Ladder:
-        """Ask ``question(tolerance)`` at each rung."""
+        """Evaluate ``question(tolerance)`` at each rung."""
         return cls(np.array([question(tolerance) for tolerance in tolerances(engine).tolist()], dtype=float))
 
     @property
     def finest(self) -> FloatArray:
-        """The answer at the finest rung, shape (...)."""
+        """Value at the finest rung, shape (...)."""
         return np.asarray(self.values[-1])
 
     @property
     def error(self) -> FloatArray:
-        """What the finest answer may be off what the answers tend to, shape (...), never less than rounding."""
+        """Estimated distance of the finest value from the limit, shape (...), at least rounding error."""
         change = np.max(np.abs(np.diff(self.values[-3:], axis=0)), axis=0)
         return np.asarray(SAFETY * change + ROUNDING * np.max(np.abs(self.finest), initial=0.0))
 
 
 def step_ratio(engine: Engine) -> float:
-    """Return by how much what is called a step falls from rung to rung: the tolerance, where none is fixed."""
+    """Return the ratio of steps from rung to rung, or of tolerances if the step is not fixed."""
     return COARSENING if engine.step is None else HALVED
 
 
-# --- The parts, and what is found in each.
+# --- The parts and their results.
 
 
 @functools.cache
@@ -85,23 +85,23 @@ MOTIONS = CASES | {
         exact=_exact_ring,
     )
 }
-"""What every engine is asked, if it promises it."""
+"""Motions for every engine that supports them."""
 
 
 @dataclass(frozen=True)
 class Creep:
-    """How a block moves that friction should hold.
+    """Creep of a block that friction should hold.
 
     Parameters
     ----------
     speed : float
-        Of a block pulled with half of μN, in m/s, at the finest rung.
+        Speed in m/s of a block under a load of μN/2, at the finest rung.
     order : float
-        By which it falls with the step, or with the tolerance where no step is fixed; NaN where there is none.
+        Order of the speed in the step, or in the tolerance if the step is not fixed; NaN if undefined.
     smoothing : str
-        The law of friction at slow slip that makes blocks creep so; "" where none does.
+        Regularised friction law that explains the creep; "" if none does.
     epsilon : float
-        Of that law, in m/s, at the finest rung.
+        Regularisation of that law in m/s, at the finest rung.
 
     """
 
@@ -113,7 +113,7 @@ class Creep:
 
 @dataclass(frozen=True)
 class Lag:
-    """By how many s friction acts along an earlier slip, at the finest rung, its error, and its order in the step."""
+    """Delay in s of the friction force behind the slip at the finest rung, its error, and its order in the step."""
 
     seconds: float
     error: float
@@ -122,20 +122,20 @@ class Lag:
 
 @dataclass(frozen=True)
 class Motion:
-    """How far off the exact motion one case of ``compare.foreign`` is.
+    """Errors of one case of ``compare.foreign`` against the exact motion.
 
     Parameters
     ----------
     errors : tuple of float
-        Of all rungs, in m, the largest over time.
+        Largest error over time at each rung, in m.
     estimate : float
-        What the last of them may be by the engine's own change from rung to rung.
+        Estimate of the last error in m from the changes between rungs.
     order : float
-        By which it falls with the step, or with the tolerance where no step is fixed; NaN where it has none.
+        Order of the error in the step, or in the tolerance if the step is not fixed; NaN if undefined.
     resolution : float
-        In m: a tenth of what another law would change, see ``Case``.
+        A tenth of the change due to another friction law, in m, see ``Case``.
     seconds : float
-        Of the processor, at the finest rung.
+        Processor time in s at the finest rung.
 
     """
 
@@ -147,17 +147,17 @@ class Motion:
 
     @property
     def error(self) -> float:
-        """That of the finest rung, in m."""
+        """Error at the finest rung, in m."""
         return self.errors[-1]
 
     @property
     def converges(self) -> bool:
-        """Whether the engine's own error explains how far it is off."""
+        """True if the estimate covers the error."""
         return self.error <= self.estimate
 
     @property
     def conclusive(self) -> bool:
-        """Whether that error is small enough to tell another law."""
+        """True if the estimate is small enough to exclude another law."""
         return self.estimate <= self.resolution
 
 
@@ -165,14 +165,14 @@ Part = Friction | Creep | Lag | Motion
 
 
 def friction(engine: Engine) -> Friction:
-    """Return the law by which blocks are retarded that slide on a plane at rest."""
+    """Return the friction law that decelerates blocks on a plane at rest."""
     ladder = Ladder.of(engine, functools.partial(probes.forces, engine))
     noise = engine.precision * probes.SPEED * probes.SLIDE.mass / (probes.FRICTION * probes.SLIDES_FOR)
     return fitted(ladder.finest, float(np.max(ladder.error[:, :2])) + noise)
 
 
 def creep(engine: Engine) -> Creep:
-    """Return how blocks creep that are pulled with less than friction can hold."""
+    """Return the creep of blocks under loads that friction can hold."""
     ladder = Ladder.of(engine, functools.partial(probes.creep, engine))
     half = ladder.values[:, probes.PULLS.index(0.5)]
     order = falling(np.abs(half), step_ratio(engine))
@@ -180,13 +180,13 @@ def creep(engine: Engine) -> Creep:
 
 
 def lag(engine: Engine) -> Lag:
-    """Return by how much friction lags behind the slip."""
+    """Return the delay of friction behind the slip."""
     ladder = Ladder.of(engine, functools.partial(probes.lag, engine))
     return Lag(float(ladder.finest), float(ladder.error), falling(np.abs(ladder.values), step_ratio(engine)))
 
 
 def motion(engine: Engine, name: str) -> Motion:
-    """Return what the engine makes of the case of that name."""
+    """Return the errors of the motion ``MOTIONS[name]``."""
     case, seconds = MOTIONS[name], 0.0
 
     def question(tolerance: float) -> FloatArray:
@@ -213,18 +213,18 @@ def _largest(vectors: FloatArray) -> float:
 
 
 def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
-    """Return by which power of the step the last of ``sizes`` is below the one before, at a ``ratio``-fold step."""
+    """Return the order from the last two of ``sizes`` and the ``ratio`` of their steps; NaN if undefined."""
     if len(sizes) < 2 or not (0.0 < sizes[-2] < math.inf and 0.0 < sizes[-1] < math.inf):
         return math.nan
     return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
 
 
 PROBES: dict[str, type[Any]] = {"law": Friction, "creep": Creep, "lag": Lag}
-"""The parts that tell the law, and what each of them finds."""
+"""Parts that identify the friction law, and their results."""
 
 
 def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
-    """Return what is measured of an engine, by name: the law at rest and at slip first, then the motions it promises.
+    """Return the measurements that apply to an engine by name: the friction law first, then the motions.
 
     The functions can be sent to other processes.
     """

@@ -1,7 +1,7 @@
-"""Laws of friction that engines have, and which of them a measured force is: fitted by least squares.
+"""Friction laws of engines, and the identification of a measured force among them by least squares.
 
-A law that knows directions of the world has a polygon in place of Coulomb's circle: it acts along the corner that is
-nearest to against the slip. A square on its side is the box, in which each axis has friction of its own.
+An anisotropic law replaces Coulomb's circle by a polygon: the force points to the corner nearest to the direction
+opposite to the slip. The box, with independent friction along each axis, is a square with sides across the axes.
 """
 
 from __future__ import annotations
@@ -22,22 +22,22 @@ from reference_model.systems import FloatArray
 Complex = NDArray[np.complex128]
 
 SIDES = (3, 4, 6, 8, 12, 16)
-"""Of the polygons that are tried, with a corner on the x axis and with a side across it."""
+"""Number of sides of the polygons, each tried with a corner on the x axis and with a side across it."""
 
 PLANE = np.array([1.0, 1j])
 
 FITS = 1e-6
-"""Misfit over μN that any law may have: what slides for a moment is retarded by next to a constant force."""
+"""Misfit over μN allowed for any law, because the force is not quite constant during the slide."""
 
 DISTINCT = 3.0
-"""How many times worse the next best law must fit, and how many times its error a deviation must be, to be named."""
+"""Least ratio of the second-best misfit to the best, and of a reported deviation to its error."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """A law's force over μN, along x + iy, against a slip that is a unit vector.
+    """Direction of a law's force as x + iy, for a slip that is a unit vector.
 
-    ``sizes`` are the names that the law has if its force has the sizes beside them.
+    ``sizes`` maps the names of the law to the magnitudes of its force over μN.
     """
 
     direction: Callable[[complex], complex]
@@ -52,7 +52,7 @@ def _against(slip: complex) -> complex:
 
 
 def _polygon(sides: int, tilt: float, slip: complex) -> complex:
-    """Return the corner, the first one at ``tilt`` in rad, that is nearest to against the slip."""
+    """Return the corner nearest to the direction opposite to the slip; the first corner is at ``tilt`` in rad."""
     step = 2.0 * math.pi / sides
     return cmath.rect(1.0, tilt + step * round((cmath.phase(-slip) - tilt) / step))
 
@@ -62,12 +62,12 @@ def _shapes() -> tuple[Shape, ...]:
     for sides in SIDES:
         outside = 1.0 / math.cos(math.pi / sides)
         for tilt, across in ((0.0, "a corner on"), (math.pi / sides, "a side across")):
-            name = f"pyramid of {sides} sides with {across} the x axis"
-            names = {f"{name}, inside of the cone": 1.0, f"{name}, around the cone": outside}
+            name, end = f"pyramid with {sides} sides", f"with {across} the x axis"
+            names = {f"{name} inside the cone, {end}": 1.0, f"{name} around the cone, {end}": outside}
             if sides == 4 and tilt == 0.0:
-                names = {"pyramid of 4 sides: it acts along the nearest axis": 1.0} | names
+                names = {"pyramid with 4 sides that acts along the nearest axis": 1.0} | names
             if sides == 4 and tilt > 0.0:
-                names = {"box: each axis has its own": outside} | names
+                names = {"box with a separate limit for each axis": outside} | names
             found.append(Shape(functools.partial(_polygon, sides, tilt), names))
     return tuple(found)
 
@@ -77,22 +77,22 @@ SHAPES = _shapes()
 
 @dataclass(frozen=True)
 class Friction:
-    """The law that fits a force best.
+    """Friction law with the best fit.
 
     Parameters
     ----------
     shape : str
-        Which it is, by the name that ``SHAPES`` have for it.
+        Name of the law in ``SHAPES``.
     strength : float
-        μ over what it should be.
+        Ratio of the fitted to the nominal μ.
     angle : float
-        In rad, by which the force is turned against the law's, counterclockwise.
+        Counterclockwise rotation of the force from the law's direction, in rad.
     error : float
-        What the force measured may be off by, over μN: that of ``strength`` and ``angle`` too.
+        Error of the measured force over μN; also the error of ``strength`` and ``angle``.
     misfit : float
-        Largest difference of the force, over μN.
+        Largest difference between the forces, over μN.
     sure : bool
-        Whether no other law fits nearly as well, and this one within three times the error.
+        True if this law fits within three times the error and no other law fits nearly as well.
 
     """
 
@@ -105,7 +105,7 @@ class Friction:
 
 
 def fitted(forces: FloatArray, error: float) -> Friction:
-    """Return the law of ``forces`` as ``probes.forces`` gives them, which are known to ``error``."""
+    """Return the law of best fit to ``forces`` from ``probes.forces``, with their ``error`` over μN."""
     measured, slips = forces[:, :2] @ PLANE, forces[:, 2:] @ PLANE
     fits = sorted((_fit(shape, slips, measured) for shape in SHAPES), key=lambda fit: fit[2])
     (shape, factor, misfit), next_best = fits[0], fits[1][2]
@@ -115,7 +115,7 @@ def fitted(forces: FloatArray, error: float) -> Friction:
 
 
 def _fit(shape: Shape, slips: Complex, measured: Complex) -> tuple[Shape, complex, float]:
-    """Return a shape, the complex factor that fits best, and the largest difference that it leaves."""
+    """Return the shape, the complex factor of best fit, and the largest remaining difference."""
     law = np.array([shape.direction(complex(slip)) for slip in slips])
     factor = complex(np.vdot(law, measured) / np.vdot(law, law)) or 1e-300
     return shape, factor, float(np.max(np.abs(measured - factor * law)))
@@ -123,7 +123,7 @@ def _fit(shape: Shape, slips: Complex, measured: Complex) -> tuple[Shape, comple
 
 @dataclass(frozen=True)
 class Smoothing:
-    """How friction falls at slow slip: its share of μN as a formula, and the slip over ε at which it is a share."""
+    """Regularised friction: its formula over μN, and the inverse, v/ε for a share of μN."""
 
     name: str
     slip: Callable[[FloatArray], FloatArray]
@@ -138,11 +138,11 @@ SMOOTHINGS = (
 
 
 SMOOTHING_FITS = 0.2
-"""Largest relative misfit of a smoothing that is named."""
+"""Largest relative misfit of an identified regularisation."""
 
 
 def smoothing_of(creep: FloatArray) -> tuple[str, float]:
-    """Return which smoothing makes a block creep so under ``PULLS``, and its ε in m/s; "" and NaN if none does."""
+    """Return the regularisation that explains the creep speeds under ``PULLS`` and its ε in m/s, else "" and NaN."""
     if not np.all(creep > 0.0):
         return "", math.nan
     pulls = np.array(PULLS)

@@ -1,8 +1,8 @@
-"""Motions so short and simple that they tell a force: a block that slides, one that is pulled, and a turning slip.
+"""Short motions that reveal the friction force: a sliding block, a loaded block and a rotating slip.
 
-The force of friction is read off the change of momentum, which needs no law of friction and no exact solution. What
-slides straight on a plane at rest is retarded by a constant force: there no step has an error, so that cone, box and
-pyramid part at any step.
+The change of momentum gives the friction force without a friction law or an exact solution. A block that slides
+straight on a plane at rest is decelerated by a constant force. Steps then have no error, so any step distinguishes
+cone, box and pyramid.
 """
 
 from __future__ import annotations
@@ -17,47 +17,47 @@ from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
 
 HEADINGS = np.radians(np.arange(4.0, 364.0, 15.0))
-"""In rad. No two axes of a polygon with up to 16 sides are as near to one of them as each other."""
+"""Directions of slip in rad; no direction is equally close to two axes of a polygon with up to 16 sides."""
 
 FRICTION = 0.2
-"""μN in N, of a mass of 1 kg."""
+"""μN in N for a mass of 1 kg."""
 
 WEAK = 1e-5
-"""Stiffness in N/m: its force is next to none beside friction, and is left out of what is read off the momentum.
+"""Stiffness in N/m: its force is small compared with friction, and the momentum balance accounts for it.
 
-It is not less, since engines may take μN over the natural frequency for a speed that matters.
+It is not smaller because engines may derive a characteristic speed from μN and the natural frequency.
 """
 
 SLIDE = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
 
 SPEED = 1.0
-"""Of what slides, in m/s."""
+"""Speed of sliding blocks, in m/s."""
 
 SETTLES_FOR = 0.05
 """Time in s before friction is measured: MuJoCo's soft contact takes 0.04 s to reach its steady force."""
 
 SLIDES_FOR = 0.1
-"""In s: friction takes a fiftieth of the speed, and less than the nearest heading has across an axis."""
+"""Duration in s: friction removes 1/50 of the speed, less than the smallest component across an axis."""
 
 PULLS = (0.25, 0.5, 0.75, 0.9)
-"""Of what does not slide, as fractions of μN."""
+"""Loads on blocks that should stick, as fractions of μN."""
 
 PULLED_FOR = 4.0
-"""In s; the speed in the second half counts."""
+"""Duration in s; the creep speed is measured in the second half."""
 
 TURN = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=0.02, disc_speed=1.0, offset=0.0)
 
 TURNS_FOR = 1.0
-"""In s. A pin that leaves the axis along a spoke has a slip that turns as the disc carries more of it along."""
+"""Duration in s. The slip of a pin that leaves the axis radially rotates as the speed of the disc under it grows."""
 
 PANELS = 32
-"""Of a motion along which friction is integrated."""
+"""Number of intervals for the integral of friction."""
 
 
 def forces(engine: Engine, tolerance: float) -> FloatArray:
-    """Return what acts on blocks that slide along ``HEADINGS``, shape (n, 4): F_x and F_y over μN, and the slip.
+    """Return F_x and F_y over μN and the slip direction of blocks that slide along ``HEADINGS``, shape (n, 4).
 
-    Both are means over ``SLIDES_FOR``. The slip is given as a unit vector, which a force across it turns.
+    Both are means over ``SLIDES_FOR``. The slip direction is a unit vector, which a transverse force rotates.
     """
     velocities = [cmath.rect(SPEED, heading) for heading in HEADINGS.tolist()]
     times = (0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR)
@@ -74,8 +74,8 @@ def forces(engine: Engine, tolerance: float) -> FloatArray:
 
 
 def creep(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the speed in m/s at which a block creeps that ``PULLS`` do not set in motion, shape (n,)."""
-    # so far that a metre changes next to nothing
+    """Return the creep speed in m/s of a block under each of ``PULLS``, shape (n,)."""
+    # an offset so large that a displacement of 1 m hardly changes the load
     blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in PULLS]
     times = np.array([0.0, 0.5, 1.0]) * PULLED_FOR
     runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
@@ -83,9 +83,9 @@ def creep(engine: Engine, tolerance: float) -> FloatArray:
 
 
 def lag(engine: Engine, tolerance: float) -> float:
-    """Return by how many s friction acts along the slip of an earlier time; 0 is Coulomb's.
+    """Return the delay in s of the friction direction behind the slip; 0 for Coulomb friction.
 
-    From the change of momentum across the slip, which turns, over what a shift in time would change of it.
+    It is the missing momentum over the change of momentum due to a shift in time, along the direction of the latter.
     """
     times = np.linspace(0.0, TURNS_FOR, PANELS + 1)
     states = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), times, tolerance=tolerance).states

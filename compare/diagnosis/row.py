@@ -1,4 +1,4 @@
-"""A row of the matrix: what was found of one engine, and what that means in sentences."""
+"""A row of the matrix: results for one engine, and sentences that explain them."""
 
 from __future__ import annotations
 
@@ -20,41 +20,41 @@ from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
 LEAST_DEVIATION = 1e-8
-"""Of a force or its direction, relative, that is told."""
+"""Smallest reported relative deviation of a force or its direction."""
 
 FALLS = 0.3
-"""Order in the step from which on something is taken to fall with it."""
+"""Order in the step above which a quantity counts as decreasing with it."""
 
 RESTS = 1e-9
-"""Speed in m/s, over that of what slides, below which a block is at rest."""
+"""Ratio of speed to sliding speed below which a block is at rest."""
 
 LEAST_LAG = 1e-6
-"""In s, that is told, if the force is known as well: slip turns by about 1 rad/s in the probe."""
+"""Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)
-"""Lags in steps that are called a step's."""
+"""Range of lags, in steps, that are reported in steps."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """What was found of an engine.
+    """Results for an engine.
 
     Parameters
     ----------
     engine, version : str
-        What it calls itself.
+        Name and version of the engine.
     step : float
-        Of the finest rung, in s; NaN where the engine has a tolerance.
+        Step in s at the finest rung; NaN if the engine has a tolerance.
     law, creep, lag
-        What the probes say; None where they were not asked or gave nothing.
+        Results of the probes; None if not measured.
     motions : mapping
-        Of each motion that it was asked for, by name.
+        Errors of the simulated motions, by name.
     gaps : mapping
-        Why a part has no result, by its name.
+        Reason why a part has no result, by name.
     not_simulated : tuple of str
-        Parts that the engine says it does not simulate.
+        Parts that the engine does not support.
     seconds : float
-        That all took, on the clock.
+        Total wall-clock time in s.
 
     """
 
@@ -71,7 +71,7 @@ class Row:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What the engine is, in a few sentences, the law first."""
+        """Diagnosis in a few sentences, the friction law first."""
         said = []
         if self.law is not None:
             said.append(_of_law(self.law))
@@ -81,7 +81,7 @@ class Row:
             said.append(_of_lag(self.lag, self.step, self._least_lag))
         said.append(_of_motions(self.motions, self._refined))
         for reason, names in self._gaps_by_reason.items():
-            said.append(f"No result of {', '.join(names)}: {reason}.")
+            said.append(f"No result for {', '.join(names)}: {reason}.")
         return tuple(filter(None, said))
 
     @property
@@ -93,27 +93,27 @@ class Row:
 
     @property
     def _refined(self) -> str:
-        """What falls from rung to rung."""
+        """Quantity that decreases from rung to rung: "tolerance" or "step"."""
         return "tolerance" if math.isnan(self.step) else "step"
 
     @property
     def _is_coulombs(self) -> bool:
-        """Whether it acts against the slip with μN: against that of an earlier time, then, if it lags."""
+        """True if friction opposes the slip with μN, possibly with a lag."""
         return self.law is not None and self.law.sure and not _is_other(self.law)
 
     @property
     def _least_lag(self) -> float:
-        """The lag in s that is told."""
+        """Smallest reported lag in s."""
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
 
     @property
     def empty(self) -> bool:
-        """Whether nothing was measured, and nothing failed."""
+        """True if nothing was measured and nothing failed."""
         return not (self.law or self.creep or self.lag or self.motions or self.gaps)
 
     @property
     def wrong(self) -> bool:
-        """Whether something was found that no smaller step cures."""
+        """True if a deviation was found that persists at smaller steps."""
         return (
             (self.law is not None and _is_other(self.law))
             or (self.creep is not None and _creeps_for_good(self.creep))
@@ -125,28 +125,28 @@ class Row:
 def _of_law(law: Friction) -> str:
     if law.misfit > max(DISTINCT * law.error, FITS):
         return (
-            f"No known law fits the friction: the best one, the {law.shape}, "
-            f"misses it by {error_text(law.misfit)} times μN."
+            f"No known friction law fits: the best fit, a {law.shape}, "
+            f"deviates by {error_text(law.misfit)} times μN."
         )
     if not law.sure:
         return (
-            "Which law of friction it is stays open: "
-            f"forces are known only to within {error_text(law.error)} times μN."
+            "The friction law could not be identified: "
+            f"the error of the forces is {error_text(law.error)} times μN."
         )
     deviations = _deviations(law)
     name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
     if deviations:
         return f"{name}, but {' and '.join(deviations)}."
-    return f"{name}, its force right to within {error_text(law.error)} times μN."
+    return f"{name}, accurate to {error_text(law.error)} times μN."
 
 
 def _is_other(law: Friction) -> bool:
-    """Return whether a law is surely not Coulomb's."""
+    """Return whether a law certainly differs from Coulomb's."""
     return (law.sure and law.shape != CONE) or bool(_deviations(law))
 
 
 def _deviations(law: Friction) -> list[str]:
-    """Return in words in what a force is off its own law."""
+    """Return descriptions of the deviations of a force from its own law."""
     found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION)
     if abs(law.strength - 1.0) > least:
@@ -156,7 +156,7 @@ def _deviations(law: Friction) -> list[str]:
         )
     if abs(law.angle) > least:
         found.append(
-            f"its force is turned by {error_text(math.degrees(law.angle))}° from where it should act "
+            f"its force is rotated by {error_text(math.degrees(law.angle))}° "
             f"(±{error_text(math.degrees(law.error))}°)"
         )
     return found
@@ -164,17 +164,14 @@ def _deviations(law: Friction) -> list[str]:
 
 def _of_creep(creep: Creep, refined: str) -> str:
     if abs(creep.speed) < RESTS * SPEED:
-        return "A block that friction can hold rests."
-    how = f"falls with the {refined}" if creep.order > FALLS else f"is the same at every {refined}"
+        return "A block loaded below μN stays at rest."
+    how = f"decreasing with the {refined}" if creep.order > FALLS else f"independent of the {refined}"
     if creep.smoothing:
         return (
-            f"A block that friction can hold creeps: friction is smoothed as {creep.smoothing}, and "
-            f"ε = {error_text(creep.epsilon)} m/s {how}."
+            f"A block loaded below μN creeps: friction is regularised as {creep.smoothing} with "
+            f"ε = {error_text(creep.epsilon)} m/s, {how}."
         )
-    return (
-        f"A block that friction can hold creeps at {error_text(abs(creep.speed))} m/s under half of "
-        f"μN = {FRICTION:g} N, which {how}."
-    )
+    return f"A block loaded with half of μN = {FRICTION:g} N creeps at {error_text(abs(creep.speed))} m/s, {how}."
 
 
 def _creeps_for_good(creep: Creep) -> bool:
@@ -184,11 +181,11 @@ def _creeps_for_good(creep: Creep) -> bool:
 def _of_lag(lag: Lag, step: float, least: float) -> str:
     if abs(lag.seconds) < least:
         return ""
-    when = "earlier" if lag.seconds > 0.0 else "later"
+    verb = "lags" if lag.seconds > 0.0 else "leads"
     if _lags_for_good(lag, least):
-        return f"It acts along the slip {error_text(abs(lag.seconds))} s {when}, at every step."
+        return f"Friction {verb} the slip by {error_text(abs(lag.seconds))} s at every step size."
     if lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
-        return f"It acts along the slip {error_text(abs(lag.seconds) / step)} steps {when}."
+        return f"Friction {verb} the slip by {error_text(abs(lag.seconds) / step)} steps."
     return ""
 
 
@@ -197,40 +194,38 @@ def _lags_for_good(lag: Lag, least: float) -> bool:
 
 
 def _of_motions(motions: dict[str, Motion], refined: str) -> str:
-    """Return how errors fall, and which motions tend to another end than the exact one."""
+    """Return a sentence on the order of the errors and the motions that do not converge to the exact one."""
     others = {name: motion for name, motion in motions.items() if not motion.converges}
     said = []
     orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
     if orders:
         least, most = (f"{order:.1f}" for order in (min(orders), max(orders)))
-        said.append(
-            f"Its errors fall as the {refined} to the power {least}" + f" to {most}" * (least != most)
-        )
+        said.append(f"errors are of order {least}" + f" to {most}" * (least != most) + f" in the {refined}")
     open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
     if open_:
         said.append(f"too coarse to tell: {', '.join(open_)}")
     if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
-        said.append(f"nothing changes with the {refined}, so that no error can be told from another law")
+        said.append(f"results do not change with the {refined}, so an error cannot be told from another law")
     elif others:
         off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
-        said.append(f"what it tends to is another motion than the exact one, off by: {off}")
+        said.append(f"converges to a motion that deviates from the exact one: {off}")
     text = "; ".join(said)
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 
-# --- The picture of the matrix: how far each engine is off each exact motion, rung by rung.
+# --- The figure of the matrix: error of each engine in each motion against the rung.
 #
-# From rung to rung a fixed step is halved; a tolerance falls to an eighth. The dotted line is a tenth of what
-# another law would change.
+# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to
+# another friction law.
 
 MARKERS = "os^Dvx+*"
 
 LEAST = 1e-16
-"""In m: what is shown of less."""
+"""Smallest plotted error in m; smaller errors are drawn there."""
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """Return a panel for each motion that any engine was asked for, with a line for each engine."""
+    """Return a figure with a panel for each simulated motion and a line for each engine."""
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
     columns = min(4, len(names))
     figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
@@ -241,7 +236,9 @@ def drawn(rows: Sequence[Row]) -> Figure:
                 rungs = np.arange(RUNGS - len(errors), RUNGS) + 1
                 panel.semilogy(rungs, np.maximum(errors, LEAST), marker=marker, label=row.engine)
         panel.axhline(MOTIONS[name].resolution, color="0.6", linewidth=0.8, linestyle=":")
-        panel.set(title=name, xticks=range(1, RUNGS + 1), xlabel="rung, to finer steps", ylabel="error in m")
+        panel.set(
+            title=name, xticks=range(1, RUNGS + 1), xlabel="rung (finer to the right)", ylabel="error in m"
+        )
     for panel in panels[len(names) :]:
         panel.set_visible(False)
     lines = {str(line.get_label()): line for panel in panels for line in panel.get_lines()}
@@ -250,11 +247,11 @@ def drawn(rows: Sequence[Row]) -> Figure:
     return figure
 
 
-# --- The files of a matrix: numbers and sentences as JSON, and the picture.
+# --- Files of a matrix: numbers and sentences as JSON, and the figure.
 
 
 def write_rows(rows: Sequence[Row], folder: Path) -> None:
-    """Write what is found so far into ``folder``/matrix.json; a file that is there is complete."""
+    """Write the rows available so far to ``folder``/matrix.json; the file is replaced atomically."""
     content = [as_json(row) | {"sentences": list(row.sentences), "wrong": row.wrong} for row in rows]
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 

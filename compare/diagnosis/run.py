@@ -1,4 +1,4 @@
-"""Diagnoses engines: each part in a process of its own, a row as soon as its parts are there."""
+"""Diagnosis of engines: parts run in worker processes, and each row is yielded when its parts are complete."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from compare.run.workers import Failure, Workers
 from reference_model.systems import FloatArray
 
 IN_SHORT = 20.0
-"""Time in s after which a part of a diagnosis in short is given up."""
+"""Time limit in s for each part of a short diagnosis."""
 
 
 def diagnosed(
@@ -27,18 +27,18 @@ def diagnosed(
     jobs: int = 1,
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
 ) -> Iterator[Row]:
-    """Yield the row of each engine, in the order in which they are complete.
+    """Yield the row of each engine in order of completion.
 
     Parameters
     ----------
     engines : tuple of Engine
-        Which are to be diagnosed; one that simulates nothing of what is asked has an empty row.
+        The engines; an engine that supports no part has an empty row.
     limit : float
-        In s, after which a part is given up; the row says so.
+        Time limit in s for each part; the row reports parts that exceed it.
     jobs : int
         Number of processes.
     progress : callable
-        Called with the number of finished and of all parts, and the name of the last one.
+        Called with the number of finished parts, the total number and the name of the last part.
 
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
@@ -60,9 +60,9 @@ def diagnosed(
 
 
 def in_short(engine: Engine, workers: Workers) -> Row:
-    """Return what the probes say of an engine, in seconds; after a first part without a result no other is asked.
+    """Return the results of the probes, within seconds; stop after the first part without a result.
 
-    ``workers`` are best one with the limit ``IN_SHORT``, the same for one engine after the other.
+    ``workers`` should be a single worker with the limit ``IN_SHORT``, reused for all engines.
     """
     row, parts = _empty(engine), parts_of(engine)
     for part in PROBES:
@@ -74,7 +74,7 @@ def in_short(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, or why it is none of what the engine does."""
+    """Return one part of an engine's diagnosis, or the reason if the engine does not support it."""
     try:
         return parts_of(engine)[part](engine)
     except UnsupportedSystemError as error:
@@ -86,7 +86,7 @@ def _empty(engine: Engine) -> Row:
 
 
 def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
-    """Return ``row`` with what was found of a part."""
+    """Return ``row`` with the result of a part."""
     row = replace(row, seconds=row.seconds + seconds)
     if isinstance(found, Failure):
         return replace(row, gaps=row.gaps | {part: str(found)})
@@ -94,19 +94,19 @@ def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
         return replace(row, not_simulated=(*row.not_simulated, part))
     if isinstance(found, Motion):
         return replace(row, motions=row.motions | {part: found})
-    return replace(row, **{part: found})  # of PROBES, which are the row's own fields
+    return replace(row, **{part: found})  # the names in PROBES are fields of the row
 
 
-# --- Rows of engines of other people, from what is recorded of them.
+# --- Rows from recordings of foreign engines.
 
 
 def recorded_rows() -> tuple[Row, ...]:
-    """Return a row for each recorded setting of an engine that is not ours."""
+    """Return a row for each recorded setting of a foreign engine."""
     return tuple(row_of(recording) for recording in recordings() if recording.setting)
 
 
 def row_of(recording: Recording) -> Row:
-    """Return the row of one setting of an engine, or of an engine of ours, of which no law is recorded."""
+    """Return the row of a recording; recordings of our own engines contain no friction law."""
     motions = {name: _motion(runs, name) for name, runs in recording.runs.items()}
     probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
     version = f"{recording.version}, recorded on {recording.recorded}"
@@ -115,7 +115,7 @@ def row_of(recording: Recording) -> Row:
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:
-    """Return the last rungs of a recorded ladder, with the estimate that the report has."""
+    """Return the last rungs of a recorded ladder, with the same error estimate as in the report."""
     ratio = float(runs[-2, TOLERANCE] / runs[-1, TOLERANCE]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),

@@ -1,4 +1,4 @@
-"""Engines of other people: the cases by which they are measured, and what was recorded of them."""
+"""Foreign engines: the cases that measure them, and their recorded results."""
 
 from __future__ import annotations
 
@@ -19,37 +19,37 @@ from reference_model import Trajectory, simulate
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 
-# --- The motions by which foreign engines are measured: five of a pin and one of a disc on six points.
+# --- Motions that measure foreign engines: five of a pin and one of a disc on six points.
 
 Quantity = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A motion, and what of it is compared.
+    """A motion and the quantity that is compared.
 
     Parameters
     ----------
     title : str
-        In words.
+        Description of the motion.
     sentence : str
-        What is claimed of it.
+        Claim about the motion.
     kind : str
-        What ``exact`` is taken from, as in ``compare.claims.claim.KINDS``.
+        Source of ``exact``, one of ``compare.claims.claim.KINDS``.
     system : PinOnDisc or DiscOnDisc
         The parameters.
     start : tuple of float
-        The state at the first of ``times``.
+        State at the first of ``times``.
     times : array of shape (n,)
-        In s.
+        Times in s.
     quantity : callable
-        Reads what is compared off a trajectory, complex numbers in m.
+        Returns the compared quantity of a trajectory, complex numbers in m.
     exact : callable
-        Returns what it should be.
+        Returns the exact quantity.
     resolution : float
-        In m: a tenth of what another law of friction, or a pin that lets go, would change of it.
+        A tenth of the change of the quantity due to another friction law or to a release, in m.
     equation : str
-        Of the paper, where ``exact`` is from there.
+        Equation of the paper that gives ``exact``, or "".
 
     """
 
@@ -66,7 +66,7 @@ class Case:
 
 
 def _places(trajectory: Trajectory) -> Quantity:
-    """Return where the pin is, or the first contact point of a disc, which depends on its angle too."""
+    """Return the positions of the pin, or of a disc's first contact point, which also depends on its angle."""
     system, states = trajectory.system, trajectory.states
     places = states[:, 0] + 1j * states[:, 1]
     if isinstance(system, DiscOnDisc):
@@ -75,7 +75,7 @@ def _places(trajectory: Trajectory) -> Quantity:
 
 
 def _radius(trajectory: Trajectory) -> Quantity:
-    """Return the mean distance from the axis in the last fifth of the time."""
+    """Return the mean distance from the axis over the last fifth of the time."""
     late = trajectory.times >= 0.8 * trajectory.times[-1]
     return np.array([np.mean(np.abs(_places(trajectory)[late]))], dtype=complex)
 
@@ -99,7 +99,7 @@ def _exact_radius() -> Quantity:
 
 
 def _exact_stuck() -> Quantity:
-    """Return where a pin is that turns with the disc: nothing of it depends on a law of slip."""
+    """Return the positions of a pin that turns with the disc, which do not depend on the law of slip."""
     return np.asarray(_ON_THE_DISC[0] * np.exp(1j * _CENTRED.disc_speed * _STUCK_TIMES))
 
 
@@ -127,7 +127,7 @@ CASES = {
         resolution=0.08,
     ),
     "whirl": Case(
-        title="radius of the whirl without an offset, (11)",
+        title="radius of the whirl without offset, (11)",
         sentence="The whirl's radius is that of (11)",
         kind="formula",
         system=_CENTRED,
@@ -151,8 +151,8 @@ CASES = {
         equation="(6)",
     ),
     "release": Case(
-        title="a pin that sticks for 1.5 s and lets go",
-        sentence="A pin lets go when Coulomb's law says",
+        title="a pin that sticks for 1.5 s and is then released",
+        sentence="The release of a pin follows Coulomb's law",
         kind="trajectory",
         system=FIG5,
         start=_UNTIL_RELEASE,
@@ -173,26 +173,26 @@ CASES = {
         resolution=2.5e-3,
     ),
 }
-"""Of Fig. 5's parameters, and of Fig. 11's; the starts on the disc and on the whirl are ours."""
+"""Cases with the parameters of Figs. 5 and 11; the initial states on the disc and on the whirl are ours."""
 
 
-# --- What foreign engines yield, recorded by ``builders/record.py``, and our own engines recorded with them.
+# --- Results of foreign engines and of our own, recorded by ``builders/record.py``.
 
 FOLDER = Path(__file__).parent
 
 COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
-"""Of a recorded run.
+"""Columns of a recorded run.
 
-The error in m is the largest over time, against the exact motion; the change is that against the run before, whose
-tolerance is larger by ``compare.claims.error_estimates.COARSENING``, and none at the first. Seconds are those of
-the processor, wall those on the clock; of an engine that is another process both are those on the clock.
+"error" is the largest error over time in m, against the exact motion. "change" is the change in m against the
+previous run, whose tolerance is larger by ``compare.claims.error_estimates.COARSENING``; NaN for the first run.
+"seconds" is processor time and "wall" is wall-clock time; for an engine in another process both are wall-clock time.
 """
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
-"""Places of ``COLUMNS`` in a recorded run."""
+"""Indices of ``COLUMNS`` in a recorded run."""
 
 DIGITS = 4
-"""Of the numbers in the files."""
+"""Number of digits in the files."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,17 +202,16 @@ class Recording:
     Parameters
     ----------
     engine, version, recorded, platform : str
-        What ran, when and on what.
+        Name, version, date and platform of the recording.
     setting : str
-        Its name; "" for an engine of ours.
+        Name of the setting; "" for one of our own engines.
     says : str
-        How it is set, in words.
+        Description of the setting.
     runs : mapping
-        Of each case that it simulates, by the names of ``compare.foreign.CASES``: arrays of shape
-        (n, len(COLUMNS)), from the largest tolerance to the smallest.
+        Arrays of shape (n, len(COLUMNS)) by the names of ``compare.foreign.CASES``, from the largest tolerance to the
+        smallest, for each supported case.
     probes : mapping
-        What tells the law of friction, as JSON of the parts ``compare.diagnosis.findings.PROBES``; empty where it is
-        not recorded.
+        Parts ``compare.diagnosis.findings.PROBES`` as JSON, which identify the friction law; empty if not recorded.
 
     """
 
@@ -227,17 +226,17 @@ class Recording:
 
     @property
     def name(self) -> str:
-        """Engine and setting."""
+        """Engine and setting, separated by a comma."""
         return f"{self.engine}, {self.setting}" if self.setting else self.engine
 
 
 def recordings() -> tuple[Recording, ...]:
-    """Return all that is recorded, our own engines first, the reference before the others.
+    """Return all recordings, our own engines first, and the reference before the others.
 
     Raises
     ------
     ValueError
-        For a file whose columns are not ``COLUMNS``.
+        If the columns of a file differ from ``COLUMNS``.
 
     """
     found: list[Recording] = []
@@ -254,9 +253,9 @@ def recordings() -> tuple[Recording, ...]:
 
 
 def estimate(runs: FloatArray) -> float:
-    """Return the error estimate in m of the finest of ``runs``, from their ladder: what its last two rungs changed.
+    """Return the error estimate in m of the finest of ``runs``: the sum of the last two changes.
 
-    With an error ~ step^p and two halvings that is (4^p − 1) times the error: three times it at order 1, and it
-    covers it from order 1/2 on. A ladder of one run, which nothing changes, has an error of rounding.
+    With an error ~ step^p and two halvings the estimate is (4^p − 1) times the error: three times the error at order
+    1, and it covers the error for p ≥ 1/2. The estimate of a single run is zero.
     """
     return float(np.nansum(runs[-2:, CHANGE]))

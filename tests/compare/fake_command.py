@@ -1,4 +1,4 @@
-"""The command line with the fake studies in place of the paper's."""
+"""The command line with the fake studies instead of the paper's."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Small studies and engines with known verdicts, to test the machinery around the real ones.
+"""Small studies and engines with known verdicts, which test the infrastructure of real studies.
 
-A module of its own, because functions are sent to other processes by their names. The command line with these studies
-is ``fake_command``.
+They have a separate module because functions are sent to other processes by name. ``fake_command`` is the command
+line with these studies.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ LOADS = np.linspace(0.0, 0.1, 21)
 
 
 class Fake(Study):
-    """A study that finds everything by one function for engines and one for the theory, without declared claims."""
+    """A study without declared claims, measured by one function for engines and one for the theory."""
 
     def measure(self, engine, few=None, only=()):
         return self.provided["measure"](engine)
@@ -40,13 +40,13 @@ class Fake(Study):
 
 
 def fake(name, title, paper, measure, *, finding="", captions=None, provided=None, **more):
-    """Return a study that ``measure`` measures; ``provided`` are its other functions."""
+    """Return a study measured by ``measure``; ``provided`` are its other functions."""
     prose = Prose(title, paper, finding=finding, figures=captions or {})
     return Fake(name, prose, provided={"measure": measure, **(provided or {})}, **more)
 
 
 def straight(system, initial_state, times, *, tolerance=1e-9):
-    """Return a motion at constant velocity: no physics, but a trajectory."""
+    """Return a motion at constant velocity."""
     positions, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
     elapsed = (np.asarray(times) - times[0])[:, np.newaxis]
     states = np.hstack((positions + velocities * elapsed, velocities + 0.0 * elapsed))
@@ -83,7 +83,7 @@ def claim(sentence, engine, predicted, measured, numerical, **more):
 
 
 def recorded(engine, setting, off, *, resolution, own=True, cases=None):
-    """Return what was recorded of a setting: by sentence how far off it is, in m, and its error."""
+    """Return a recorded setting; ``off`` maps sentences to deviations and errors in m."""
     claims = tuple(
         claim(sentence, f"{engine}, {setting}", 0.0, difference, error, equation="", resolution=resolution)
         for sentence, (difference, error) in off.items()
@@ -179,7 +179,7 @@ def measure_agreement(engine):
 
 
 def measure_agreement_and_count(engine):
-    """Leave a mark in the file COUNT for each call."""
+    """Append a mark to the file COUNT at each call."""
     with open(os.environ["COUNT"], "a", encoding="utf-8") as stream:
         stream.write(f"{engine.name}\n")
     return measure_agreement(engine)
@@ -222,7 +222,7 @@ DEATH = fake("death", "A process that dies", "Compiled code may do so.", measure
 
 
 def measure_unending(engine):
-    """Tell that it runs through the file RUNNING, then never finish with the first engine."""
+    """Create the file RUNNING, then never finish with the first engine."""
     if engine.name == GOOD.name:
         return measure_agreement(engine)
     Path(os.environ["RUNNING"]).touch()
@@ -242,7 +242,7 @@ SYSTEMS = {PIN: FIG5, POINTS: replace(FIG11, contact_points=6), RING: FIG11}
 
 
 def measure_what_is_promised(engine):
-    """A claim for each kind of system that the engine simulates."""
+    """Return a claim for each kind of system that the engine simulates."""
     mine = {sentence: system for sentence, system in SYSTEMS.items() if engine.simulates(system)}
     claims = tuple(
         claim(
@@ -258,7 +258,7 @@ def measure_what_is_promised(engine):
 
 
 def measure_a_ring(engine):
-    """A study that is all about the ring does not have to ask."""
+    """Simulate a ring without checking for support, as a study of rings alone may do."""
     moved = engine.simulate(FIG11, [0.0] * 6, [0.0, 1.0]).at_end[0]
     return Findings((claim(RING, engine.name, 0.0, moved, 0.0),), {"moved": np.array([moved])})
 

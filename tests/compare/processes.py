@@ -1,4 +1,4 @@
-"""The command line as a process: with the paper's studies (REAL) or with the fake ones (FAKE)."""
+"""The command line as a process, with the paper's studies (REAL) or the fake ones (FAKE)."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ FAKE = [sys.executable, str(Path(__file__).with_name("fake_command.py"))]
 REAL = [sys.executable, "-m", "compare.cli"]
 
 PATIENCE = 900.0
-"""In s: on the slowest of machines only what hangs takes as long."""
+"""Time limit in s that only a hanging process exceeds, even on slow machines."""
 
 
 def environment(**more: str) -> dict[str, str]:
-    """Return the environment in which the packages are found without being installed."""
+    """Return an environment in which the packages can be imported without installation."""
     return os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"} | more
 
 
 def interruptible() -> None:
-    """Let the process that is about to start listen to Ctrl-C, which is ignored in the background: a preexec_fn."""
+    """Enable Ctrl-C, which background processes ignore; used as ``preexec_fn``."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def wait_until(condition: Callable[[], bool]) -> None:
-    """Wait until it is true."""
+    """Wait until ``condition`` holds; fail after ``PATIENCE``."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline
@@ -37,5 +37,5 @@ def wait_until(condition: Callable[[], bool]) -> None:
 
 
 def wait_for(process: subprocess.Popen[str], *paths: Path) -> None:
-    """Wait until a process has written the files, or has ended."""
+    """Wait until a process has written all files or has ended."""
     wait_until(lambda: all(path.exists() for path in paths) or process.poll() is not None)

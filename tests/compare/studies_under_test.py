@@ -1,6 +1,6 @@
-"""How studies are measured in tests: sound engines, and engines that are wrong on purpose.
+"""Measurement of studies in tests, with sound engines and with deliberate faults.
 
-A claim is worth what it fails on. ``tested_studies`` lists for each study with which faults.
+A claim is useful only if it fails for wrong engines. ``tested_studies`` lists the faults for each study.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def with_changed(change):
 
 
 def altered(**factors):
-    """Return the reference with parameters that are wrong by ``factors``, where a system has them."""
+    """Return the reference with parameters multiplied by ``factors``, if a system has them."""
 
     def change(system):
         found = {}
@@ -44,7 +44,7 @@ def altered(**factors):
 
 
 def made(**make):
-    """Return the plain engine with one part made wrong."""
+    """Return the plain engine with one wrong part."""
     return Engine("made", functools.partial(simulate_plainly, make=Make(**make)), EVERY_KIND)
 
 
@@ -55,11 +55,11 @@ def fault(name):
 
 @functools.cache
 def engine_named(name):
-    """Return a registered engine, the plain one that shares nothing ("intact"), or the reference "as reported".
+    """Return a registered engine, the independent plain one ("intact"), or the reference "as reported".
 
-    "reference" is compiled where it can be, and remembers what it has simulated, for as long as the tests run: claims
-    that ask for the same motion, and engines under other names that promise less, get it once. ``test_engines`` has
-    that equal runs are equal. Reports measure it plain.
+    "reference" is compiled if possible and caches its trajectories during the tests, also for engines under other
+    names that support less. ``test_engines`` checks that repeated runs are equal. Reports use the reference without
+    cache.
     """
     if name == "intact":
         return SOUND[1]
@@ -70,7 +70,7 @@ def engine_named(name):
 
 
 def remembering(function):
-    """Return an engine's ``function`` with a store of its trajectories."""
+    """Return an engine's ``function`` with a cache of its trajectories."""
     store = {}
 
     def simulated(system, initial_state, times, *, tolerance=1e-9):
@@ -93,14 +93,13 @@ class Patched:
     Parameters
     ----------
     put : callable
-        Puts the fault in by a ``MonkeyPatch``.
+        Inserts the fault with a ``MonkeyPatch``.
     engine : str
-        The engine to measure with.
+        Name of the measured engine.
     name : str
-        What this engine is called meanwhile: by default a new name, because nothing that is remembered for another
-        one may serve it.
+        Temporary name of the engine; new by default, so no cached results of another engine are used.
     only : tuple of str
-        Functions of the claims that are tried with it; all by default.
+        Functions of the claims to try; all by default.
 
     """
 
@@ -111,9 +110,9 @@ class Patched:
 
 
 COARSE, FINER = {"order": 4, "step": 0.01}, {"order": 4, "step": 0.004}
-"""Fixed steps, and ε by them: coarse and quick will do for an engine that is grossly wrong.
+"""Fixed steps, which determine ε. Coarse steps suffice for an engine with a gross fault.
 
-Where it may hold a body at rest, ε is small enough for one that is held to hardly creep.
+If an engine may hold a body at rest, ε is small enough to limit creep.
 """
 
 GROSS = {
@@ -135,7 +134,7 @@ SMALL = {
     "mass 1 % off": altered(mass=1.01),
     "inertia 1 % off": altered(polar_inertia=1.01),
 }
-"""Faults of a per cent and less, from those that most claims see to those that see the rest."""
+"""Faults of at most 1 %; those that break most claims come first."""
 
 
 # ---------------------------------------------------------------- studies
@@ -143,36 +142,36 @@ SMALL = {
 
 @dataclass(frozen=True, eq=False)
 class Tested:
-    """How one study is measured in tests.
+    """Test settings of one study.
 
     Parameters
     ----------
     study : Study
         The study.
     few : mapping
-        Arguments of the claims' functions, and of "curves", with which less than all is measured.
+        Arguments of the claims' functions, and of "curves", that reduce the measurement.
     sound : tuple of str
-        Engines with which every claim must agree.
+        Engines that must agree with every claim.
     parts : mapping
-        For an engine that takes long, the claims that it is asked for: functions, or "function/case".
+        Claims to measure with a slow engine, by engine: functions, or "function/case".
     not_claimed : mapping
-        For an engine, the functions that claim nothing of it.
+        Functions that claim nothing about an engine, by engine.
     gross, small : mapping
-        Faults by what is wrong, tried in this order until every claim has failed: ones that nobody should miss, and
-        ones of about a per cent or less.
+        Faults by description, tried in this order until every claim has failed: obvious ones, and ones of about 1 %
+        or less.
     few_of_faults : mapping, optional
-        Takes the place of ``few`` for faults.
+        Replaces ``few`` for faults.
     blind : mapping
-        Claims which no small fault can break, and why. Claims whose error budget is coarser than a per cent of what
-        they predict, and those that count answers, need no entry.
+        Claims that no small fault can break, with the reason. Claims with an error budget above 1 % of the prediction
+        and claims that count answers need no entry.
     open_theory : tuple of str
-        Claims of the theory that are inconclusive with so ``few`` numbers.
+        Claims of the theory that the ``few`` numbers leave inconclusive.
     drawn : bool
-        Whether so ``few`` numbers are enough for the figures.
+        True if the ``few`` numbers suffice for the figures.
 
     """
 
-    __test__ = False  # a name that pytest would collect
+    __test__ = False  # pytest would collect the class by its name
 
     study: Study
     few: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
@@ -194,11 +193,11 @@ class Tested:
                 findings = self.study.measure_theory(self.few)
             else:
                 findings = self.study.measure(engine_named(name), self.few, self.parts.get(name, ()))
-        assert printed.getvalue() == ""  # it would spoil the progress bar
+        assert printed.getvalue() == ""  # output would corrupt the progress bar
         return findings
 
     def claims_of_fault(self, fault, only):
-        """Return the claims that are measured with a fault, for ``only`` some functions."""
+        """Return the claims measured with a fault, restricted to the functions ``only``."""
         few = self.few if self.few_of_faults is None else self.few_of_faults
         if isinstance(fault, Engine):
             return self.study.measure(fault, few, only).claims
@@ -219,7 +218,7 @@ def sentences(findings, verdict):
 
 
 def theory_of(study, *functions, few=None):
-    """Return the verdicts of the theory's claims that ``functions`` of a study make, by the functions' names."""
+    """Return the verdicts of a study's claims about the theory from ``functions``, by their names."""
     found = study.measure_theory(few or {}, only=functions).claims
     assert len(found) == len(functions)
     return dict(zip(functions, (claim.verdict for claim in found), strict=True))

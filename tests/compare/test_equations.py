@@ -1,4 +1,4 @@
-"""The table of equations is that of the docstrings and claims, and every equation is somewhere."""
+"""The table of equations matches the docstrings and claims, and contains every equation."""
 
 import runpy
 

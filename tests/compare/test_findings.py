@@ -1,4 +1,4 @@
-"""README, docs/findings.md and the paper contain the numbers of a report, and a report that deviates is noticed."""
+"""README, docs/findings.md and the paper quote the numbers of a report, and deviations are detected."""
 
 import copy
 import json
@@ -19,12 +19,12 @@ PLACE, ERROR = "fig05: place, 3 digits", "fig05: place, error, good"
 
 
 def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0):
-    """Return what a report of one or of all studies contains, with claims of "fig05" by two engines."""
+    """Return the results of a report on one or all studies, with claims of "fig05" for two engines."""
     found = [
         claim("Place", engine, measured, measured, error, unit="m", named={"place": 0})
         for engine in ("good", "other")
     ]
-    # Two claims in one cell of the matrix: the cell is as good as the worse one.
+    # Two claims share a cell of the matrix, which shows the worse verdict.
     found += [
         claim("Order", "good", 1.0, value, 0.01, kind="order", resolution=1.0) for value in (other, 1.0)
     ]
@@ -42,7 +42,7 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0):
 
 @pytest.fixture
 def root(tmp_path, monkeypatch):
-    """A project whose texts name four numbers."""
+    """Return a project whose texts quote four numbers."""
     (tmp_path / "docs" / "paper").mkdir(parents=True)
     (tmp_path / "builders").mkdir()
     (tmp_path / "builders" / "findings.md").write_text(f'At #n("{PLACE}") m, to #n("{ERROR}") m.\n')
@@ -70,7 +70,7 @@ def test_readme_contains_no_other_number_and_is_short():
     kept = BUILDER["kept"](ROOT)
     for name in BUILDER["IN_README"]:
         text = text.replace(kept[name].text, "", 1)
-    # Code, links, the citation and numbers that are names, as of equations, do not count.
+    # Code, links, the citation and numbers of equations and the like do not count.
     for pattern in (
         r"(?s)```.*?```", r"`[^`]*`", r"\]\([^)]*\)", r"(?m)^> .*$", r"\b(?:Figs?\.|Python ≥) [\d.]+", r"\(\d+\)",
     ):  # fmt: skip
@@ -83,7 +83,7 @@ def test_a_report_writes_its_numbers(root):
     assert (root / "docs" / "findings.md").read_text(encoding="utf-8") == "At 0.0512 m, to 1.0×10⁻⁶ m.\n"
     kept = BUILDER["kept"](root)
     assert kept["claims"].value == 2
-    assert kept["verdicts: independent"].value == 2  # Place by two engines; the order is a self-check
+    assert kept["verdicts: independent"].value == 2  # the position by two engines; the order is a self-check
     assert list(BUILDER["deviations"](results(), root)) == []
 
 
@@ -120,7 +120,7 @@ def test_a_name_that_no_claim_has_is_an_error_of_a_whole_report():
     ("changed", "deviating"),
     [
         ({}, set()),
-        ({"measured": 0.0512345678 + 1.9e-6}, set()),  # each of the two may be 1e-6 off
+        ({"measured": 0.0512345678 + 1.9e-6}, set()),  # each number may be off by 1e-6
         ({"measured": 0.0512345678 + 2.1e-6}, {PLACE}),
         ({"measured": float("nan")}, {PLACE, "verdicts: independent"}),
         ({"error": 9e-6}, set()),

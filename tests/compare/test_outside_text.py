@@ -1,4 +1,4 @@
-"""Whatever engines and files of other people say can be written, parsed and shown."""
+"""Any text of foreign engines and files can be written, parsed and shown."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -18,7 +18,7 @@ HOSTILE = "\x1b[31mred\x9b1m \x00 \udc80 \uffff \u202e end"
 UNFIT = "\x1b\x9b\x00\udc80\uffff\u202e"
 SHOWN = r"\x1b[31mred\x9b1m \x00 \udc80 \uffff \u202e end"
 
-ANYTHING = st.text(st.characters(codec=None))  # lone surrogates too
+ANYTHING = st.text(st.characters(codec=None))  # including lone surrogates
 
 
 def is_clean(text):
@@ -71,7 +71,7 @@ def test_no_cell_of_a_table_is_a_formula(tmp_path):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """The name of an engine with a hostile version that raises a hostile exception."""
+    """Return the name of an engine with a hostile version that raises a hostile exception."""
     monkeypatch.chdir(tmp_path)
     code = f"def simulate(*_, **__):\n    raise ValueError({HOSTILE!a})\nsimulate.version = {HOSTILE!a}\n"
     (tmp_path / "hostile_engine.py").write_text(code)
@@ -89,7 +89,7 @@ def test_a_command_shows_and_writes_what_an_engine_says(command, hostile, tmp_pa
     assert bool(written) is not command.startswith("simulate")
     for path in written:
         content = path.read_text("utf-8")
-        assert not set(content) & set(UNFIT)  # the page's own words have spaces that do not break
+        assert not set(content) & set(UNFIT)  # the page itself contains non-breaking spaces
         if path.suffix == ".xml":
             assert SHOWN in [error.get("message") for error in ET.fromstring(content).iter("error")]
 

@@ -1,4 +1,4 @@
-"""The plugin as a stranger meets it: pytest in a folder of its own, on the installed package."""
+"""The plugin from a user's view: pytest in an empty folder, on the installed package."""
 
 import io
 import json
@@ -53,7 +53,7 @@ CLAIMS = {study.name: list(study.sentences()) for study in STUDIES if study.only
 def run(folder, *arguments):
     """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}.
 
-    In this process: pytest and the package take longer to start than most of what is asked here.
+    It runs in this process because starting pytest and the package takes longer than most tests.
     """
     output = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
@@ -64,7 +64,7 @@ def run(folder, *arguments):
 
 
 def run_by_itself(folder, *arguments):
-    """Do the same in a process of its own."""
+    """Do the same in a separate process."""
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *WITHOUT_OTHERS, *arguments],
         cwd=folder,
@@ -77,17 +77,17 @@ def run_by_itself(folder, *arguments):
 
 
 def outside():
-    """Return the environment without what this run of pytest has put into it."""
+    """Return the environment without the variables of this pytest run."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
 
 
 OPTIONS = ("-p", "no:cacheprovider", "--junit-xml=out.xml")
 
 WITHOUT_OTHERS = ("-p", "no:hypothesispytest", "-p", "no:zarr")
-"""Plugins of libraries that import all of these whenever pytest starts, which takes longer than it."""
+"""Options that disable plugins which import their whole library at each start of pytest."""
 
 WITHIN_ANOTHER = ("-p", "no:xdist", "-p", "no:faulthandler", "-p", "no:unraisableexception")
-"""Plugins that a run of pytest has already in which another one runs; the last collects all garbage five times."""
+"""Options that disable plugins already active in the outer run; the last one collects garbage five times."""
 
 
 def cases_in(folder):
@@ -165,10 +165,10 @@ def test_a_failed_claim_shows_its_error_budget_and_how_to_repeat_it(judged):
     assert tag == "failure"
     for part in (
         "differs by ",
-        ", allowed are ",
+        "; the error budget is ",
         "predicted ",
         "measured ",
-        "(numerical, as the engine's own change says) + 0 (model)",
+        "(numerical, estimated from the engine) + 0 (model)",
         "friction-discs report sticking-domain --engine mine:resting",
     ):
         assert part in text, part
@@ -189,7 +189,7 @@ def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path, monkeypatch):
     monkeypatch.setattr("compare.diagnosis.run.IN_SHORT", 1.0)
     status, _, cases = judge(tmp_path, "sticking-domain", "mine:hanging", options=("--study-limit", "1"))
     assert status == 1
-    assert set(cases) == set(CLAIMS["sticking-domain"])  # one engine alone needs no name
+    assert set(cases) == set(CLAIMS["sticking-domain"])  # a single engine is not named
     for tag, text in cases.values():
         assert tag == "failure"
         assert "no result: not finished within 1 s" in text
@@ -222,14 +222,14 @@ honest.sticks, honest.step = False, 5e-2
 
 @pytest.fixture
 def example(tmp_path):
-    """A folder with the example, and with Euler's method that says its step, as a rough engine."""
+    """Return a folder with the example and a coarse engine: Euler's method with a declared step."""
     shutil.copy(ROOT / "examples" / "07_engine_under_pytest.py", tmp_path / "example.py")
     (tmp_path / "rough.py").write_text(HONEST)
     return tmp_path
 
 
 def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_where_it_is_rough(example):
-    """On what it promises and what is chosen; how much of the rough one is open depends on what time is left."""
+    """The number of inconclusive claims of the coarse engine depends on the remaining time."""
     allowed = {
         "example:euler": {"failure"},
         "example:runge_kutta": {"passed"},
@@ -248,7 +248,7 @@ def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_
     assert f"{len(slide)} failed, {2 * len(slide) - left_open} passed" in output
     assert f" {3 * len(asked - slide)} not attempted" in output
     assert f" {left_open} inconclusive" in output or left_open == 0
-    assert ("inconclusive: an error budget of " in output) == (left_open > 0)
+    assert ("inconclusive: the error budget of " in output) == (left_open > 0)
     assert (
         "not attempted: example:runge_kutta does not simulate stick; "
         "example:runge_kutta does not simulate a disc on a continuous ring or a disc on single points ("
@@ -257,7 +257,7 @@ def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_
 
 FILE = str(ROOT / "compare" / "studies" / "pin" / "fig05" / "__init__.py")
 USAGE, NOTHING = pytest.ExitCode.USAGE_ERROR, pytest.ExitCode.NO_TESTS_COLLECTED
-BY_ITS_NAME = "a study is asked for by its name, with --pyargs compare --study"
+BY_ITS_NAME = "select a study by its name, with --pyargs compare --study"
 REFUSED = [
     ("--pyargs compare --engine exudin", USAGE, "unknown engine 'exudin': did you mean 'exudyn'?"),
     ("--pyargs compare --engine exudyn --study-limit 0", USAGE, "--study-limit 0: it must be > 0 s"),
@@ -275,8 +275,8 @@ REFUSED = [
             "no_such_study": "NAME",
         }.items()
     ),
-    ("--pyargs compare", NOTHING, "name one with --engine MODULE:FUNCTION"),
-    (FILE, NOTHING, "name one with --engine MODULE:FUNCTION"),
+    ("--pyargs compare", NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
+    (FILE, NOTHING, "no engine given; use --engine MODULE:FUNCTION"),
 ]
 
 
@@ -294,7 +294,7 @@ OTHERS = {
     "compare/test_engines.py": ("compare",),
     "comparelib/test_it.py": ("--pyargs", "comparelib.test_it"),
 }
-"""Files with a test of others, and what pytest is given to find it."""
+"""Files with a test of other projects, and pytest's arguments that select it."""
 
 OF_OTHERS = """
 import sys

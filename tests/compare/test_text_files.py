@@ -1,4 +1,4 @@
-"""Files are the old or the new ones, whole, whatever happens while they are written."""
+"""Files are replaced atomically, even if writing fails."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""What strangers read cites equations, figures and sections that the paper has, and documents that are there."""
+"""Published texts cite only existing equations, figures and sections of the paper, and existing documents."""
 
 import ast
 import functools
@@ -11,7 +11,7 @@ from compare.studies import STUDIES
 
 ROOT = Path(__file__).parents[2]
 EQUATIONS, FIGURES, SECTIONS = 26, 11, 5
-"""How many the paper has."""
+"""Numbers of equations, figures and sections in the paper."""
 
 PACKAGES = ("compare", "reference_model", "exudyn_models")
 SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
@@ -25,7 +25,7 @@ def nodes_of(path):
 
 
 def cited(pattern, text):
-    """Return the numbers that ``pattern`` finds, whose group is a list like "2, 3", "14 to 16" or "11–16"."""
+    """Return the numbers in the group of ``pattern``, a list such as "2, 3", "14 to 16" or "11–16"."""
     return [int(number) for found in re.finditer(pattern, text) for number in re.findall(r"\d+", found[1])]
 
 
@@ -33,7 +33,7 @@ LIST = r"(\d+(?:(?:, | and | to |–)\d+)*)(?![\d.]*\d)"
 
 
 def wrong(text):
-    """Return what ``text`` cites and the paper has not."""
+    """Return the citations in ``text`` that do not exist in the paper."""
     return [
         f"{kind} {number}"
         for kind, pattern, most in (
@@ -57,7 +57,7 @@ def test_cited_sections_figures_and_equations_are_in_the_paper():
 
 
 def equations_of_claims():
-    """Yield the file and the text of every equation that is written down for a claim."""
+    """Yield the file and the text of the equation of every claim."""
     for path in SOURCES:
         for node in nodes_of(path):
             if isinstance(node, ast.keyword) and node.arg == "equation":
@@ -81,7 +81,7 @@ def test_parentheses_that_stand_for_an_equation_do_so_in_every_text_of_a_study()
 
 
 def test_no_unit_is_changed_by_the_case_of_a_sentence():
-    """``str.capitalize`` makes "0.5 n/m³" of "0.5 N/m³"."""
+    """``str.capitalize`` turns "0.5 N/m³" into "0.5 n/m³"."""
     for path in SOURCES:
         for node in nodes_of(path):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
@@ -89,7 +89,7 @@ def test_no_unit_is_changed_by_the_case_of_a_sentence():
 
 
 def test_a_percentage_stands_off_its_sign():
-    """As any unit does; Python's own format writes "1%"."""
+    """A space separates the number, as for any unit; Python's own format writes "1%"."""
     for path in (*SOURCES, *PAGES):
         text = path.read_text(encoding="utf-8")
         assert not re.findall(r":[.\d]*%\}", text), path

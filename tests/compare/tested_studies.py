@@ -1,4 +1,4 @@
-"""The table of all studies: with which numbers, engines and faults each is tested."""
+"""Test settings of all studies: numbers, engines and faults."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SAMPLE = {"starts": 400, "speeds": tuple(np.linspace(1.1, 3.0, 6))}
 
 BASINS = Tested(
     STUDY["basins"],
-    # A hundredth of the starts, at one speed, and a boundary from as few points as can be.
+    # 1 % of the initial states, at one speed, and the smallest number of points for the boundary.
     few={
         "divides": GRID,
         "area": GRID | {"pins": (FIG5,)},
@@ -46,7 +46,7 @@ BASINS = Tested(
         "parts": {"places": 2},
     },
     sound=EXUDYN_TOO,
-    open_theory=("basins/area",),  # the boundary passes through too many of so few cells
+    open_theory=("basins/area",),  # the boundary passes through too many of the few cells
 )
 
 FIG03 = Tested(
@@ -62,13 +62,13 @@ FIG04 = Tested(
     STUDY["fig04"],
     sound=EXUDYN_TOO,
     parts={"exudyn": AT_ONE_SPEED, "intact": AT_ONE_SPEED},
-    # (18) leaves out more of the shift than a per cent of it; the other claims are exact to first order in damping.
+    # The error of (18) exceeds 1 % of the shift; the other claims are exact to first order in damping.
     small={name: SMALL[name] for name in ("damping 1 % off", "offset 1 % off")},
 )
 
 FIG05 = Tested(
     STUDY["fig05"],
-    # The way to the whirl is long, and its end far.
+    # The motion to the whirl takes long.
     parts={"intact": ("slides", "rests", "first_stick/equilibrium", "all_sticks/equilibrium", "critical")},
 )
 
@@ -107,7 +107,7 @@ WHIRL_STABILITY = Tested(
     | few({"starts": (0.8, 1.5)}, "balance", "caught")
     | few({"points": ((1.5, 0.1), (1.5, 1.0))}, "eigenvalues", "stable"),
     sound=EXUDYN_TOO,
-    # It knows the radius to 1.4e-9 m or so, and the claim asks for 1.2e-9 m.
+    # Its error of the radius is about 1.4e-9 m, and the claim requires 1.2e-9 m.
     parts={"intact": ("frequency", "balance", "caught", "eigenvalues", "stable", "history")},
 )
 
@@ -141,14 +141,14 @@ FIG09 = Tested(
         "curves": {"offsets": tuple(OFFSETS[::8]), "fold_offsets": (0.06, 0.15)},
     },
     sound=("reference", "exudyn", "exudyn-native"),
-    # How Exudyn's own contact sticks and lets go, test_native_contact asks at a tenth of the cost.
+    # test_native_contact covers stick and release of Exudyn's own contact at a tenth of the cost.
     parts={"exudyn": QUICK_OF_FIG09, "exudyn-native": ("six_rests",)},
 )
 
 FIG11 = Tested(
     STUDY["fig11"],
     few={
-        "ends": {"offsets": (0.006, 0.009, 0.022)},  # on all three sides of the critical ones
+        "ends": {"offsets": (0.006, 0.009, 0.022)},  # in all three ranges between the critical ones
         "curves": {"whirling": (0.0, 0.005, 0.01, 0.015)},
     },
     sound=("reference", "exudyn"),
@@ -194,7 +194,7 @@ FREE_RING = Tested(
 BLOCK = Tested(
     STUDY["block"],
     sound=("reference", "intact", "exudyn", "exudyn-native", "compiled", "plain"),
-    # slip to rest, stick, release, and none of that
+    # slip to rest, stick, release, and none of them
     parts={
         "exudyn-native": ("stops", "lets_go", "swings"),
         "compiled": ("stops", "holds", "lets_go", "swings"),
@@ -222,8 +222,8 @@ RUN_UP = Tested(
     STUDY["drivetrain-run-up"],
     few=few({"top": 1100.0}, "balance", "lines") | {"curves": {"count": 40}},
     sound=("exudyn",),
-    not_claimed={"exudyn": ("lines",)},  # a run-up that is shorter than a window shows no spectrum
-    drawn=False,  # for the same reason; its own test draws
+    not_claimed={"exudyn": ("lines",)},  # a run-up shorter than a window has no spectrum
+    drawn=False,  # for the same reason; a separate test draws it
     gross={
         "follows its unbalance all the way": Patched(
             wrong.moving(wrong.run_up_with({0.98: 3e-4, 0.0: 1e-4}))
@@ -246,11 +246,11 @@ WITHOUT_SIZE = {
     "reaction without its arm": Patched(wrong.reaction_without_the_arm_of_the_force, only=("linearised",)),
     "balance that does not close": Patched(wrong.balance_that_does_not_close, only=("balance",)),
 }
-"""Faults that are there or not. The balance lacks a millionth of the energy."""
+"""Faults without a size. The balance lacks a millionth of the energy."""
 
 FROZEN = Tested(
     STUDY["drivetrain-frozen"],
-    # Turns a minute: one speed below the onset, and one above, in place of three.
+    # Speeds in rpm: one below and one above the onset, instead of three.
     few=few({"above": (6000.0,)}, "radius", "frequency")
     | {
         "rests": {"below": (1500.0,)},
@@ -342,9 +342,9 @@ def short_motions_of_the_pin():
     motions = motions_of_the_pin()
     _, to_whirl, _, sticks, *_ = motions
     return {name: replace(motion, until=min(motion.until, 30.0)) for name, motion in motions.items()} | {
-        # The quadrature's error at the stick phases must be small beside the energy that is turned over.
+        # The quadrature error at the stick phases must be small compared with the energy turned over.
         to_whirl: replace(motions[to_whirl], until=200.0),
-        # The engines that are broken can't be tighter in stick, and what they have to show is large.
+        # The faulty engines cannot be more accurate in stick, and their deviations are large.
         sticks: replace(motions[sticks], until=2.0, tolerance=1e-10),
     }
 
@@ -355,7 +355,7 @@ def short_motions_of_the_disc():
 
 
 def gaining(system, initial_state, times, *, tolerance=1e-9):
-    """Let kinetic energy grow by 1e-6 of itself in each second."""
+    """Return a motion whose kinetic energy grows by 1e-6 of its value per second."""
     trajectory = simulate(system, initial_state, times, tolerance=tolerance)
     growth = np.exp(0.5e-6 * (trajectory.times - trajectory.times[0]))[:, np.newaxis]
     places, velocities = np.split(trajectory.states, 2, axis=1)
@@ -373,7 +373,7 @@ CLUTCH_SCALE = Tested(STUDY["clutch-scale"], few={"shares": {"starts": 200}}, so
 
 
 def staying_at_1e_7(*arguments, **options):
-    """Let errors not fall below 1e-7, nor those of events below 1e-4 s."""
+    """Return a motion with errors of at least 1e-7, and 1e-4 s for events."""
     trajectory = engine_named("reference").simulate(*arguments, **options)
     end = trajectory.times[-1]
     phases = tuple(
@@ -384,7 +384,7 @@ def staying_at_1e_7(*arguments, **options):
 
 
 def lazy(*arguments, tolerance):
-    """Follow the root of the tolerance."""
+    """Simulate with a tolerance proportional to the root of the requested one."""
     return engine_named("reference").simulate(*arguments, tolerance=1e-3 * tolerance**0.5)
 
 
@@ -407,12 +407,12 @@ ENGINE_CONVERGENCE = Tested(
 
 
 def deaf(*arguments, tolerance):
-    """Take no notice of the tolerance."""
+    """Simulate with a fixed tolerance."""
     return simulate(*arguments, tolerance=1e-6)
 
 
 def growing(system, initial_state, times, *, tolerance):
-    """Let errors grow as the tolerance falls, so a run at an eighth of it makes the estimate 8·(8 − 1) times them."""
+    """Return a motion whose errors grow as the tolerance falls, so the estimate is 8·(8 − 1) times the error."""
     trajectory = simulate(system, initial_state, times, tolerance=1e-13)
     return replace(trajectory, states=trajectory.states + 1e-14 / tolerance)
 

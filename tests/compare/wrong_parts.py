@@ -1,6 +1,6 @@
-"""Faults in what the studies of drivetrains, of convergence and of thrown discs are built of.
+"""Faults in the components of the studies of drivetrains, convergence and thrown discs.
 
-Each function takes a ``MonkeyPatch`` and puts one fault in, or returns a function that does so.
+Each function takes a ``MonkeyPatch`` and inserts one fault, or returns a function that does.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ CAR = centred_car()
 
 
 def factors_on(owner, factors):
-    """Return the attributes of ``owner`` multiplied by ``factors``, by their names."""
+    """Return the attributes of ``owner`` multiplied by ``factors``, by name."""
     return {name: factor * getattr(owner, name) for name, factor in factors.items()}
 
 
@@ -47,7 +47,7 @@ def factors_on(owner, factors):
 
 
 def clutch_parts_off(**factors):
-    """Build the models with parameters that are off by ``factors``; the prediction keeps the right ones."""
+    """Return a patch that builds models with parameters off by ``factors``; the prediction keeps the right ones."""
 
     def put(patch):
         def wrong(build):
@@ -66,7 +66,7 @@ def clutch_parts_off(**factors):
 
 
 def heat_astray(share):
-    """Let a share of the heat not reach the thermal node."""
+    """Return a patch that withholds a share of the heat from the thermal node."""
 
     def put(patch):
         add = exudyn_models.add_ring_friction
@@ -85,12 +85,12 @@ def heat_astray(share):
 
 
 def coarsely(patch):
-    """Take twice each ε, which takes half the steps."""
+    """Double each ε, which halves the number of steps."""
     patch.setattr(coupled_clutches, "EPSILONS", 2.0 * coupled_clutches.EPSILONS)
 
 
 def coupled_off(coarse=True, **factors):
-    """Let all models be built with numbers that are off by ``factors``; not ``coarse`` where rounding counts."""
+    """Return a patch that builds models with numbers off by ``factors``; not ``coarse`` if rounding matters."""
 
     def put(patch):
         if coarse:
@@ -102,7 +102,7 @@ def coupled_off(coarse=True, **factors):
 
 
 def first_load_late(patch):
-    """Let the first clutch be loaded 1 ms late."""
+    """Delay the load of the first clutch by 1 ms."""
     on_time = coupled_models.first_load
     late = lambda time: on_time(time - 1e-3)  # noqa: E731
     patch.setattr(coupled_models, "first_load", late)
@@ -110,14 +110,14 @@ def first_load_late(patch):
 
 
 def torque_late(patch):
-    """Let the torque come 0.1 ms late."""
+    """Delay the torque by 0.1 ms."""
     coarsely(patch)
     on_time = coupled_models.torque
     patch.setattr(coupled_models, "torque", lambda time: on_time(time - 1e-4))
 
 
 def creep_of_another_order(patch):
-    """Let ε be the root of what is asked for."""
+    """Replace ε by its root."""
     coarsely(patch)
     build = coupled_models.with_our_contact
     patch.setattr(coupled_clutches, "with_our_contact", lambda epsilon: build(epsilon**0.5 * 0.01))
@@ -127,7 +127,7 @@ def creep_of_another_order(patch):
 
 
 def bench_off(**factors):
-    """Let the drivetrain on the bench be another one, off by ``factors``."""
+    """Return a patch that changes the drivetrain on the bench by ``factors``."""
 
     def put(patch):
         build, other = Operation.build, replace(CAR, **factors_on(CAR, factors))
@@ -137,7 +137,7 @@ def bench_off(**factors):
 
 
 def radial_damping_off(factor):
-    """Let the whole drivetrain's radial damping be off by ``factor``."""
+    """Return a patch that changes the drivetrain's radial damping by ``factor``."""
 
     def put(patch):
         build = exudyn_models.build_drivetrain
@@ -151,7 +151,7 @@ def radial_damping_off(factor):
 
 
 def reaction_without_the_arm_of_the_force(patch):
-    """Let the engine's row of the state matrix follow from that of the disc."""
+    """Derive the engine's row of the state matrix from the disc's row."""
     matrix = linear_matrices.state_matrix
 
     def without_arm(mbs):
@@ -163,7 +163,7 @@ def reaction_without_the_arm_of_the_force(patch):
 
 
 def whirling_car_off(**factors):
-    """Let the car in a whirl be another one, off by ``factors``."""
+    """Return a patch that changes the whirling car by ``factors``."""
 
     def put(patch):
         build, other = whirls.build, replace(CAR, **factors_on(CAR, factors))
@@ -173,7 +173,7 @@ def whirling_car_off(**factors):
 
 
 def balance_that_does_not_close(patch):
-    """Let a millionth of the energy be missing."""
+    """Remove a millionth of the energy."""
     energy = SimpleNamespace(residual=np.array([0.0, 2e-6]), turnover=1.0)
     motion = SimpleNamespace(times=np.zeros(2), disc=np.zeros((2, 3)), slip=np.zeros(2), energy=energy)
     model = SimpleNamespace(run=lambda *_, **options: motion)
@@ -184,7 +184,7 @@ def balance_that_does_not_close(patch):
 
 
 def moment_from_outside(moment):
-    """Let a moment in N m act on the disc, where it is planar."""
+    """Return a patch that applies a moment in N m to a planar disc."""
 
     def put(patch):
         add = exudyn_models.add_radial_support
@@ -200,7 +200,7 @@ def moment_from_outside(moment):
 
 
 def shaft_of_exudyns_own_springs(patch):
-    """Let the shaft's force act on either body at that body's own centre, and not along the line between them."""
+    """Apply the shaft's force at the centres of both bodies, not along the line between them."""
 
     def springs(mbs, base, disc, *, stiffness, damping, offset):
         markers = [mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)) for node in (base, disc)]
@@ -217,7 +217,7 @@ def shaft_of_exudyns_own_springs(patch):
 
 
 def run_up_with(orders, until=6000.0):
-    """Return data of a run-up in which the disc circles with the given orders of the engine, by amplitude in m."""
+    """Return data of a run-up whose disc circles with the given orders of the engine and amplitudes in m."""
     times = np.linspace(0.0, 5.0, 10001)
     start, end = 800.0 * RPM, until * RPM
     speed = start + (end - start) * times / times[-1]
@@ -233,7 +233,7 @@ def run_up_with(orders, until=6000.0):
 
 
 def as_predicted(off=0.0):
-    """Return data of a run-up on the lines of the claim, but for ``off`` orders, as it turns faster."""
+    """Return data of a run-up on the lines of the claim, shifted by ``off`` orders as the speed grows."""
     data = run_up_with({1.0: 1e-4})
     car = passenger_car()
     times, (angle, speed) = data["times"], data["engine"].T
@@ -246,7 +246,7 @@ def as_predicted(off=0.0):
 
 
 def moving(data):
-    """Let every run-up be one with this data, whose energy is balanced."""
+    """Return a patch that replaces every run-up by this data, with balanced energy."""
 
     def put(patch):
         angle, speed = data["engine"].T
@@ -258,7 +258,7 @@ def moving(data):
 
 
 def heat_counted_wrong(factor):
-    """Let the power of friction be off by ``factor``."""
+    """Return a patch that multiplies the power of friction by ``factor``."""
 
     def put(patch):
         power = RingFriction.power
@@ -271,7 +271,7 @@ def heat_counted_wrong(factor):
 
 
 def euler(pin, start, times, *, integrator, step, regularisation=0.0):
-    """Explicit Euler, whatever name it is given."""
+    """Return a motion by Euler's explicit method, for any integrator name."""
     x, y, vx, vy = start
     z, v = complex(x, y), complex(vx, vy)
     states = [start]
@@ -287,12 +287,12 @@ def euler(pin, start, times, *, integrator, step, regularisation=0.0):
 
 
 def first_order(patch):
-    """Let every solver with fixed steps be of first order."""
+    """Replace every fixed-step solver by one of first order."""
     patch.setattr(exudyn_models, "simulate_fixed_step", euler)
 
 
 def wider(factor):
-    """Let solvers smooth friction with another ε than they are asked for."""
+    """Return a patch that changes ε of the solvers by ``factor``."""
 
     def put(patch):
         right = exudyn_models.simulate_fixed_step
@@ -308,7 +308,7 @@ def wider(factor):
 
 
 def half_order(patch):
-    """Let ε fall like the root of what is asked for."""
+    """Make ε decrease as the root of the requested value."""
     right = exudyn_models.simulate
 
     def rough(*arguments, tolerance, regularisation):
@@ -321,17 +321,17 @@ def half_order(patch):
 
 
 def full_disc_as_a_ring(patch):
-    """Let all the load of a full disc be on its rim."""
+    """Put the whole load of a full disc on its rim."""
     patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Ring(outer))
 
 
 def full_disc_with_a_small_hole(patch):
-    """Let a full disc have a hole of 2 % of its radius."""
+    """Give a full disc a hole of 2 % of its radius."""
     patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
 
 
 def part_with_a_small_hole(patch):
-    """Let Exudyn's part have a hole of 2 % of its radius."""
+    """Give Exudyn's friction part a hole of 2 % of its radius."""
     add = exudyn_models.add_ring_friction
     hole = {"inner_radius": 0.02 * thrown_disc.RADIUS}
     patch.setattr(exudyn_models, "add_ring_friction", lambda *nodes, **contact: add(*nodes, **contact | hole))

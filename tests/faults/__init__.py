@@ -1,4 +1,4 @@
-"""Engines with one mistake each, which the claims have to find, and the sound engines that they are made from."""
+"""Engines with one fault each, which the claims must detect, and the sound engines that they modify."""
 
 from faults.catalogue import FAULTS, SOUND
 from faults.fault import Fault

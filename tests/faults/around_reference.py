@@ -1,4 +1,4 @@
-"""The reference with a mistake around it: in what it hands out, in what it is asked for, or in when it lets go."""
+"""The reference with a fault outside its solver: in its output, its input or the time of release."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def with_output(
     *,
     tolerance: float = 1e-9,
 ) -> Trajectory:
-    """Simulate ``system`` and hand out ``change(trajectory)`` as its states."""
+    """Simulate ``system`` and return ``change(trajectory)`` as its states."""
     trajectory = simulate(system, initial_state, times, tolerance=tolerance)
     return replace(trajectory, states=change(trajectory))
 
@@ -42,12 +42,12 @@ def three_terms(
 
 
 def in_single_precision(trajectory: Trajectory) -> FloatArray:
-    """Round to 24 bits."""
+    """Return states rounded to 24 bits."""
     return trajectory.states.astype(np.float32).astype(float)
 
 
 def one_sample_late(trajectory: Trajectory) -> FloatArray:
-    """Return every state one sample late, the first one twice."""
+    """Return every state one sample late, with the first state repeated."""
     return np.vstack((trajectory.states[:1], trajectory.states[:-1]))
 
 
@@ -60,7 +60,7 @@ def with_angle_wrapped(trajectory: Trajectory) -> FloatArray:
 
 
 def without_end(trajectory: Trajectory) -> FloatArray:
-    """Return no numbers for the last state."""
+    """Return states with NaN at the end."""
     states = trajectory.states.copy()
     states[-1] = np.nan
     return states
@@ -74,7 +74,7 @@ def with_relative_velocities(trajectory: Trajectory) -> FloatArray:
 
 
 def with_velocities_by_differences(trajectory: Trajectory) -> FloatArray:
-    """Return velocities that are differences of places over the time between samples, the first one as it was."""
+    """Return velocities from differences of positions between samples; the first velocity is unchanged."""
     states, half = trajectory.states.copy(), trajectory.system.state_size // 2
     steps = np.diff(trajectory.times)[:, np.newaxis]
     states[1:, half:] = np.diff(states[:, :half], axis=0) / steps
@@ -84,7 +84,7 @@ def with_velocities_by_differences(trajectory: Trajectory) -> FloatArray:
 def output_late(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Return states of 1e-7 s before the times asked for, but for the first."""
+    """Return the states 1e-7 s before the requested times, except the first."""
     times = np.asarray(times, dtype=float)
     early = np.append(times[0], np.maximum(times[1:] - 1e-7, times[0]))
     return replace(simulate(system, initial_state, early, tolerance=tolerance), times=times)
@@ -93,7 +93,7 @@ def output_late(
 def phases_late(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Return the right states, and phases that begin and end 1 ms late, but for the start and the end of it all."""
+    """Return the right states, with all switches between phases 1 ms late."""
     trajectory = simulate(system, initial_state, times, tolerance=tolerance)
     start, end = trajectory.times[0], trajectory.times[-1]
 
@@ -107,9 +107,9 @@ def phases_late(
 def without_centripetal_term(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Simulate a pin that is let go when friction can no longer hold it without its mass.
+    """Simulate a pin whose release ignores the inertia force.
 
-    Where that is too early, it sticks again at once.
+    If the release is too early, the pin sticks again at once.
     """
     trajectory = simulate(system, initial_state, times, tolerance=tolerance)
     if not isinstance(system, PinOnDisc) or not Support.of(system).linear:
@@ -146,7 +146,7 @@ def _carried_on(phase: Phase, speed: float, time: float) -> FloatArray:
 def half_a_pitch_on(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Simulate points at φ + 2π(i + ½)/n."""
+    """Simulate a disc with points at φ + 2π(i + ½)/n."""
     points = system.contact_points if isinstance(system, DiscOnDisc) else None
     if points is None:
         return simulate(system, initial_state, times, tolerance=tolerance)
@@ -159,6 +159,6 @@ def half_a_pitch_on(
 def from_rest(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
-    """Simulate from the places alone."""
+    """Simulate from the initial positions with zero velocities."""
     places, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
     return simulate(system, [*places, *(0.0 * velocities)], times, tolerance=tolerance)

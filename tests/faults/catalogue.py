@@ -1,4 +1,4 @@
-"""The catalogue: right engines, and the same with one mistake each, as users and makers of engines do make them."""
+"""Catalogue of sound engines, and of variants with one typical mistake of users or developers each."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 SOUND: tuple[Engine, ...] = (reference, Engine("plain", simulate_plainly, EVERY_KIND))
-"""The engines that mistakes are put into. A claim that one of them fails is itself wrong."""
+"""Engines to insert faults into. A claim that fails for one of them is itself wrong."""
 
 
 def _fault(name: str, says: str, function: Any, kinds: tuple[str, ...] = EVERY_KIND) -> Fault:
@@ -47,25 +47,25 @@ def _fault(name: str, says: str, function: Any, kinds: tuple[str, ...] = EVERY_K
 
 
 def made(name: str, says: str, kinds: tuple[str, ...] = EVERY_KIND, **make: Any) -> Fault:
-    """Return the plain engine with one part made wrong."""
+    """Return the plain engine with one wrong part."""
     return _fault(name, says, functools.partial(simulate_plainly, make=Make(**make)), kinds)
 
 
 def mistaken(name: str, says: str, change: Callable[[System], dict[str, Any]]) -> Fault:
-    """Return the reference with parameters that are mistaken."""
+    """Return the reference with wrong parameters."""
     return _fault(name, says, functools.partial(with_parameters, change))
 
 
 def spoilt(name: str, says: str, change: Callable[[Trajectory], FloatArray]) -> Fault:
-    """Return the reference with outputs that are spoilt."""
+    """Return the reference with wrong output."""
     return _fault(name, says, functools.partial(with_output, change))
 
 
 POINTS_ONLY = ("pin", "points")
-"""A polygon is a law of single points."""
+"""Kinds of systems that a polygon applies to, as a law of single points."""
 
 CORNERS = 1e-4
-"""ε in m/s of polygons: motions run along their corners for long, which a smaller one makes too costly to follow."""
+"""ε in m/s of polygons; a smaller one is too costly because motions follow the corners for a long time."""
 
 FORCE: tuple[Fault, ...] = (
     made("friction-along-slip", "Friction acts along the slip, not against it.", friction=-1.0),
@@ -206,7 +206,7 @@ NUMERICS: tuple[Fault, ...] = (
 )
 
 SIZE = "1e-6"
-"""Relative error of a parameter: what sees it sees larger errors too."""
+"""Relative error of a parameter; a claim that detects it also detects larger errors."""
 
 PARAMETERS = {
     "mass": "The mass",

@@ -1,4 +1,4 @@
-"""Equations of motion of the plain engine: eq. 1 and 19 for velocities relative to the master disc."""
+"""Equations of motion of the plain engine: eqs. 1 and 19 for velocities relative to the master disc."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference_model.systems import FloatArray
 
 @compiled
 def slip_of(y: FloatArray, numbers: Numbers, make: Make) -> tuple[complex, float]:
-    """Return the velocity of the centre and the spin that friction acts against."""
+    """Return the velocity of the centre and the spin that friction opposes."""
     half = len(y) // 2
     slip = complex(y[half], y[half + 1])
     spin = y[5] if half == 3 else 0.0
@@ -48,7 +48,7 @@ def support(t: float, z: complex, v: complex, numbers: Numbers, make: Make) -> c
 
 @compiled
 def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbers, make: Make) -> FloatArray:
-    """Return the right side of (1) or (19) for x, y, (φ,) and the velocities relative to the master disc."""
+    """Return the right-hand side of (1) or (19) for x, y, (φ,) and the velocities relative to the master disc."""
     half = len(y) // 2
     z, u = complex(y[0], y[1]), complex(y[half], y[half + 1])
     v = u + 1j * numbers.omega * z
@@ -78,7 +78,7 @@ def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbe
 
 @compiled
 def rotated(x: FloatArray, turn: float, base: FloatArray) -> FloatArray:
-    """Return the unknowns of which ``x`` is the slip since ``base``, in the frame that rotated since then."""
+    """Return the unknowns from the displacement ``x`` since ``base``, given in axes that rotated by ``turn``."""
     half = len(x) // 2
     e = complex(math.cos(turn), math.sin(turn))
     z, u = (complex(base[0] + x[0], base[1] + x[1])) * e, complex(x[half], x[half + 1]) * e
@@ -100,7 +100,7 @@ def turning_rates(
     numbers: Numbers,
     make: Make,
 ) -> FloatArray:
-    """Return the rates of ``x`` of ``rotated``, which are small in stick."""
+    """Return the rates of ``x`` in ``rotated``, which are small during stick."""
     half, turn = len(x) // 2, numbers.omega * (t - start)
     result = rates(t, rotated(x, turn, base), width, strength, numbers, make)
     a = complex(result[half], result[half + 1]) * complex(math.cos(turn), -math.sin(turn))
@@ -118,7 +118,7 @@ def slip_speed(y: FloatArray, numbers: Numbers, make: Make) -> float:
 
 
 def carried(places: FloatArray, omega: float) -> FloatArray:
-    """Return the velocities of what turns with the master disc, for places of shape (..., 2) or (..., 3)."""
+    """Return the velocities of a body that turns with the master disc; ``places`` has shape (..., 2) or (..., 3)."""
     velocities = np.full_like(places, omega)
     velocities[..., 0], velocities[..., 1] = -omega * places[..., 1], omega * places[..., 0]
     return velocities
@@ -128,7 +128,7 @@ def carried(places: FloatArray, omega: float) -> FloatArray:
 def fixed_steps(
     times: FloatArray, start: FloatArray, width: float, numbers: Numbers, make: Make
 ) -> FloatArray:
-    """Return the states at ``times`` by Euler's method, or the classic one of Runge and Kutta."""
+    """Return the states at ``times`` by Euler's method or the classical Runge-Kutta method."""
     states = np.empty((len(times), len(start)))
     states[0] = start
     y = start.copy()

@@ -1,4 +1,4 @@
-"""What a fault is."""
+"""Definition of a fault."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from compare.engines import Engine
 
 @dataclass(frozen=True)
 class Fault:
-    """One mistake, and an engine that makes it and no other.
+    """One mistake, and an engine with only this mistake.
 
     Parameters
     ----------
     name : str
-        As on the command line.
+        Name on the command line.
     says : str
-        What is wrong, in a sentence.
+        Description in a sentence.
     engine : Engine
-        Of the same name.
+        Engine of the same name.
 
     """
 

@@ -10,7 +10,7 @@ from faults.make import Make, Numbers
 
 @compiled
 def on_polygon(force: complex, make: Make) -> complex:
-    """Return the force of the polygon that is nearest to ``force``."""
+    """Return the point of the polygon nearest to ``force``."""
     half = math.pi / make.sides
     apothem = 1.0 if make.circumscribed else math.cos(half)
     angle = math.atan2(force.imag, force.real) - make.first_side
@@ -25,7 +25,7 @@ def on_polygon(force: complex, make: Make) -> complex:
 
 @compiled
 def at_point(slip: complex, width: float, strength: float, make: Make) -> complex:
-    """Return the friction of a point that slips, per newton of its load: full up to ``strength``, viscous below."""
+    """Return the friction of a slipping point per newton of its load, viscous up to the limit ``strength``."""
     wanted = -slip / width
     if make.sides > 0:
         return on_polygon(wanted / strength, make) * strength
@@ -38,10 +38,10 @@ def at_point(slip: complex, width: float, strength: float, make: Make) -> comple
 
 @compiled
 def mean_slip(u: float, w: float) -> tuple[float, float, float]:
-    """Return the mean slip speed P(U, W) on a circle, ∂P/∂U and ∂P/∂W: elliptic integrals by the means of Gauss."""
+    """Return the mean slip speed P(U, W) on a circle, ∂P/∂U and ∂P/∂W, from elliptic integrals by Gauss's AGM."""
     if u == 0.0 or w == 0.0:
         return u + w, 1.0 if u > 0.0 else 0.0, 1.0 if w > 0.0 else 0.0
-    a, b = 1.0, max(abs(u - w) / (u + w), 1e-200)  # the logarithm at U = W is beyond all floats
+    a, b = 1.0, max(abs(u - w) / (u + w), 1e-200)  # avoids the singularity at U = W
     total, power = 0.5 * 4.0 * (u / (u + w)) * (w / (u + w)), 0.5
     while a - b > 1e-15 * a:
         c = 0.5 * (a - b)
@@ -63,8 +63,8 @@ def contact(
 ) -> tuple[complex, float, float]:
     """Return force (N per N of μN), moment (m) and slip speed of a contact whose disc turns with ``spin``.
 
-    Both ``slip`` and ``spin`` are relative to the master disc. The slip speed is that of the fastest point, or the
-    mean on a continuous ring.
+    ``slip`` and ``spin`` are relative to the master disc. The slip speed is the largest over the points, or the mean
+    on a continuous ring.
     """
     radius = numbers.radius
     if numbers.points > 0:

@@ -1,4 +1,4 @@
-"""How functions of the plain engine are compiled: once, and kept on disk."""
+"""Compilation of the plain engine's functions, cached on disk."""
 
 import numba
 

@@ -1,4 +1,4 @@
-"""What the plain engine is made of: the parts that can be wrong, and the numbers of the system."""
+"""Settings of the plain engine that can be wrong, and the parameters of the system."""
 
 from __future__ import annotations
 
@@ -8,65 +8,65 @@ from reference_model.systems import DiscOnDisc, System
 
 
 class Make(NamedTuple):
-    """How the engine is made: each default is right, and each other value is one mistake.
+    """Settings of the engine; each default is right, and any other value is one mistake.
 
     Parameters
     ----------
     friction : float
-        Factor of the friction force and of its moment; along the slip where it is negative.
+        Factor of the friction force and moment; a negative factor accelerates the slip.
     slip_width : float
-        ε in m/s is no smaller than this, whatever the tolerance.
+        Lower limit of ε in m/s, for any tolerance.
     creep_speed : float
-        Slip speed in m/s at which friction is full in stick, if that is more than ε.
+        Slip speed in m/s of full friction during stick, if larger than ε.
     static_ratio : float
-        What friction in stick can hold, over μN.
+        Holding force of friction during stick, over μN.
     release_delay : float
-        Time in s by which stick goes on when friction can no longer hold.
+        Delay of the release in s.
     release_late : float
-        Share of its time by which stick goes on when friction can no longer hold.
+        Delay of the release relative to the duration of stick.
     weakening : float
-        Share of the friction force that is lost by 1 m/s of slip speed.
+        Relative loss of the friction force per 1 m/s of slip speed.
     stronger_beside : float
-        Share by which friction is stronger where |y| > x.
+        Relative gain of the friction force at |y| > x.
     sides, circumscribed, first_side : int, bool, float
-        Number of sides of the polygon that bounds the friction force in place of the circle (0), whether it lies
-        around the circle or inside, and the direction in rad of the middle of its first side.
+        Number of sides of the polygon that replaces the friction circle (0: circle), True if it encloses the circle,
+        and direction in rad of the middle of its first side.
     relative : float
-        1 for friction against the velocity relative to the master disc, 0 against that of the body.
+        1 for friction against the velocity relative to the master disc, 0 against the absolute velocity.
     about_anchor : bool
-        Whether the velocity of the master disc is reckoned from the point at which the springs are relaxed.
+        True to compute the velocity of the master disc about the point of relaxed springs.
     spin_in_slip : float
-        Share of the spin that the slip of a contact on a circle takes part in.
+        Factor of the spin in the slip of a contact on a circle.
     moment : float
         Factor of the moment of friction.
     moment_of_slip : float
         Factor of the moment of a ring whose centre slips faster than its rim.
     uncoupled : bool
-        Whether slip and spin of a ring are resisted each as if the other were not there.
+        True if friction resists slip and spin of a ring independently.
     points_turn : float
-        Share of its angle by which the contact of a disc turns with it.
+        Factor of the disc's angle in the angle of its contact points.
     points_lag : float
-        Time in s by which the points' directions are behind the disc's angle.
+        Delay in s of the points' directions behind the disc's angle.
     damping_on_slip : bool
-        Whether the dampers act against the velocity relative to the master disc.
+        True if the dampers act on the velocity relative to the master disc.
     anchor : complex
-        Direction in which the offset lies.
+        Direction of the offset.
     anchor_turns : bool
-        Whether the springs turn with the master disc.
+        True if the springs turn with the master disc.
     stiffer_in_y : float
-        Share by which the spring of the y axis is stiffer.
+        Relative excess of the stiffness in y.
     hardening_power : float
-        Of the deflection, to which the hardening is proportional.
+        Exponent of the deflection in the hardening force.
     stop_pulls : bool
-        Whether the stop acts inside of its gap too.
+        True if the stop also acts within its gap.
     stop_on_one_side : bool
-        Whether there is no stop at deflections of negative x.
+        True if the stop is missing at deflections of negative x.
     coriolis : float
-        Share of 2ρ̇ψ̇ in the tangential acceleration.
+        Factor of 2ρ̇ψ̇ in the tangential acceleration.
     energy_gain : float
-        Share of its energy that a vibration at the natural frequency gains in a cycle.
+        Relative energy gain per cycle of a vibration at the natural frequency.
     order, step : int, float
-        Fixed step in s of an explicit method of order 1 or 4 in place of LSODA (0).
+        Order (1 or 4) and fixed step in s of an explicit method instead of LSODA (0).
 
     """
 
@@ -106,7 +106,7 @@ RIGHT = Make()
 
 
 class Numbers(NamedTuple):
-    """The parameters of a system; ``points`` is 0 for the continuous ring and 1 for a pin, whose radius is 0."""
+    """Parameters of a system; ``points`` is 0 for the continuous ring and 1 for a pin, whose radius is 0."""
 
     mass: float
     inertia: float
@@ -125,7 +125,7 @@ class Numbers(NamedTuple):
 
     @classmethod
     def of(cls, system: System) -> Numbers:
-        """Return those of ``system``."""
+        """Return the parameters of ``system``."""
         disc = system if isinstance(system, DiscOnDisc) else None
         return cls(
             system.mass,
@@ -146,5 +146,5 @@ class Numbers(NamedTuple):
 
 
 def steepest(numbers: Numbers) -> float:
-    """Return the greatest deceleration of slip by friction, in m/s²."""
+    """Return the largest deceleration of slip by friction, in m/s²."""
     return numbers.friction * (1.0 / numbers.mass + numbers.radius**2 / numbers.inertia)

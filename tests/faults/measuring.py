@@ -1,4 +1,4 @@
-"""Measure all sound and faulty engines with the study of trajectories, motion by motion."""
+"""Measurement of sound and faulty engines with the study of trajectories, motion by motion."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ OF_ENGINES = [one for one in STUDY.declared if one.of_engine]
 
 @dataclass(frozen=True)
 class Caught:
-    """What the claims report about one engine.
+    """Claims that differ for one engine.
 
     Parameters
     ----------
     sentences : tuple of str
-        Claims that differ; the reason in their place if the engine failed.
+        Sentences of these claims, or the reason if the engine failed.
     kinds : frozenset of Kind
         Kinds of these claims; all kinds of the study if the engine failed, because then no claim can pass.
 
@@ -31,16 +31,16 @@ class Caught:
 
     @property
     def twice(self) -> bool:
-        """Whether a comparison of trajectories and a claim of another kind differ."""
+        """True if a comparison of trajectories and a claim of another kind differ."""
         return "trajectory" in self.kinds and len(self.kinds) > 1
 
     def __or__(self, other: Caught) -> Caught:
-        """Return what both report."""
+        """Return the union of both."""
         return Caught(self.sentences + other.sentences, self.kinds | other.kinds)
 
 
 def caught(engine: Engine) -> Iterator[Caught]:
-    """Yield what the claims about each kind of motion report about ``engine``."""
+    """Yield the claims that differ for ``engine``, for each kind of motion."""
     for motion in dict.fromkeys(case for one in OF_ENGINES for case, _ in one.cases()):
         parts = {one.part(case) for one in OF_ENGINES for case, _ in one.cases() if case == motion}
         try:
@@ -53,7 +53,7 @@ def caught(engine: Engine) -> Iterator[Caught]:
 
 
 def caught_at_last(engine: Engine) -> Caught:
-    """Return what the claims report about ``engine`` until it is caught twice, or all of it."""
+    """Return the claims that differ for ``engine``; stop when it is caught twice."""
     so_far = Caught()
     for found in caught(engine):
         so_far |= found

@@ -1,9 +1,9 @@
-"""A plain engine of its own kind, which is right, and whose parts can be made wrong one by one.
+"""An independent, sound engine whose parts can be made wrong one by one.
 
-It integrates eq. 1 or 19 with LSODA, which copes with the stiffness of stick; the velocities among its unknowns are
-relative to the master disc, so that creep keeps its digits. Friction is viscous below a small slip speed ε, and a
-contact sticks while its friction is not full. ε falls with the tolerance, so that the error of both can be estimated.
-Nothing but parameters, results and the cache on disk is shared with the two engines of the project.
+It integrates eq. 1 or 19 with LSODA, which handles the stiffness of stick. Velocities are relative to the master disc
+to preserve the digits of creep. Friction is viscous below a small slip speed ε, and a contact sticks while its
+friction is below the limit. ε falls with the tolerance, so one estimate covers both errors. The engine shares only
+parameters, results and the disk cache with the two engines of the project.
 """
 
 from __future__ import annotations
@@ -25,33 +25,33 @@ from reference_model.systems import FloatArray, System, checked_state, checked_t
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 TIGHTEST = 1e-13
-"""The smallest relative tolerance that LSODA is given."""
+"""Smallest relative tolerance of LSODA."""
 
 MOST_STEPS = 45_000
-"""Twice the steps of the longest motion without a fault; a wrong equation may be singular."""
+"""Twice the number of steps of the longest sound motion; a wrong equation may be singular."""
 
 MOST_ALIKE = 200
-"""Steps of the same size, after which LSODA is started anew.
+"""Number of equal steps before LSODA is restarted.
 
-It bounds its steps by the stiffness that it saw last, and on a straight way, where its guess is right to the last
-digit, it never looks again: a block that is let go would be followed for ever in steps of its first moment.
+LSODA bounds its steps by the last stiffness that it computed. On a straight path its predictor is exact, so it never
+computes the stiffness again, and a released block would keep the steps of its first moment.
 """
 
 SAFETY = 1e-3
-"""The tolerance is of the end, not of a step."""
+"""Ratio of the tolerance of a step to the requested one, which applies to the end of the motion."""
 
 ACCURACY_IN_STICK = 1e-7
-"""Of the slip, as a fraction of ε, and so of the force."""
+"""Error of the slip relative to ε, and so of the friction force, during stick."""
 
 
 def anywhere(_: FloatArray) -> float:
-    """Bound nothing."""
+    """Return infinity: the phase has no bound."""
     return math.inf
 
 
 @dataclass
 class _Run:
-    """A simulation under way, from one phase to the next."""
+    """State of a running simulation."""
 
     numbers: Numbers
     make: Make
@@ -70,21 +70,21 @@ class _Run:
 
     @property
     def glance(self) -> float:
-        """Return the time in s in which what friction has to hold changes by far less than it may."""
+        """Return the longest step in s during stick; the load on friction changes little in it."""
         frequency = math.sqrt(self.numbers.stiffness / self.numbers.mass)
         return 0.02 / max(frequency, abs(self.numbers.omega), 1e-3)
 
     def time_to_rest(self, t: float, y: FloatArray) -> float:
-        """Return the time in s that slip at the speed ε would last if friction stayed full."""
+        """Return the time in s until slip at the speed ε would end under full friction."""
         numbers, make, speed = self.numbers, self.make, self.speed(y)
         least = self.epsilon / steepest(numbers)
         step = 1e-2 * least
         moved = self.speed(y + step * rates(t, y, self.epsilon, 1.0, numbers, make))
-        slowest = 1e-3 * speed / least  # friction that can hardly hold
+        slowest = 1e-3 * speed / least  # if friction can hardly hold
         return speed / max((speed - moved) / step, slowest)
 
     def go(self) -> None:
-        """Follow the motion to its end."""
+        """Simulate the motion to its end."""
         make, t, y, end = self.make, float(self.times[0]), self.unknowns[0].copy(), float(self.times[-1])
         creep = max(self.epsilon, make.creep_speed)
         release = creep * make.static_ratio
@@ -103,7 +103,7 @@ class _Run:
                     t, y = self.follow(t, y, min(t + delay, end), creep, math.inf)
             else:
                 t, y = self.follow(t, y, end, self.epsilon, 1.0, lambda y: self.speed(y) - self.epsilon)
-                if t < end:  # full friction brings what is left to zero, viscous friction never does
+                if t < end:  # full friction ends the remaining slip, unlike viscous friction
                     t, y = self.follow(t, y, min(t + self.time_to_rest(t, y), end), self.epsilon, 1.0)
             if t >= end:
                 return
@@ -119,13 +119,13 @@ class _Run:
         inside: Callable[[FloatArray], float] = anywhere,
         longest: float = math.inf,
     ) -> tuple[float, FloatArray]:
-        """Integrate until ``inside`` falls below zero, or to ``end``; return when and where that is.
+        """Integrate until ``inside`` falls below zero, or to ``end``; return the time and the unknowns there.
 
-        Steps are no longer than ``longest``.
+        Steps are at most ``longest``.
         """
         local = max(SAFETY * self.tolerance, TIGHTEST)
         half = len(y) // 2
-        # In stick what has slipped is small in the frame that turns, and exact; in slip that frame only costs steps.
+        # During stick the displacement in the rotating frame is small and accurate; during slip it only costs steps.
         turning = longest < math.inf
         omega = self.numbers.omega if turning else 0.0
         start, base = t, np.concatenate((y[:half], np.zeros(half))) if turning else np.zeros(2 * half)
@@ -169,7 +169,7 @@ class _Run:
         return t, y
 
     def step(self, solver: LSODA) -> None:
-        """Take a step; raise ``SimulationError`` where there is none."""
+        """Take a step; raise ``SimulationError`` if it fails."""
         message = solver.step()
         self.steps += 1
         if self.steps > MOST_STEPS:
@@ -178,7 +178,7 @@ class _Run:
             raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
 
     def record(self, until: float, at: Callable[[float], FloatArray]) -> None:
-        """Keep what the unknowns ``at`` the times asked for are, up to a time."""
+        """Store the unknowns at the requested times up to ``until``."""
         stop = int(np.searchsorted(self.times, until, side="right"))
         for i in range(self.recorded, stop):
             self.unknowns[i] = at(self.times[i])
@@ -188,14 +188,14 @@ class _Run:
     def crossing(
         at: Callable[[float], FloatArray], before: float, after: float, inside: Callable[[FloatArray], float]
     ) -> tuple[float, FloatArray]:
-        """Return when and where ``inside`` fell below zero; if it was there already, after the step."""
+        """Return time and unknowns at the sign change of ``inside``; without one, at the end of the step."""
         t = after
         if inside(at(before)) > 0.0 > inside(at(after)):
             t = float(brentq(lambda t: inside(at(t)), before, after, xtol=1e-15, rtol=1e-14))
         return t, at(t)
 
     def pending(self, t: float) -> bool:
-        """Tell whether a time that was asked for lies before or at ``t``."""
+        """Return whether a requested time up to ``t`` is not yet recorded."""
         return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
 
@@ -204,8 +204,8 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc from ``initial_state`` at all ``times``.
 
-    ``make`` says what is wrong with the engine. Raises ``ValueError`` for a system, a state or times that make no
-    sense, and ``SimulationError`` if LSODA gives up.
+    ``make`` selects the fault of the engine. Raises ``ValueError`` for an invalid system, state or times, and
+    ``SimulationError`` if LSODA fails.
     """
     clock = time.perf_counter()
     start, times, tolerance = (
@@ -214,7 +214,7 @@ def simulate(
         checked_tolerance(tolerance),
     )
     numbers = Numbers.of(system)
-    # An explicit method can't have friction stop within less than a step.
+    # An explicit method cannot resolve the end of slip within a step.
     epsilon = max(10.0 * tolerance, make.slip_width, make.step * steepest(numbers))
     half = len(start) // 2
     unknowns = np.empty((len(times), 2 * half))

@@ -1,7 +1,7 @@
-"""The reference about which mistakes are made: by compiled kernels if they serve many runs, for much is simulated.
+"""The reference for faults around it, compiled if the kernel serves many runs.
 
-Plain and compiled runs are two implementations of one physics, and agree within the tolerance. What a mistake changes
-must not hide behind the tolerance, of which compiled runs use up more.
+Plain and compiled runs implement the same physics and agree within the tolerance. Compiled runs have larger errors,
+so they get a smaller tolerance: the effect of a fault must exceed the error.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from reference_model.systems import SMALLEST_TOLERANCE, System
 from reference_model.trajectory import Trajectory
 
 SHARE = 0.1
-"""Of the tolerance, for runs that may be compiled."""
+"""Fraction of the tolerance for runs that may be compiled."""
 
 POINTS = (None, 6)
-"""Of contacts whose kernels serve many runs: to compile one for another number takes longer than to do without."""
+"""Numbers of contact points with compiled kernels; for other numbers compilation takes longer than it saves."""
 
 
 def simulate(
@@ -28,7 +28,7 @@ def simulate(
     tolerance: float = 1e-9,
     contact: Contact | None = None,
 ) -> Trajectory:
-    """Return the motion, as :func:`reference_model.simulate` does."""
+    """Return the motion like :func:`reference_model.simulate`."""
     if contact is None:
         tolerance = max(SHARE * tolerance, SMALLEST_TOLERANCE)
     compiled = None if getattr(system, "contact_points", None) in POINTS else False

@@ -1,4 +1,4 @@
-"""How good the claims are: they catch every fault twice, and accuse no sound engine."""
+"""Quality of the claims: they catch every fault twice and never fail for a sound engine."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ def test_two_kinds_of_claims_catch_every_fault(fault):
 
 @pytest.mark.parametrize("engine", SOUND, ids=lambda engine: engine.name)
 def test_no_claim_accuses_a_sound_engine(engine):
-    """Under the name of a fault too: a fault that no claim sees fails the test above."""
+    """The engine gets a new name, like a fault, so the test above cannot pass because of a name."""
     assert caught_at_last(replace(engine, name="harmless")).sentences == ()
 
 

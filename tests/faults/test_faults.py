@@ -1,4 +1,4 @@
-"""The engines with faults: right ones that are right, and faults of which each makes a difference of its own."""
+"""Sound engines are accurate, and each fault changes the motion."""
 
 import functools
 import itertools
@@ -70,7 +70,7 @@ def apart_in_time(first, second):
 
 
 def test_a_block_that_is_let_go_straight_between_the_axes_is_not_followed_in_steps_of_its_first_moment():
-    """LSODA keeps the stiffness of the start in mind, as long as its guess is right to the last digit."""
+    """LSODA keeps the initial stiffness as long as its predictor is exact to rounding."""
     block = PinOnDisc(mass=1.0, stiffness=0.1, damping=0.0, friction_force=1.0, disc_speed=0.0)
     start = [-10.1 * math.cos(math.pi / 4.0), -10.1 * math.sin(math.pi / 4.0), 0.0, 0.0]
     run = simulate(block, start, [0.0, 11.0], tolerance=1.25e-10)
@@ -85,7 +85,7 @@ def test_mean_slip_is_that_of_the_elliptic_integrals_of_scipy(ratio):
     first, second = ellipkm1(complement), ellipe(m)
     speed, by_slip, by_rim = mean_slip(u, w)
     assert speed == pytest.approx(2.0 / math.pi * (u + w) * second, rel=1e-14)
-    # The sums cancel where one speed is small; the error is of the order of rounding over that speed.
+    # The sums cancel if one speed is small; the error is of the order of rounding over that speed.
     rounding = 8.0 * np.finfo(float).eps
     assert by_slip == pytest.approx(
         ((u + w) * second + (u - w) * first) / (math.pi * u), abs=rounding * first * (1.0 + 1.0 / ratio)
@@ -93,7 +93,7 @@ def test_mean_slip_is_that_of_the_elliptic_integrals_of_scipy(ratio):
     assert by_rim == pytest.approx(
         ((u + w) * second - (u - w) * first) / (math.pi * w), abs=rounding * first * (1.0 + ratio)
     )
-    # P is homogeneous of degree one (Euler), here without cancelling.
+    # P is homogeneous of degree one (Euler); this check has no cancellation.
     assert u * by_slip + w * by_rim == pytest.approx(speed, rel=1e-14)
 
 
@@ -104,7 +104,7 @@ def test_its_equations_are_those_printed(system, start, points):
     width, half = 1e-9, len(start) // 2
     friction = on_ring(system.friction_force, getattr(system, "contact_radius", 0.0), points, width)
     expected = np.array(printed_rates(system, friction, start))
-    expected[half : half + 2] -= carried(expected[:2], system.disc_speed)  # of z, seen from the master disc
+    expected[half : half + 2] -= carried(expected[:2], system.disc_speed)  # relative to the master disc
     y = np.array(start)
     y[half:] -= carried(y[:half], system.disc_speed)
     found = rates(0.0, y, width, 1.0, Numbers.of(system), MADE_RIGHT)
@@ -120,7 +120,7 @@ def test_the_plain_engine_comes_to_the_motion_of_the_reference_like_its_toleranc
     assert errors[1] <= estimate
     assert (
         errors[1] < 2e3 * tolerance
-    )  # creep of 10 tolerances for some seconds, and what sticking makes of it
+    )  # creep of 10 tolerances for some seconds, and its effect on later phases
 
 
 def test_the_plain_engine_sticks_and_slips_when_the_reference_does():
@@ -162,7 +162,7 @@ def test_a_polygon_gives_its_nearest_force(sides, circumscribed):
         assert abs(found - (force if inside else nearest)) < 1e-3
 
 
-# ---------------------------------------------------------------- the reference about which mistakes are made
+# ---------------------------------------------------------------- the reference with faults around it
 
 
 @pytest.mark.parametrize("points", [None, 3, 5, 6, 7])
@@ -202,7 +202,7 @@ def test_a_fault_changes_a_motion_by_more_than_the_error_of_the_engine_that_it_i
         try:
             changed = apart(motion(fault.engine, name, 1e-9), right)
         except (BadTrajectoryError, SimulationError):
-            return  # no motion at all is a change too
+            return  # a failed simulation also counts as a change
         if changed > 3.0 * apart(motion(base, name, 8e-9), right):
             return
         late = apart_in_time(motion(fault.engine, name, 1e-9), right)

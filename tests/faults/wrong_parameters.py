@@ -1,4 +1,4 @@
-"""The reference with parameters that are mistaken."""
+"""The reference with wrong parameters."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ def with_parameters(
 
 
 def off_by(name: str, share: float, system: System) -> dict[str, float]:
-    """Return a parameter that is too large by ``share``, nothing for a system that has no such parameter."""
+    """Return a parameter too large by ``share``; empty if the system lacks the parameter."""
     return {name: (1.0 + share) * getattr(system, name)} if hasattr(system, name) else {}
 
 
 def points_of(system: System) -> int:
-    """Return the number of points that a disc rests on, 0 if there is no ring of points."""
+    """Return the number of contact points of a disc, 0 without any."""
     return (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 0
 
 
 def one_point_too_few(system: System) -> dict[str, Any]:
-    """Return n − 1 points; 3 are the fewest that a disc can have."""
+    """Return n − 1 points; a disc needs at least 3."""
     return {"contact_points": points_of(system) - 1} if points_of(system) > 3 else {}
 
 
 def load_not_shared(system: System) -> dict[str, Any]:
-    """Return n times the load."""
+    """Return the load multiplied by the number of points."""
     return {"friction_force": system.friction_force * (points_of(system) or 1)}
 
 
@@ -52,7 +52,7 @@ def disc_backwards(system: System) -> dict[str, Any]:
 
 
 def stronger_at_extremes(system: System) -> dict[str, Any]:
-    """Return a load that is 1 % larger on a disc that is fast or slow."""
+    """Return a load that is 1 % larger at high and low disc speeds."""
     usual = 0.3 <= abs(system.disc_speed) <= 4.0
     return {} if usual else {"friction_force": 1.01 * system.friction_force}
 

@@ -1,1 +1,1 @@
-"""What two or more studies share."""
+"""Code shared by two or more studies."""

@@ -1,4 +1,4 @@
-"""Small deviations from a steady motion: what is left of them, and the rates at which they develop."""
+"""Small deviations from a steady motion: remaining transients and eigenvalues."""
 
 from __future__ import annotations
 
@@ -17,22 +17,22 @@ PARTS = ("real part", "imaginary part")
 
 
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
-    """Return how far ``end`` can still be from the steady state that it decays to.
+    """Return the remaining distance of ``end`` from the steady state.
 
-    A deviation a·exp(−rt) changes by a·(exp(r·delay) − 1) in the last ``delay`` seconds, a being its size at
-    the end. So the change that is seen gives what is left.
+    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` seconds, so the change
+    determines a.
 
     Parameters
     ----------
     earlier : array of shape (n, ...)
-        The quantity over a period of its oscillation that ends ``delay`` seconds before the end: the largest
-        change from there counts.
+        The quantity over one period of its oscillation that ends ``delay`` before the end; the largest change from
+        there counts.
     end : array of shape (...)
         The quantity at the end.
     rate : float
         Decay rate r in 1/s of the slowest mode.
     delay : float
-        In s.
+        Time in s.
 
     """
     change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
@@ -40,16 +40,16 @@ def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: 
 
 
 class Settled(NamedTuple):
-    """A quantity at the end of a long simulation; all of its shape.
+    """A quantity at the end of a long simulation.
 
     Parameters
     ----------
     value : array of shape (...)
         The quantity.
     error : array of shape (...)
-        By the tolerance, see ``refined``; the largest of all instants, since one may be right by chance.
+        Numerical error, see ``refined``; the largest over time, because a single one may be small by chance.
     left : array of shape (...)
-        What is left of the transient, see ``remaining_transient``.
+        Remaining transient, see ``remaining_transient``.
 
     """
 
@@ -67,20 +67,20 @@ def settled(
     rate: float,
     tolerance: float,
 ) -> Settled:
-    """Return what a quantity comes to in a simulation of ``duration`` s.
+    """Return the final value of a quantity in a simulation of ``duration`` s.
 
     Parameters
     ----------
     track : callable
-        ``track(times, tolerance)``: the quantity at ``times`` but the first, which is 0, of shape (n, ...).
+        ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` except the first, which is 0.
     duration, delay : float
-        Length of the simulation, and how long before its end the remaining transient is inferred, in s.
+        Duration of the simulation, and time before its end that yields the remaining transient, in s.
     period : float
-        Of the transient's oscillation, in s.
+        Period of the transient's oscillation, in s.
     rate : float
         Decay rate of the slowest mode, in 1/s.
     tolerance : float
-        Of the simulation.
+        Tolerance of the simulation.
 
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
@@ -90,14 +90,14 @@ def settled(
 
 
 class Rates(NamedTuple):
-    """Eigenvalues in 1/s of small deviations from n steady motions, those of one in the same order.
+    """Eigenvalues in 1/s of small deviations from n steady motions.
 
     Parameters
     ----------
     measured, predicted : complex array of shape (n, m)
-        By simulations of an engine, and by a linearisation.
+        Eigenvalues from simulations and from a linearisation, in the same order.
     error : array of shape (n,)
-        Of the measured ones.
+        Error of the measured eigenvalues.
 
     """
 
@@ -106,7 +106,7 @@ class Rates(NamedTuple):
     error: FloatArray
 
     def compared(self, at: dict[str, Any], **more: Any) -> Measured:
-        """Return all parts of all eigenvalues as a claim compares them; ``at`` names the motions."""
+        """Return all real and imaginary parts for a claim; ``at`` names the motions."""
         numbers = real_and_imaginary(self.measured)
         return Measured(
             predicted=real_and_imaginary(self.predicted),
@@ -118,7 +118,7 @@ class Rates(NamedTuple):
         )
 
     def decaying(self, but: int = 0, **more: Any) -> Measured:
-        """Return whether each deviation decays, but for the ``but`` slowest of each motion."""
+        """Return whether each deviation decays, except the ``but`` slowest of each motion."""
         real = np.sort(self.measured.real, axis=1)[:, : self.measured.shape[1] - but]
         return answers_of(-real, self.error[:, np.newaxis], **more)
 
@@ -131,9 +131,9 @@ def measured_rates(
     duration: float,
     frame_speed: float = 0.0,
 ) -> Rates:
-    """Return the eigenvalues that simulations of ``duration`` s give beside ``predicted`` ones, shape (m,) each.
+    """Return the eigenvalues from simulations of ``duration`` s and the ``predicted`` ones, shape (m,) each.
 
-    ``motions`` are systems with states of steady motions; the rest is as in ``measured_eigenvalues``.
+    ``motions`` are systems with states of steady motions; the other parameters are those of ``measured_eigenvalues``.
     """
     found = [
         measured_eigenvalues(engine, system, state, duration=duration, frame_speed=frame_speed)

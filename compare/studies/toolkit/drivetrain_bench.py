@@ -1,8 +1,8 @@
-"""The passenger car's clutch on a bench: the drivetrain at one speed, and the reference's disc that it amounts to.
+"""Clutch of a passenger car on a bench: the drivetrain at one speed, and the equivalent disc of the reference.
 
-The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) holds that of the vehicle. Whenever the motion is
-steady, the torsional spring carries a constant torque, and the clutch disc is that of (19) with the brake's b and Ω
-in place of the shaft's: then the two agree but for rounding, although one has five coordinates and the other three.
+The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) holds the vehicle's speed. During steady motion the
+torsional spring carries a constant torque. The clutch disc then obeys (19) with b and Ω of the brake instead of the
+shaft. Both models agree to rounding error, although one has five coordinates and the other three.
 """
 
 from __future__ import annotations
@@ -30,49 +30,49 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel, EnergyBalance
 
 
-SOURCE = "the passenger car of exudyn_models.drivetrain.parameters; torque and slip: assumed"
+SOURCE = "passenger car of exudyn_models.drivetrain.parameters; torque and slip are assumed"
 
 RPM = math.pi / 30.0
-"""rad/s in one turn a minute."""
+"""One revolution per minute in rad/s."""
 
 BRAKE = 100.0
-"""b of the brake in N m s/rad: the slip settles within some J/b = 0.008 s."""
+"""b of the brake in N m s/rad; the slip settles with a time constant J/b = 0.008 s."""
 
 HELD = 1e18
-"""Inertia of a flywheel in kg m² whose speed does not change: 100 N m take 1e-16 rad/s off it in a second."""
+"""Inertia of a flywheel with constant speed, in kg m²: 100 N m reduce it by 1e-16 rad/s in 1 s."""
 
 EPSILON = 1e-3
-"""ε in m/s: the facings slip by a thousand times more, so that friction is Coulomb's."""
+"""ε in m/s; the facings slip a thousand times faster, so friction is Coulomb's."""
 
 
 def passenger_car() -> Drivetrain:
-    """Return the car's parameters; Exudyn is imported only when it is used."""
+    """Return the car's parameters; the import of Exudyn is deferred to the call."""
     from exudyn_models import PASSENGER_CAR
 
     return PASSENGER_CAR
 
 
 def centred_car() -> Drivetrain:
-    """Return the car without unbalance, its shaft on the engine's axis: the disc stays there unless it is pushed."""
+    """Return the car without unbalance and offset, so an undisturbed disc stays on the engine's axis."""
     return replace(passenger_car(), offset=0.0, unbalance=0.0)
 
 
 def parameters_of(
     car: Drivetrain, *, without: Collection[str] = (), **changes: float
 ) -> dict[str, float | str]:
-    """Return the parameters of ``car`` for a claim, but those that it leaves out or sweeps."""
+    """Return the parameters of ``car`` except those in ``without``; ``changes`` adds or replaces some."""
     return {name: value for name, value in asdict(car).items() if name not in without} | changes
 
 
 def facings(car: Drivetrain, rings: int = 16) -> Annulus:
-    """Return the reference's law of friction of the clutch."""
+    """Return the reference's friction law for the clutch."""
     return Annulus(car.inner_radius, car.outer_radius, rings)
 
 
 def rotating_damping(car: Drivetrain, slip: float, torque: float) -> float:
-    """Return D in N s/m: friction of the slipping clutch against small motions of the disc's centre.
+    """Return D in N s/m, the friction damping of small motions of the disc's centre in a slipping clutch.
 
-    μN·∂F/∂U at U = 0, with the μN under which the clutch transmits ``torque`` (N m) at ``slip`` (rad/s). It is the
+    D = μN·∂F/∂U at U = 0, with μN such that the clutch transmits ``torque`` (N m) at ``slip`` (rad/s). It is the
     paper's μN/(2W), averaged over the facings.
     """
     return torque / car.friction_radius * facings(car).slopes(0.0, slip).resistance_by_slip
@@ -84,20 +84,20 @@ def natural_frequency(car: Drivetrain) -> float:
 
 
 def onset_speed(car: Drivetrain, slip: float, torque: float) -> float:
-    """Return ω = k·(1 + β/D) in rad/s, above which the disc does not stay on the engine's axis."""
+    """Return the stability limit ω = k·(1 + β/D) in rad/s; above it the disc leaves the engine's axis."""
     return natural_frequency(car) * (1.0 + car.radial_damping / rotating_damping(car, slip, torque))
 
 
 @dataclass(frozen=True)
 class Operation:
-    """What the bench is set to.
+    """Operating point of the bench with a centred disc.
 
     Parameters
     ----------
     speed, slip : float
-        Of the flywheel, and by how much the disc is slower, in rad/s, while the disc is centred.
+        Speed of the flywheel and slip of the disc, in rad/s.
     torque : float
-        That the clutch transmits then, in N m.
+        Transmitted torque in N m.
     offset : float
         X0 in m.
 
@@ -110,11 +110,11 @@ class Operation:
 
     @property
     def brake_speed(self) -> float:
-        """Ω in rad/s."""
+        """Ω of the brake in rad/s."""
         return self.speed - self.slip - self.torque / BRAKE
 
     def reduced(self, car: Drivetrain) -> DiscOnDisc:
-        """Return the disc of (19) that the clutch disc is while it moves steadily."""
+        """Return the disc of (19) that is equivalent to the clutch disc in steady motion."""
         return DiscOnDisc(
             mass=car.disc_mass,
             polar_inertia=car.disc_inertia + car.vehicle_inertia,
@@ -131,7 +131,7 @@ class Operation:
         )
 
     def build(self, car: Drivetrain) -> DrivetrainModel:
-        """Return the drivetrain on the bench, without unbalance, the disc on its shaft's axis."""
+        """Return the drivetrain on the bench without unbalance."""
         from exudyn_models import build_drivetrain
 
         return build_drivetrain(
@@ -146,20 +146,20 @@ class Operation:
 
 
 def balance_of(balances: Sequence[EnergyBalance], parameters: Mapping[str, float | str]) -> Measured:
-    """Return what two balances of the same run say, the second at a smaller tolerance, see ``refined``."""
+    """Return the relative residual of the first balance; the second, at a smaller tolerance, gives its error."""
     found, finer = (np.max(np.abs(each.residual)) / each.turnover for each in balances)
     return Measured(
         predicted=0.0,
         value=found,
         error=change_as_error(found, finer),
         parameters=parameters,
-        note="The largest of gains less losses less the growth of what is stored, over the energy turned over, "
-        f"{balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
+        note="Largest difference between gains, losses and the growth of stored energy, relative to the energy "
+        f"turned over, {balances[0].turnover:.3g} J. Numerical error: the change at a smaller tolerance.",
     )
 
 
 def start_disc(model: DrivetrainModel, place: complex, velocity: complex) -> None:
-    """Let the disc's centre start at ``place`` in m with ``velocity`` in m/s."""
+    """Set the initial position (m) and velocity (m/s) of the disc's centre."""
     import exudyn as exu
 
     data: Any = model.mbs.systemData
@@ -179,10 +179,10 @@ def centre(disc: FloatArray) -> ComplexArray:
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
-# --- Where the reference's reduced disc rests on the bench, and how it whirls.
+# --- Equilibrium and whirl of the reference's equivalent disc.
 
 RINGS = 16
-"""Of the reference's annulus."""
+"""Number of rings of the reference's annulus."""
 
 
 def rest_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningEquilibrium:

@@ -1,4 +1,4 @@
-"""The disc of Fig. 11: its start, (19) as plain equations, and planes of two parameters about it."""
+"""Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes around it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTer
 from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- What the parts of the study of Fig. 11 share: its start, its source, and (19) as plain equations.
+# --- Shared by the parts of the study of Fig. 11: initial state, source, and (19) as plain equations.
 
 RING = FIG11
 
@@ -23,13 +23,13 @@ SIX = replace(FIG11, contact_points=6)
 DISCS = {"the continuous ring": RING, "six points": SIX}
 
 START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
-"""x, y, angle, vx, vy, spin where the radius is largest on the modulated cycle of X0 = 0, to these digits."""
+"""x, y, angle, vx, vy, spin at the largest radius of the modulated cycle for X0 = 0, rounded."""
 
-SOURCE = "Fig. 11, which leaves out X0"
+SOURCE = "Fig. 11, which omits X0"
 
 
 def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
-    """Return the right side of (19) with (20) or (21) at ``state``, shape (6,)."""
+    """Return the right-hand side of (19) with (20) or (21) at ``state``, shape (6,)."""
     return plain.rates(disc, plain.by_law(disc.friction_force, contact_of(disc)), state)
 
 
@@ -37,9 +37,9 @@ def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
 def integrated(
     disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
 ) -> FloatArray:
-    """Return the states at so many times up to ``until`` s, shape (samples, 6), from (19) as it stands.
+    """Return the states at equidistant times up to ``until`` s, shape (samples, 6), from (19) without ``simulate``.
 
-    For a disc that slides all the time. Nothing of ``simulate`` is used.
+    The disc must slide all the time.
     """
     friction = plain.by_law(disc.friction_force, contact_of(disc))
     run = solve_ivp(
@@ -54,7 +54,7 @@ def integrated(
     return np.asarray(run.y.T)
 
 
-# --- Planes of two parameters about the disc of Fig. 11, and the curves that bound its motions there.
+# --- Parameter planes around the disc of Fig. 11, and the curves that bound its motions there.
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),
@@ -75,5 +75,5 @@ FINE = 0.04
 
 
 def curves_in(plane: str, kind: Kind, law: str, step: float = FINE) -> tuple[Boundary, ...]:
-    """Return the curves of a kind in one of ``PLANES``, by one of ``LAWS``."""
+    """Return the curves of ``kind`` in one of ``PLANES`` for one of ``LAWS``."""
     return boundaries(PLANES[plane], kind, LAWS[law], step=step)

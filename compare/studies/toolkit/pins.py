@@ -1,4 +1,4 @@
-"""Pins that stick to the disc, and their whirl as an engine's own periodic orbit."""
+"""Pins that stick to the disc, and whirls as periodic orbits of an engine."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Starts of a pin that sticks to the disc, and when the disc lets it go.
+# --- Initial states of a pin that sticks to the disc, and its release.
 
 
 def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle in rad at which the least force holds a stuck pin: by (7) that of (C − mω²) − iβω."""
+    """Return the angle in rad of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 
 def farthest(pin: PinOnDisc) -> float:
-    """Return the radius in m within which there are places where friction can hold a pin, by (7)."""
+    """Return the largest radius in m at which friction can hold a pin, by (7)."""
     return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
         complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
     )
@@ -33,17 +33,17 @@ def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
 
 
 def first_release(run: Trajectory) -> float:
-    """Return when the first stick phase ends in s; inf if it does not, NaN if the motion starts slipping."""
+    """Return the end of the first stick phase in s: inf if it does not end, NaN if the motion starts with slip."""
     first = run.phases[0]
     if first.kind != "stick":
         return math.nan
     return first.end if len(run.phases) > 1 else math.inf
 
 
-# --- The pin's whirl as an engine's own periodic orbit, and what is read off it.
+# --- The pin's whirl as a periodic orbit of an engine.
 
 SAMPLES = 64
-"""States in a turn."""
+"""Number of states per revolution."""
 
 
 def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
@@ -59,6 +59,6 @@ def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | No
 
 
 def extent(orbit: Orbit) -> FloatArray:
-    """Return the least and the greatest distance from the axis in m."""
+    """Return the smallest and largest distance from the axis in m."""
     radius = orbit.trajectory.radius
     return np.array([np.min(radius), np.max(radius)])

@@ -1,6 +1,6 @@
-"""Random pins, discs and starts.
+"""Random pins, discs and initial states.
 
-Sizes, rates and ratios are drawn from log-uniform distributions, signs and directions from all that there are.
+Sizes, rates and ratios have log-uniform distributions, signs and directions uniform ones.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ def sign(random: Generator) -> float:
 
 
 def vector(random: Generator, size: float) -> complex:
-    """Draw a vector of any direction and up to three times smaller or larger than ``size``."""
+    """Draw a vector of any direction, with a length from a third of ``size`` to three times ``size``."""
     return cmath.rect(size * between(random, 1 / 3, 3.0), random.uniform(-math.pi, math.pi))
 
 
 def state_of(
     place: complex, velocity: complex, *, angle: float = 0.0, spin: float | None = None
 ) -> FloatArray:
-    """Return the state of a pin, shape (4,), or with a ``spin`` that of a disc, shape (6,)."""
+    """Return the state of a pin, shape (4,), or with a ``spin`` the state of a disc, shape (6,)."""
     if spin is None:
         return np.array([place.real, place.imag, velocity.real, velocity.imag])
     return np.array([place.real, place.imag, angle, velocity.real, velocity.imag, spin])
 
 
 def any_pin(random: Generator) -> PinOnDisc:
-    """Draw a pin with all that it may have; the disc turns faster than the pin oscillates."""
+    """Draw a pin with damping, friction and offset; ω exceeds its natural frequency."""
     mass, frequency, size = between(random, 0.1, 10.0), between(random, 0.3, 3.0), between(random, 0.03, 1.0)
     stiffness = mass * frequency**2
     return PinOnDisc(
@@ -53,7 +53,7 @@ def any_pin(random: Generator) -> PinOnDisc:
 
 
 def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
-    """Draw a disc with all that it may have, on so many points or a continuous ring."""
+    """Draw a disc with shaft damping and offset, on ``points`` contact points or on a continuous ring (None)."""
     pin = any_pin(random)
     radius = abs(pin.offset) * between(random, 0.5, 5.0)
     inertia = pin.mass * radius**2 * between(random, 0.3, 3.0)
@@ -73,7 +73,7 @@ def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
 
 
 def any_start(random: Generator, system: System) -> FloatArray:
-    """Draw a state as large as the offset; shape (4,) or (6,)."""
+    """Draw an initial state on the scale of the offset, shape (4,) or (6,)."""
     size = abs(system.offset)
     place, velocity = vector(random, size), vector(random, size * system.natural_frequency)
     spin = system.disc_speed * random.uniform(-1.0, 2.0) if isinstance(system, DiscOnDisc) else None

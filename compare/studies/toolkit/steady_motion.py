@@ -1,8 +1,8 @@
-"""Steady motions of a disc as fixed points of an engine's own flow: what comes back after a share of a turn.
+"""Steady motions of a disc as fixed points of an engine's flow over a fraction of a revolution.
 
-The centre of a disc in a steady motion rests, or without offset circles at a constant distance from the axis. On a
-continuous ring nothing changes in the axes that turn with the centre. On n points there is a ripple besides, which
-repeats whenever the disc has turned in these axes by 2π/n. So one search serves both.
+In steady motion the centre of a disc rests or, without offset, moves on a circle around the axis. In axes that rotate
+with the centre, a disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc
+has turned by 2π/n in these axes. One search finds both.
 """
 
 from __future__ import annotations
@@ -26,35 +26,35 @@ from reference_model.steady.steady_states import SelfCentredEquilibrium, Spinnin
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 CONVERGED = 1e-9
-"""Largest relative miss of a motion that comes back."""
+"""Largest relative residual of a fixed point."""
 
 SAMPLES = 12
-"""Of a motion, for its means."""
+"""Number of samples for the means of a motion."""
 
 SYMMETRY = 6
-"""Share of a turn after which a ring, which looks the same at every angle, is looked at."""
+"""Divisor of the revolution for a continuous ring, whose symmetry allows any value."""
 
 Y = 1
-"""Place in the state, and in the unknowns: the turn takes it where y = 0."""
+"""Index of y in the state and of the angle θ in the unknowns, which replaces y = 0."""
 
 TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
-"""Rate of change of a state that turns about the axis with 1 rad/s, but for the angle."""
+"""Rate of change of a state that rotates about the axis at 1 rad/s, without the disc's angle."""
 
 
 @dataclass(frozen=True, eq=False)
 class SteadyMotion:
-    """A motion that comes back turned.
+    """A motion that repeats itself after a rotation.
 
     Parameters
     ----------
     states : array of shape (SAMPLES + 1, 6)
-        At equal distances in time from the start until it is back, in the axes that turn with the centre.
+        States at equidistant times over one period, in axes that rotate with the centre.
     period : float
-        Time until it is back, in s.
+        Period in s.
     frequency : float
         Mean angular velocity of the centre about the axis, in rad/s; zero if it rests.
     spin : float
-        Mean of the spin in rad/s.
+        Mean spin in rad/s.
 
     """
 
@@ -65,23 +65,22 @@ class SteadyMotion:
 
     @property
     def mean(self) -> FloatArray:
-        """Mean of x and y in m, in the axes that turn with the centre; of a period the sum is exact to rounding."""
+        """Mean of x and y in m, in axes that rotate with the centre; the sum over a period is exact to rounding."""
         return np.asarray(self.states[:-1, :2].mean(axis=0))
 
     @property
     def state(self) -> FloatArray:
-        """The state at the start, shape (6,), with the angle zero."""
+        """Initial state with angle zero, shape (6,)."""
         return np.asarray(self.states[0])
 
 
 def steady_motion(
     engine: Engine, disc: DiscOnDisc, guess: ArrayLike, tolerance: float
 ) -> SteadyMotion | None:
-    """Return the steady motion near to ``guess``, found with the engine's own flow; None if there is none.
+    """Return the steady motion near ``guess`` from the engine's flow; None if the search fails.
 
-    Solves for the state and the time T after which it is the same again but for the angle, by which the disc has
-    turned. A centre that circles, as it does without offset unless it is on the axis, has turned about the axis by an
-    angle θ meanwhile: then y = 0 at the start and θ is sought in its place.
+    The unknowns are the state and the period T. After T the state repeats, except for the disc's angle. Without
+    offset, the centre moves around the axis by an angle θ during T; then y = 0 at the start and θ is unknown instead.
 
     Parameters
     ----------
@@ -90,9 +89,9 @@ def steady_motion(
     disc : DiscOnDisc
         The parameters.
     guess : array of shape (6,)
-        A state near to one of the motion; y = 0 if it circles.
+        State near the motion; y = 0 without offset.
     tolerance : float
-        Handed to the engine.
+        Tolerance of the engine.
 
     """
     guess = np.asarray(guess, dtype=float)
@@ -105,14 +104,14 @@ def steady_motion(
     sizes = np.array([length, length, speed * length, speed * length, speed])
 
     def parts(unknowns: FloatArray) -> tuple[FloatArray, float, float]:
-        """Return state, time, and turn about the axis."""
+        """Return the state, the period and the rotation about the axis."""
         part, turn = unknowns[:-1] * sizes, 0.0
         if circles:
             part[Y], turn = 0.0, float(unknowns[Y])
         return np.insert(part, ANGLE, 0.0), float(unknowns[-1] * duration), turn
 
     def miss(unknowns: FloatArray) -> FloatArray:
-        if not 0.1 < unknowns[-1] < 10.0:  # Newton's method has lost its way
+        if not 0.1 < unknowns[-1] < 10.0:  # Newton's method diverges
             return np.full(unknowns.shape, np.nan)
         state, time, turn = parts(unknowns)
         end = engine.simulate(disc, state, [0.0, time], tolerance=tolerance).at_end
@@ -122,8 +121,8 @@ def steady_motion(
     first = np.append(np.delete(guess, ANGLE) / sizes, 1.0)
     if circles:
         first[Y] = frequency * duration
-    # Steps of the square root of the tolerance balance the noise of the flow with its curvature. A tenth of the
-    # tolerance is the last step that is worth taking: below it Newton's method takes noise for a wrong derivative.
+    # Difference steps of √tolerance balance the noise of the flow against its curvature. Iterations stop at a tenth
+    # of the tolerance because smaller steps only follow the noise.
     found = root(miss, first, method="hybr", options={"eps": tolerance, "xtol": 0.1 * tolerance})
     if not np.max(np.abs(found.fun)) < CONVERGED:
         return None
@@ -134,9 +133,9 @@ def steady_motion(
 
 
 def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float:
-    """Return by how much an error of the flow is amplified in :func:`steady_motion`.
+    """Return the amplification of an error of the flow in :func:`steady_motion`.
 
-    With an eigenvalue λ the motion takes up the error 1/|1 − exp(λT)| times in the time T after which it is back.
+    It is the largest 1/|1 − exp(λT)| over the eigenvalues λ, where T is the period.
     """
     frequency, eigenvalues = 0.0, motion.eigenvalues
     if isinstance(motion, Whirl):
@@ -146,7 +145,7 @@ def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float
 
 
 def _share(disc: DiscOnDisc) -> float:
-    """Return the angle in rad by which a disc turns until it is back."""
+    """Return the rotation of a disc in one period, in rad."""
     return 2.0 * math.pi / (disc.contact_points or SYMMETRY)
 
 
@@ -160,8 +159,8 @@ def mode_growth(
 ) -> complex:
     """Return growth rate and frequency in 1/s of the slowest mode of small deviations from a steady motion.
 
-    Half the difference of two simulations that start on opposite sides of the motion, in which even powers of the
-    deviation drop out. Of all modes in it the left eigenvector sees one, the slowest but a phase that is free.
+    Two simulations start on opposite sides of the motion, so even powers of the deviation cancel in their difference.
+    The left eigenvector selects the slowest mode other than a free phase.
 
     Parameters
     ----------
@@ -172,20 +171,20 @@ def mode_growth(
     motion : SpinningEquilibrium or SpinningWhirl
         The steady motion.
     displacement : array of shape (6,)
-        From it at the start.
+        Initial deviation from the motion.
     duration : float
-        For which the deviation is followed, in s.
+        Duration of the simulations, in s.
     tolerance : float
-        Handed to the engine.
+        Tolerance of the engine.
 
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):
         frequency, eigenvalue = motion.frequency, motion.eigenvalues[1]
-    # Nothing depends on the angle: in this eigenvector it has no part.
+    # Nothing depends on the angle, so its component of this eigenvector is zero.
     values, left = np.linalg.eig((sliding_jacobian(disc, motion.state) - frequency * TURNING).T)
     slowest = left[:, np.argmin(np.abs(values - eigenvalue))]
-    # Two samples a radian: in these axes no slow mode oscillates much faster than with the natural frequency.
+    # Two samples per radian: in these axes slow modes oscillate at about the natural frequency or below.
     times = np.linspace(0.0, duration, 2 * math.ceil(disc.natural_frequency * duration) + 1)
     outwards, inwards = (
         rotated(
@@ -201,7 +200,7 @@ def mode_growth(
     return complex(growth[1] - growth[0], turn[1] - turn[0]) / duration
 
 
-# --- The self-centred equilibrium of a disc over the friction force, and where it ends.
+# --- The self-centred equilibrium of a disc against the friction force, and its end.
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:
@@ -210,7 +209,7 @@ def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:
 
 
 def equilibrium_of(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SpinningEquilibrium:
-    """Return the one self-centred equilibrium of a disc under an isotropic law."""
+    """Return the unique self-centred equilibrium of a disc under an isotropic law."""
     (equilibrium,) = self_centred_equilibria(disc, contact)
     return equilibrium
 
@@ -218,7 +217,7 @@ def equilibrium_of(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the μN in N at which the self-centred equilibrium ends: (5) for a disc.
 
-    From there on friction can give the force C·|X0|, which holds the disc on the axis, beside the moment b|ω − Ω| of
+    Above it friction can supply both the force C·|X0|, which holds the disc on the axis, and the moment b|ω − Ω| of
     the shaft. Both lie within the limit surface, which is convex, if C·|X0| + b|ω − Ω|/R <= μN.
     """
     springs, moment = disc.stiffness * abs(disc.offset), shaft_torque(disc) / disc.contact_radius
@@ -226,5 +225,5 @@ def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> floa
     def spare(load: float) -> float:
         return held_pin(with_load(disc, load), contact).friction_force - springs
 
-    least = max(springs, moment * (1.0 + ROUNDING))  # what one of the two takes alone
+    least = max(springs, moment * (1.0 + ROUNDING))  # load required by force or moment alone
     return float(brentq(spare, least, springs + moment, xtol=ROUNDING * springs, rtol=ROUNDING))

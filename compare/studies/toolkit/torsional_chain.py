@@ -1,8 +1,8 @@
-"""Rotors in a row with a clutch between any two neighbours: their exact motion under Coulomb friction.
+"""Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
 
-Torques and capacities are harmonic from break to break, so that speeds and angles are closed forms between events: a
-clutch whose slip comes to nothing, or that is asked to hold more than it can. What follows an event is the one
-combination of modes that contradicts nothing, found by trying all. Roots are to rounding; nothing is integrated.
+Torques and capacities are piecewise harmonic, so speeds and angles have closed forms between events. An event is the
+end of a clutch's slip, or a torque that exceeds its holding capacity. After an event, a search over all combinations
+of modes finds the consistent one. Roots are exact to rounding; nothing is integrated numerically.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from scipy.optimize import brentq
 from reference_model.systems import FloatArray
 
 FORWARD, STUCK, BACKWARD, OPEN = 1, 0, -1, 2
-"""Modes of a clutch, numbered as Modelica's clutches are: forward where the rotor behind it is the faster one."""
+"""Modes of a clutch, numbered as in Modelica; forward if the rotor behind the clutch is faster."""
 
 PER_PERIOD = 400
-"""Samples in a period of the fastest harmonic, between which events are looked for; two in one interval go unseen."""
+"""Samples per period of the fastest harmonic in the search for events; it misses two events in one interval."""
 
 LEAST_SAMPLES = 200
 
 
 @dataclass(frozen=True)
 class Harmonic:
-    """The torque amplitude·sin(rate·t + phase) in N m; a constant where the rate is 0.
+    """The torque amplitude·sin(rate·t + phase) in N m, constant if the rate is 0.
 
     Parameters
     ----------
     amplitude : float
-        In N m.
+        Amplitude in N m.
     rate : float
-        In rad/s, >= 0.
+        Angular frequency in rad/s, >= 0.
     phase : float
-        In rad.
+        Phase in rad.
 
     """
 
@@ -56,14 +56,14 @@ class Harmonic:
         tau, value, a, w = t - begin, self.phase + self.rate * begin, self.amplitude, self.rate
         if w == 0.0:
             return a * math.sin(value) * tau, 0.5 * a * math.sin(value) * tau**2
-        # the difference of two cosines as a product, which loses no digits over short times
+        # the difference of two cosines as a product, which avoids cancellation at short times
         once = 2.0 * a / w * np.sin(value + 0.5 * w * tau) * np.sin(0.5 * w * tau)
         twice = a / w * (math.cos(value) * tau - (np.sin(w * t + self.phase) - math.sin(value)) / w)
         return np.asarray(once), np.asarray(twice)
 
 
 Pieces = Sequence[tuple[float, Harmonic]]
-"""The times in s from which each harmonic is in force; the first is where the motion starts."""
+"""Harmonics with their start times in s; the first is the start of the motion."""
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ class Chain:
     Parameters
     ----------
     inertias : sequence of n floats
-        In kg m².
+        Moments of inertia in kg m².
     torques : sequence of n Pieces
-        What acts on each rotor from outside.
+        External torque on each rotor.
     capacities : sequence of n - 1 Pieces
-        What each clutch transmits while it slips, >= 0; it is open where the amplitude is 0.
+        Torque of each clutch during slip, >= 0; the clutch is open if the amplitude is 0.
     static_ratio : float
-        Of what it can hold to that, >= 1.
+        Ratio of the holding capacity to that torque, >= 1.
 
     """
 
@@ -90,20 +90,20 @@ class Chain:
 
     @cached_property
     def breaks(self) -> list[float]:
-        """When a piece begins, in s."""
+        """Start times of all pieces in s."""
         return sorted({begin for pieces in (*self.torques, *self.capacities) for begin, _ in pieces})
 
     @cached_property
     def _differences(self) -> FloatArray:
-        """Of neighbours, shape (n - 1, n): the slip from the speeds."""
+        """Matrix of shape (n - 1, n) that yields slips from speeds."""
         return np.diff(np.eye(len(self.inertias)), axis=0)
 
     def in_force(self, t: float) -> list[Harmonic]:
-        """Return torques on rotors and capacities of clutches from the time ``t`` in s on."""
+        """Return the harmonics of torques and capacities in effect from the time ``t`` in s."""
         return [[f for begin, f in pieces if begin <= t][-1] for pieces in (*self.torques, *self.capacities)]
 
     def transmitted(self, modes: Sequence[int]) -> FloatArray:
-        """Return what the clutches put on the rotors behind them, as a matrix over ``in_force``."""
+        """Return the clutch torques on the rotors behind them as a matrix, to be multiplied by ``in_force``."""
         n, d = len(self.inertias), self._differences
         by_inertia = d / np.asarray(self.inertias)
         equations, given = np.eye(n - 1), np.zeros((n - 1, 2 * n - 1))
@@ -115,7 +115,7 @@ class Chain:
         return np.asarray(np.linalg.solve(equations, given))
 
     def accelerations(self, modes: Sequence[int]) -> FloatArray:
-        """Return the rotors' accelerations as a matrix over ``in_force``, shape (n, 2n - 1)."""
+        """Return the angular accelerations as a matrix of shape (n, 2n - 1), to be multiplied by ``in_force``."""
         n = len(self.inertias)
         torques = np.hstack((np.eye(n), np.zeros((n, n - 1)))) + self._differences.T @ self.transmitted(modes)
         return np.asarray(torques / np.asarray(self.inertias)[:, np.newaxis])
@@ -132,7 +132,7 @@ class Chain:
             state = tuple(values[0] for values in phase.states(at_end))
             signs = np.sign(self._differences @ state[1])
             for i, mode in enumerate(phase.modes):
-                if mode == STUCK:  # what lets go slips against what has held it
+                if mode == STUCK:  # a released clutch slips against the torque that held it
                     signs[i] = -np.sign(phase.transmitted(at_end)[0, i]) if happened[i] else 0.0
                 elif happened[i]:
                     signs[i] = 0.0
@@ -140,7 +140,7 @@ class Chain:
         return Motion(self, tuple(phases), until)
 
     def _modes(self, t: float, signs: FloatArray) -> tuple[int, ...]:
-        """Return the modes from ``t`` on: by the sign of a slip, and where that is 0 what contradicts nothing."""
+        """Return the modes after ``t`` from the signs of the slips; clutches without slip take a consistent mode."""
         harmonics, n = self.in_force(t), len(self.inertias)
         values = np.array([float(f(np.asarray(t))) for f in harmonics])
         choices = [
@@ -156,12 +156,12 @@ class Chain:
                 if signs[i] == 0.0 and mode != OPEN
             ):
                 return modes
-        raise ValueError(f"no combination of modes goes on from t = {t:g} s")
+        raise ValueError(f"no consistent combination of clutch modes after t = {t:g} s")
 
 
 @dataclass(frozen=True)
 class Phase:
-    """The motion of a chain from ``begin`` in s on without a change of modes, from angles in rad, speeds in rad/s."""
+    """Motion of a chain from ``begin`` (s) without a change of modes, from angles in rad and speeds in rad/s."""
 
     chain: Chain
     begin: float
@@ -181,12 +181,12 @@ class Phase:
         return self.angles + gone * self.speeds + (matrix @ twice).T, self.speeds + (matrix @ once).T
 
     def transmitted(self, t: FloatArray) -> FloatArray:
-        """Return what the clutches put on the rotors behind them in N m, shape (len(t), n - 1)."""
+        """Return the clutch torques on the rotors behind them in N m, shape (len(t), n - 1)."""
         values = np.array([f(t) for f in self._harmonics])
         return np.asarray((self.chain.transmitted(self.modes) @ values).T)
 
     def first_event(self, end: float) -> tuple[float, NDArray[np.bool_]]:
-        """Return when the first mode ends, at ``end`` in s at the latest, and which ones do then."""
+        """Return the time in s of the first event, at most ``end``, and a mask of the clutches that change mode."""
         fastest = max(f.rate for f in self._harmonics)
         number = max(LEAST_SAMPLES, math.ceil(PER_PERIOD * fastest * (end - self.begin) / (2.0 * math.pi)))
         times = np.linspace(self.begin, end, number + 1)
@@ -218,7 +218,7 @@ class Phase:
 
 @dataclass(frozen=True)
 class Motion:
-    """The exact motion of a chain up to ``until`` in s."""
+    """Exact motion of a chain up to ``until`` in s."""
 
     chain: Chain
     phases: tuple[Phase, ...]
@@ -244,6 +244,6 @@ class Motion:
         return found
 
     def switches(self, clutch: int) -> list[tuple[float, int]]:
-        """Return when the mode of a clutch changes, in s, and to which."""
+        """Return the times in s of a clutch's mode changes, each with the new mode."""
         modes = [(phase.begin, phase.modes[clutch]) for phase in self.phases]
         return [later for earlier, later in itertools.pairwise(modes) if later[1] != earlier[1]]

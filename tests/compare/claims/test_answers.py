@@ -1,4 +1,4 @@
-"""Claims of yes or no differ where an answer is surely no, and are open where the engine's error leaves one open."""
+"""Yes-or-no claims differ if a case certainly fails, and are inconclusive if the engine's error leaves one open."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,7 @@ def of(*margins_and_errors, **more):
         ([0.3, 0.2], 0.1, Verdict.AGREES, "2 of 2"),
         ([0.3, 0.05], 0.1, Verdict.INCONCLUSIVE, "1 of 2"),
         ([0.3, -0.05], 0.1, Verdict.INCONCLUSIVE, "1 of 2"),
-        ([0.05, -0.3], 0.1, Verdict.DIFFERS, "0 of 2"),  # one that is open does not excuse the other
+        ([0.05, -0.3], 0.1, Verdict.DIFFERS, "0 of 2"),  # an open case does not excuse a failure
         ([0.3, 0.05], [0.1, 0.01], Verdict.AGREES, "2 of 2"),
         ([[0.3, 0.3], [0.05, 0.3]], [[0.1], [0.01]], Verdict.AGREES, "4 of 4"),
         ([0.0], 0.0, Verdict.INCONCLUSIVE, "0 of 1"),
@@ -54,7 +54,7 @@ def test_so_many_answers_may_be_open_as_are_allowed():
 
 
 def test_an_answer_that_changes_with_the_tolerance_is_open():
-    """At a threshold of 1, an engine whose error is twice its tolerance."""
+    """The threshold is 1, and the engine's error is twice its tolerance."""
 
     def engine(exact):
         return lambda tolerance: np.array(exact) + 2.0 * tolerance > 1.0

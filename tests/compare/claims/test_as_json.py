@@ -1,4 +1,4 @@
-"""The converter between values and JSON: nothing is lost, whatever JSON has no word for."""
+"""Conversion to JSON and back is lossless, even for values that JSON cannot represent."""
 
 import json
 from dataclasses import dataclass

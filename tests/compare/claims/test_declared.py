@@ -1,4 +1,4 @@
-"""Claims as declarations: what is known of them without measuring, and what a measurement makes of them."""
+"""Declared claims: properties known before the measurement, and results of the measurement."""
 
 import pickle
 from dataclasses import replace
@@ -20,7 +20,7 @@ ENGINE = Engine("exact", simulate)
 
 
 def study_of(*names):
-    """Return a study with the claims of these names, declared in this order."""
+    """Return a study with the named claims, declared in this order."""
     study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
 
     def rests(engine, loads=LOADS):
@@ -83,7 +83,7 @@ def test_an_inserted_claim_shifts_no_identity():
 
 
 def test_two_claims_of_one_name_are_refused():
-    with pytest.raises(ValueError, match="two claims rest/rests"):
+    with pytest.raises(ValueError, match="duplicate claim id rest/rests"):
         study_of("rests", "rests")
 
 
@@ -151,7 +151,7 @@ def test_the_theory_has_no_engine():
 def test_without_a_resolution_nothing_is_claimed():
     study = study_of()
     study.claim("It is")(unresolved)
-    with pytest.raises(ValueError, match="neither declaration nor measurement has a resolution"):
+    with pytest.raises(ValueError, match="no resolution given"):
         study.measure(ENGINE)
 
 
@@ -187,7 +187,7 @@ A caption.
 
 @pytest.fixture
 def folder(tmp_path):
-    """Of a study of the group pin."""
+    """Return the folder of a study in the group "pin"."""
     result = tmp_path / "pin" / "title"
     result.mkdir(parents=True)
     (result / "study.md").write_text(PROSE, encoding="utf-8")
@@ -212,13 +212,13 @@ def test_a_study_without_captions_has_one_figure_with_its_own_name_and_title(fol
     assert beside().figures == {"branches": "A caption."}
     (folder / "study.md").write_text("# A title\n\nWhat the paper says of {range}.\n", encoding="utf-8")
     assert beside(figures=dict).figures == {"title": "A title"}
-    with pytest.raises(TypeError, match="title provides movies: known are figures, animations"):
+    with pytest.raises(TypeError, match="study title cannot provide movies: expected figures, animations"):
         beside(movies=dict)
     assert beside().figures == {}
 
 
 def test_prose_without_title_word_or_group_is_refused(folder):
-    with pytest.raises(ValueError, match=r"has no \{loads\}"):
+    with pytest.raises(ValueError, match=r"\{loads\} is missing"):
         Prose.of(folder / "claims.py", {"loads": "0"})
     (folder / "study.md").write_text(PROSE.replace("# A title", "## A title"), encoding="utf-8")
     with pytest.raises(ValueError, match="must begin with a title"):

@@ -1,4 +1,4 @@
-"""Each erratum: the corrected formula gives the exact number, the printed one does not."""
+"""Each corrected formula of the errata gives the exact number, and the printed one does not."""
 
 import functools
 import math
@@ -17,20 +17,20 @@ from reference_model.formulas.pin import first_order_whirl_shift, whirl_shift
 from reference_model.steady.steady_states import self_centred_equilibria
 
 ROUNDING = 1e-14
-"""A few dozen operations on numbers of the order one, each good to 1.1e-16."""
+"""Error of a few dozen operations on numbers of order one, each exact to 1.1e-16."""
 
 ALWAYS_EXISTS, COEFFICIENT, SHIFT, EXPANSION, BRACKET, STABLE = ERRATA
 
 THIRD_ORDER = 30.0 * 1e-3**2
-"""Of (18), relative: (w·X0/ρ)², w = ω/(ω − k) = 6, ρ = 1.2 m, is 25·X0²; X0 = 1 mm."""
+"""Relative error of the corrected (18): (w·X0/ρ)² = 25·X0², with w = ω/(ω − k) = 6, ρ = 1.2 m and X0 = 1 mm."""
 
 TOLERANCES = {
     ALWAYS_EXISTS: ROUNDING,
     COEFFICIENT: ROUNDING,
     SHIFT: THIRD_ORDER,
     EXPANSION: ROUNDING,
-    BRACKET: 100.0 * ROUNDING,  # a root of one variable each
-    STABLE: 1e-7,  # of differences of the flow with relative steps of 4e-3, extrapolated twice
+    BRACKET: 100.0 * ROUNDING,  # each value is a root in one variable
+    STABLE: 1e-7,  # differences of the flow with relative steps of 4e-3, extrapolated twice
 }
 
 
@@ -49,7 +49,7 @@ def test_the_corrected_formula_gives_the_exact_number_and_the_printed_one_does_n
     evidence = evidence_of(erratum)
     tolerance = TOLERANCES[erratum] * max(1.0, abs(evidence.exact))
     assert abs(evidence.corrected_value - evidence.exact) <= tolerance
-    # By far: no choice of the tolerance turns one into the other.
+    # The factor 100 ensures that no choice of the tolerance confuses the two.
     assert abs(evidence.printed_value - evidence.exact) > 100.0 * tolerance
 
 
@@ -61,20 +61,20 @@ def test_every_erratum_shows_both_formulas_and_says_why(erratum):
 
 
 def test_below_k_friction_brakes_as_much_as_the_damper():
-    """Both take μN from the pin on the circle (11), where βkρ = μN."""
+    """Both exert μN on the pin on the circle (11), where βkρ = μN."""
     evidence = evidence_of(ALWAYS_EXISTS)
     assert evidence.exact == pytest.approx(-2.0 * CENTRED.friction_force, rel=ROUNDING)
 
 
 def test_the_coefficient_of_13_is_the_negative_trace():
-    """By hand at ω = 1.5: β/m·(1 + ω/(ω − k)) = 0.1·(1 + 3); as printed 1 + 0.1·3."""
+    """The value by hand at ω = 1.5 is β/m·(1 + ω/(ω − k)) = 0.1·(1 + 3); as printed it is 1 + 0.1·3."""
     evidence = evidence_of(COEFFICIENT)
     assert evidence.exact == pytest.approx(0.4, rel=ROUNDING)
     assert evidence.printed_value == pytest.approx(1.3, rel=ROUNDING)
 
 
 def test_the_printed_13_changes_with_the_unit_of_time_and_the_corrected_one_does_not(monkeypatch):
-    """In units of half a second a rate is half the number, whatever the formula says."""
+    """The number of any rate is halved if the unit of time is half a second."""
     halved = replace(
         CENTRED,
         stiffness=CENTRED.stiffness / 4.0,
@@ -97,13 +97,13 @@ def test_the_error_of_the_printed_18_stays_as_the_offset_falls_and_that_of_the_c
         mean = whirl_orbit(pin, samples=64).mean
         printed.append(math.dist(whirl_shift(pin), mean) / offset)
         corrected.append(math.dist(first_order_whirl_shift(pin), mean) / offset)
-    growth = (6.0 * 0.02 / 1.2) ** 2  # the next order, relatively
+    growth = (6.0 * 0.02 / 1.2) ** 2  # relative size of the next order
     assert printed[0] == pytest.approx(printed[1], rel=growth)
     assert corrected[0] / corrected[1] == pytest.approx(4.0, rel=2.0 * growth)
 
 
 def test_the_printed_22_gives_a_moment_that_does_not_depend_on_the_slip_of_the_centre():
-    """By hand at U = W: (23) gives (1 − ½·½ + ¾·¼)/√2; the average of the printed line is 1."""
+    """The value of (23) by hand at U = W is (1 − ½·½ + ¾·¼)/√2; the average of the printed line is 1."""
     evidence = evidence_of(EXPANSION)
     assert evidence.exact == pytest.approx(0.9375 / math.sqrt(2.0), rel=ROUNDING)
     assert evidence.printed_value == pytest.approx(1.0, rel=ROUNDING)
@@ -112,7 +112,7 @@ def test_the_printed_22_gives_a_moment_that_does_not_depend_on_the_slip_of_the_c
 def test_deviations_from_the_equilibrium_of_the_disc_grow_and_those_of_the_pin_do_not():
     evidence = evidence_of(STABLE)
     assert evidence.exact > 1e-3
-    # By hand for a pin: mλ² + βλ + C, with β = 0.003.
+    # For a pin, by hand: mλ² + βλ + C = 0 with β = 0.003.
     assert evidence.printed_value == pytest.approx(-0.0015, rel=ROUNDING)
 
 
@@ -126,7 +126,7 @@ def test_the_load_of_the_erratum_is_the_one_at_which_the_equilibrium_loses_its_s
 
 
 def test_the_exact_spin_balances_the_equations_of_motion_with_23():
-    """(19) with (23), written out for the place and spin that the evidence is about."""
+    """The test evaluates (19) with (23) at the position and spin of the evidence."""
     (disc,) = self_centred_equilibria(FIG8, ThreeTermRing(FIG8.contact_radius))
     assert disc.spin == evidence_of(BRACKET).exact
     slip = FIG8.disc_speed * np.array([disc.y, -disc.x])
@@ -143,7 +143,7 @@ def test_the_exact_spin_balances_the_equations_of_motion_with_23():
 
 
 def test_the_error_of_the_printed_26_does_not_go_with_the_load_and_that_of_the_corrected_one_is_rounding():
-    """Without friction both are right; their difference is of first order in the load, as friction itself is."""
+    """Both are exact without friction; their difference is of first order in the load, like friction itself."""
     moved, wrong = [], []
     for load in (1e-3, 5e-4):
         disc = replace(FIG8, friction_force=load)

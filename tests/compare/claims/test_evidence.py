@@ -1,4 +1,4 @@
-"""What a verdict is worth as evidence: by the claim, by the engine, and by the verdicts beside it."""
+"""Kind of evidence of a verdict, from the claim, the engine and related verdicts."""
 
 import json
 import re
@@ -27,7 +27,7 @@ from compare.studies import STUDIES, studies
         ("exudyn", {"kind": "trajectory"}, "independent"),
         ("mypackage.mymodule:simulate", {"kind": "trajectory"}, "independent"),
         ("reference", {"kind": "trajectory"}, "self-check"),
-        ("compiled", {"kind": "trajectory"}, "self-check"),  # it has the reference's closed forms
+        ("compiled", {"kind": "trajectory"}, "self-check"),  # it shares the reference's closed forms
         ("reference", {"kind": "trajectory", "basis": "independent"}, "independent"),
         ("reference", {"kind": "conservation", "basis": "reference"}, "self-check"),
         ("exudyn", {"kind": "conservation", "basis": "reference"}, "independent"),
@@ -82,7 +82,7 @@ def test_what_follows_from_a_claim_that_differs_stands_for_itself(tmp_path):
 
 
 def test_a_self_check_does_not_imply_independent_evidence(tmp_path):
-    """(4) needs no law of friction: it is evidence about an engine whose place of rest is predicted with its own."""
+    """(4) needs no friction law, so it is independent evidence even if the predicted position of rest uses one."""
     found = kinds(tmp_path, study_of(measured_with_its_own_law), reference, exudyn)
     assert found[RESTS] == {"reference": "self-check", "exudyn": "independent"}
     assert found[CIRCLE] == {"reference": "independent", "exudyn": "implied"}
@@ -94,7 +94,7 @@ def test_an_engine_with_another_contact_repeats_its_kin_but_where_the_contact_de
         found = kinds(tmp_path / str(contact), study_of(measured, contact=contact), exudyn, named)
         assert found[OTHER] == {"exudyn": "independent", "exudyn-native": evidence}
     alone = kinds(tmp_path / "alone", study_of(measured), named)
-    assert alone[OTHER] == {"exudyn-native": "independent"}  # there is nothing that it would repeat
+    assert alone[OTHER] == {"exudyn-native": "independent"}  # no related engine takes part
 
 
 def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
@@ -154,7 +154,7 @@ def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
 
 @pytest.fixture(scope="module")
 def reported(tmp_path_factory):
-    """Matrix and folder of a report on the reference and Exudyn, with something of every kind."""
+    """Return matrix and folder of a report on the reference and Exudyn, with all kinds of evidence."""
     folder = tmp_path_factory.mktemp("evidence")
     study = study_of(measured_with_its_own_law, provided={"theory": theory})
     native_too = replace(exudyn_native, function=straight)
@@ -183,7 +183,7 @@ def test_the_page_says_what_each_kind_means_and_from_what_a_verdict_follows(repo
     (legend,) = re.findall(r'<dl class="legend kinds">(.*?)</dl>', page, flags=re.DOTALL)
     assert re.findall("<dt>(.*?)</dt>", legend) == ["independent", "self-check", "algebra", "implied"]
     by = rf'implied by <a href="#(rests/[a-z0-9-]+)" title="{re.escape(RESTS)}">\1</a>'
-    assert len(re.findall(by, page)) == 2  # beside the claim, and in its table
+    assert len(re.findall(by, page)) == 2  # next to the claim and in its table
     assert page.count("Exudyn with its built-in contact in place of the connector") == 1
 
 
@@ -216,7 +216,7 @@ def test_programs_see_the_kind_of_each_verdict(reported):
 
 @pytest.mark.usefixtures("in_this_process")
 def test_matrix_and_table_show_one_number(tmp_path):
-    """Of a claim whose smallest budget is far from its largest."""
+    """The claim's smallest budget is much smaller than its largest."""
 
     def budgets(engine):
         differences, allowed = np.array([1e-13, 9e-6, 2e-5]), np.array([1e-12, 1e-5, 1e-3])

@@ -1,4 +1,4 @@
-"""Numbers that an engine does not give at every tolerance."""
+"""Error estimates of numbers that an engine does not give at every tolerance."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""An engine of Moreau's time stepping, whose law of friction may be wrong in one way."""
+"""An engine with Moreau's time stepping, whose friction law can be wrong in one way."""
 
 import cmath
 import functools
@@ -11,7 +11,7 @@ from reference_model import Trajectory
 
 
 def stepped(system, start, times, *, step, law=None, smooth=0.0, lagging=False):
-    """Simulate a pin; ``law(impulse)`` is what friction makes of that which would end the slip, over the largest."""
+    """Simulate a pin; ``law`` maps the impulse that would end the slip, over the largest one, to that of friction."""
     place, velocity = complex(*start[:2]), complex(*start[2:])
     states, before = [start], None
     for interval in np.diff(times).tolist():
@@ -32,17 +32,17 @@ def stepped(system, start, times, *, step, law=None, smooth=0.0, lagging=False):
 
 
 def cone(impulse, factor=1.0, turn=0.0):
-    """Return Coulomb's: an impulse up to 1 is as it is, and a larger one is cut to 1."""
+    """Return the impulse of Coulomb's law, limited to 1."""
     return factor * impulse * cmath.rect(1.0, turn) / max(abs(impulse), 1.0)
 
 
 def box(impulse):
-    """Return what each axis has for itself."""
+    """Return the impulse limited on each axis independently."""
     return complex(*(min(max(part, -1.0), 1.0) for part in (impulse.real, impulse.imag)))
 
 
 def pyramid(impulse, sides, tilt=0.0):
-    """Return the corner that is nearest, cut to the impulse."""
+    """Return the nearest corner, limited to the impulse."""
     corner = 2.0 * math.pi / sides
     nearest = tilt + corner * round((cmath.phase(impulse) - tilt) / corner)
     return cmath.rect(min(abs(impulse), 1.0), nearest)

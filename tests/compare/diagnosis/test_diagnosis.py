@@ -1,4 +1,4 @@
-"""The matrix names the law that an engine has, and nothing that it has not."""
+"""The matrix names the friction law of an engine and reports no other deviations."""
 
 import functools
 import json
@@ -31,14 +31,14 @@ from reference_model import Trajectory
 RIGHT = engine("right")
 
 NAMED = {
-    "box": (engine("box", law=box), "Friction is a box: each axis has its own, its force"),
+    "box": (engine("box", law=box), "Friction is a box with a separate limit for each axis, accurate to"),
     "nearest axis": (
         engine("nearest", law=functools.partial(pyramid, sides=4)),
-        "Friction is a pyramid of 4 sides: it acts along the nearest axis, its force",
+        "Friction is a pyramid with 4 sides that acts along the nearest axis, accurate to",
     ),
     "eight sides": (
         engine("eight", law=functools.partial(pyramid, sides=8, tilt=math.pi / 8)),
-        "Friction is a pyramid of 8 sides with a side across the x axis, inside of the cone, its force",
+        "Friction is a pyramid with 8 sides inside the cone, with a side across the x axis, accurate to",
     ),
     "0.1 % too much": (
         engine("more", law=functools.partial(cone, factor=1.001)),
@@ -46,7 +46,7 @@ NAMED = {
     ),
     "one degree off": (
         engine("turned", law=functools.partial(cone, turn=math.radians(1.0))),
-        "Friction is Coulomb's cone, but its force is turned by 1.0° from where it should act",
+        "Friction is Coulomb's cone, but its force is rotated by 1.0° (±",
     ),
 }
 
@@ -69,13 +69,13 @@ def test_a_wrong_law_is_named(wrong):
 @pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
 def test_coulombs_law_is_named_and_nothing_besides(made):
     row, found = sentences(made)
-    assert found.startswith("Friction is Coulomb's cone, its force right to within ")
-    assert found.endswith("A block that friction can hold rests.")
+    assert found.startswith("Friction is Coulomb's cone, accurate to ")
+    assert found.endswith("A block loaded below μN stays at rest.")
     assert not row.wrong
 
 
 def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
-    """MuJoCo's ellipse with Runge-Kutta steps has one of 5e-7 m/s per m/s, by which μ seemed 0.0025 % too large."""
+    """MuJoCo's ellipse with Runge-Kutta steps has an impulse of 5e-7 m/s per m/s; μ seemed 0.0025 % too large."""
 
     def simulate(pin, start, times, *, tolerance):
         found = reference.simulate(
@@ -84,7 +84,7 @@ def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
         return replace(found, states=np.vstack((start, found.states[1:])))
 
     assert sentences(replace(reference, function=simulate))[1].startswith(
-        "Friction is Coulomb's cone, its force right to within "
+        "Friction is Coulomb's cone, accurate to "
     )
 
 
@@ -107,15 +107,15 @@ def test_a_law_is_open_where_another_fits_as_well():
 
 def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
     fixed, said = sentences(engine("fixed", smooth=1e-2))
-    # What is smoothed acts on the slip before the step, which is larger by what the step takes.
-    assert "smoothed as min(v/ε, 1), and ε = 0.00" in said
-    assert said.endswith("m/s is the same at every step.")
+    # Smoothing acts on the slip before the step, which is larger by the change during the step.
+    assert "regularised as min(v/ε, 1) with ε = 0.00" in said
+    assert said.endswith("m/s, independent of the step.")
     assert fixed.wrong
 
 
 def test_a_lag_of_a_step_is_told_and_is_no_wrong_law():
     row, said = sentences(engine("previous", lagging=True))
-    assert "It acts along the slip 1.0 steps earlier." in said or "0.9" in said.split("slip ")[1]
+    assert "Friction lags the slip by 1.0 steps." in said or "0.9" in said.split("slip by ")[1]
     assert not row.wrong
 
 
@@ -139,7 +139,7 @@ def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
 def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_faster(order):
-    """A smoothed law may converge as slowly as that, and is not another law."""
+    """A smoothed law may converge that slowly without being another law."""
     ladder = Ladder.of(RIGHT, lambda tolerance: 1.0 + RIGHT.step_at(tolerance) ** order)
     off = abs(ladder.finest - 1.0)
     assert off <= ladder.error <= 50.0 * off
@@ -156,7 +156,7 @@ def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_fast
 def test_an_engine_that_takes_no_notice_of_the_tolerance_is_told_so():
     deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
     row = Row("deaf", motions={"slip": deaf})
-    told = "Nothing changes with the tolerance, so that no error can be told from another law."
+    told = "Results do not change with the tolerance, so an error cannot be told from another law."
     assert row.sentences == (told,)
     assert row.wrong
 
@@ -176,7 +176,7 @@ def test_a_part_without_a_result_is_named_and_the_others_are_there():
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == {"law", "creep"}
-    assert row.sentences[0].startswith("No result of law, creep: out of order")
+    assert row.sentences[0].startswith("No result for law, creep: out of order")
     assert set(run.in_short(broken, Workers(1)).gaps) == {"law"}
 
 
@@ -184,8 +184,8 @@ def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
     rows = recorded_rows()
     by_name = {row.engine: row for row in rows}
     assert by_name["Bullet, box"].wrong
-    assert by_name["Bullet, box"].sentences[0].startswith("Friction is a box: each axis has its own")
-    nearest = "Friction is a pyramid of 4 sides: it acts along the nearest axis"
+    assert by_name["Bullet, box"].sentences[0].startswith("Friction is a box with a separate limit")
+    nearest = "Friction is a pyramid with 4 sides that acts along the nearest axis"
     assert by_name["MuJoCo, pyramidal cone"].sentences[0].startswith(nearest)
     assert by_name["MuJoCo, elliptic cone"].sentences[0].startswith("Friction is Coulomb's cone")
     assert not by_name["Drake, TAMSI"].wrong
@@ -194,7 +194,7 @@ def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
     write_rows([*rows, mine], tmp_path)
     content = json.loads((tmp_path / "matrix.json").read_text(encoding="utf-8"))
     assert content[-1]["motions"]["slip"]["errors"] == [1e-2, 5e-3, 2e-3, 1e-3]
-    assert content[-1]["sentences"] == ["Its errors fall as the tolerance to the power 1.0."]
+    assert content[-1]["sentences"] == ["Errors are of order 1.0 in the tolerance."]
     write_picture([*rows, mine], tmp_path)
     assert (tmp_path / "matrix.png").stat().st_size > 10_000
 

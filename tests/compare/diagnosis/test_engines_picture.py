@@ -1,4 +1,4 @@
-"""The README's first picture shows what is recorded of the engines."""
+"""The README's first figure shows the recorded results of the engines."""
 
 import runpy
 

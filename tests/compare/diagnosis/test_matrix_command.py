@@ -1,4 +1,4 @@
-"""The matrix from the command line."""
+"""The matrix command."""
 
 import json
 import math
@@ -24,7 +24,7 @@ boxed.kinds, boxed.step = ("block",), 1e-2
 
 @pytest.mark.parametrize(
     ("name", "status", "said"),
-    [("simulate", 0, "Friction is Coulomb's cone, its force right to"), ("boxed", 1, "Friction is a box")],
+    [("simulate", 0, "Friction is Coulomb's cone, accurate to"), ("boxed", 1, "Friction is a box")],
 )
 def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path, monkeypatch, capsys):
     (tmp_path / f"of_{name}.py").write_text(BLOCKS)
@@ -36,7 +36,9 @@ def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path,
     assert f"  {said}" in printed
     (row,) = json.loads((output / "matrix.json").read_text(encoding="utf-8"))
     assert row["version"] == ("3" if name == "simulate" else "")
-    assert row["law"]["shape"] == ("cone" if name == "simulate" else "box: each axis has its own")
+    assert row["law"]["shape"] == (
+        "cone" if name == "simulate" else "box with a separate limit for each axis"
+    )
     assert row["wrong"] == bool(status)
 
 

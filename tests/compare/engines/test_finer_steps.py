@@ -67,7 +67,7 @@ def engine_of(function, **more):
 def test_a_claim_is_asked_at_shorter_steps_until_it_is_decided():
     (claim,) = study_of(2e-2).measure(engine_of(euler)).claims
     assert claim.verdict is Verdict.AGREES
-    assert claim.note == "Asked at a step 4 times as short as the engine's own, which leaves it open."
+    assert claim.note == "Measured with 1/4 of the engine's own step, which leaves the claim inconclusive."
     (claim,) = study_of(0.5).measure(engine_of(euler)).claims
     assert claim.verdict is Verdict.AGREES
     assert claim.note == ""
@@ -106,4 +106,4 @@ def fails_below(system, state, times, *, step):
 def test_an_engine_that_fails_at_a_shorter_step_leaves_open_what_it_did():
     (claim,) = study_of(2e-2).measure(engine_of(fails_below)).claims
     assert claim.verdict is Verdict.INCONCLUSIVE
-    assert claim.note == "At a step 4 times as short as the engine's own it failed: out of memory"
+    assert claim.note == "The run with 1/4 of the engine's own step failed: out of memory"

@@ -61,7 +61,7 @@ def test_a_text_without_its_claim_says_so():
 
 
 def test_a_claim_has_no_name_for_an_element_that_it_does_not_have():
-    with pytest.raises(ValueError, match="'far' is element 1 of 1"):
+    with pytest.raises(ValueError, match=r"named\['far'\] = 1: it must be from 0 to 0"):
         claim("The radius", "good", 0.05, 0.05, 1e-6, named={"far": 1})
 
 
