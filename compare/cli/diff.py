@@ -1,4 +1,4 @@
-"""``friction-discs diff``: what parts two reports."""
+"""``friction-discs diff``: the differences of two reports."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ WriteBaseline = Annotated[
 
 
 def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBaseline = None) -> int:
-    """Tell what parts two reports: what moved by more than its error bars, what is new, what is gone.
+    """Compare two reports: list claims that changed by more than their error bars, are new or are missing.
 
-    The exit status is 0 when no claim moved, got worse or is gone, but for those of the baseline, 1 when one did,
-    2 on bad input, and 4 when an engine of NEW has no verdict, so nothing was compared.
+    The exit status is 0 if no claim outside the baseline changed, got worse or is missing, and 1 otherwise. It is 2
+    for bad input, and 4 if an engine of NEW has no verdict, so nothing was compared.
 
     \b
     Examples:

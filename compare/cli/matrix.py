@@ -1,4 +1,4 @@
-"""``friction-discs matrix``: which law of friction an engine has, how fast its errors fall, and to what."""
+"""``friction-discs matrix``: friction laws and convergence of engines."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Recorded = Annotated[
 ]
 
 LIMIT = 60.0
-"""In s."""
+"""Default of ``--limit`` in s."""
 
 
 def matrix(
@@ -48,13 +48,14 @@ def matrix(
     output: Folder = Path("matrix"),
     jobs: Jobs = None,
 ) -> int:
-    """Find out which law of friction engines have, how fast their errors fall, and to what.
+    """Identify the friction laws of engines and measure how fast their errors fall.
 
-    Blocks that slide, that are pulled and whose slip turns tell the law in seconds; then come the motions by which
-    the recorded engines are measured, each at four steps or tolerances. Prints a few sentences for each engine and a
-    table, and writes matrix.json, as rows come in, and matrix.svg and matrix.png. The exit status is 0 when no engine
-    has anything that a smaller step does not cure, 1 otherwise, 2 on bad input, 4 when an engine simulates none of
-    this, and 130 after Ctrl-C.
+    Three tests with blocks (sliding, pulled, slip that turns) identify the law within seconds. The motions of the
+    recorded engines follow, each with four steps or tolerances. The command prints findings for each engine and a
+    table. It writes matrix.json after each row, then matrix.svg and matrix.png.
+
+    The exit status is 0 if all errors vanish with smaller steps, and 1 otherwise. It is 2 for bad input, 4 if an
+    engine simulates none of these motions, and 130 after Ctrl-C.
 
     \b
     Examples:
@@ -104,7 +105,7 @@ def _print_row(row: Row) -> None:
 
 
 def _print_table(rows: Sequence[Row]) -> None:
-    """Print how far each engine is off each motion."""
+    """Print a table of the error of each engine in each motion."""
     from rich.console import Console
     from rich.table import Table
 

@@ -1,4 +1,4 @@
-"""``friction-discs plan``: the motions that studies ask for as files, for engines that nobody else can start."""
+"""``friction-discs plan``: the motions of studies as files, for engines that only their owner can run."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ def plan(
     output: Folder = Path("plan"),
     jobs: Jobs = None,
 ) -> int:
-    """Write the motions that studies ask for into a folder, each as a file, for an engine that answers with files.
+    """Write the motions of studies as files, to be simulated by an engine that this command cannot run.
 
-    Put NAME.csv beside each NAME.json, as simulate --output writes it: a line for each time with the time and the
-    state. Then judge them with report --engine files:DIR. What is missing or cut short is not scored. Claims whose
-    motions depend on the answers are left out.
+    Add NAME.csv to each NAME.json in the format of simulate --output: one line per time, with the time and the
+    state. Then judge the answers with report --engine files:DIR. Missing and incomplete answers are not scored.
+    Claims whose motions depend on earlier answers are left out.
 
     \b
     Examples:

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 MOST_LISTED = 10
-"""Measurements that a sentence names."""
+"""Largest number of measurements that a message lists."""
 
 Names = Annotated[
     list[str] | None,
@@ -112,15 +112,15 @@ def report(
     jobs: Jobs = None,
     resume: Resume = False,
 ) -> int:
-    """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+    """Measure the claims of studies; write index.html, results.json, junit.xml and figures.
 
-    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
-    few claims agree, 4 when an engine that --engine names has no verdict or gives no reason for one that is missing,
-    and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
-    Files of data that an engine of your own reads are not looked at by that: when they change, measure anew.
+    The full report goes into the folder report. A partial one (some studies or engines, one claim, the quick level)
+    goes into report-part. Choose another folder with --output.
 
-    The whole report goes into the folder report. A part of it (some studies or engines, one claim, the quick level)
-    goes into the folder report-part and leaves the whole report as it is. --output names another folder.
+    The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
+    if too few claims agree. It is 4 if an engine named with --engine has no verdict, or omits a claim without a
+    reason. It is 130 after Ctrl-C; the report then contains the finished measurements, and --resume completes it.
+    --resume does not notice changes to data files of your own engine; then run the command without it.
 
     \b
     Examples:
@@ -165,14 +165,14 @@ def report(
 
 
 def store_of(output: Path) -> Path:
-    """Return the folder beside the report's in which --resume finds what was measured: no reader needs it."""
+    """Return the folder of measurements for ``--resume``, next to the report because readers do not need it."""
     return output.resolve().with_name(f"{output.resolve().name}.data")
 
 
 def _asked(
     context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
 ) -> tuple[Study, ...]:
-    """Return the studies to measure, or the one that makes a claim; refuse what doesn't go with it."""
+    """Return the studies to measure; for ``--claim``, its study. Reject options that conflict with it."""
     studies = studies_of(context, names, level)
     if claim is None:
         return studies
@@ -185,13 +185,13 @@ def _asked(
 
 
 def _folder(context: typer.Context, output: Path, part: bool) -> Path:
-    """Return the folder that the user named, or by default "report-part" for a part, which keeps the whole report."""
+    """Return the folder; "report-part" is the default of a partial report, so the full one is kept."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
 
 def _write(result: Run, output: Path) -> Matrix:
-    """Write the report, without an interruption: that takes seconds, and then nothing is half written."""
+    """Write the report; Ctrl-C is ignored for these seconds, so no file is incomplete."""
     from compare.report.write import write_report
     from compare.run.workers import interrupts_ignored
 
@@ -216,7 +216,7 @@ def _is_suspect(matrix: Matrix, engine: str) -> bool:
 
 
 def _print_diagnoses(suspects: Iterable[Engine]) -> None:
-    """Print what is behind the claims of engines that differ, in a few sentences."""
+    """Print a short diagnosis of each engine with claims that differ or failed."""
     from compare.diagnosis.run import IN_SHORT, in_short
     from compare.run.workers import Workers
 
@@ -228,7 +228,7 @@ def _print_diagnoses(suspects: Iterable[Engine]) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status of a report; print what is missing, also for the engines that --engine ``named``."""
+    """Return the exit status; print what is missing. ``named`` are the engines from ``--engine``."""
     from compare.report.matrix import State
 
     if result.interrupted:
@@ -265,7 +265,7 @@ def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterato
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
-    """Print a line for all that is no agreement, and the totals."""
+    """Print a line for each claim that does not agree, and the totals."""
     from compare.report.matrix import State
     from compare.report.page import summary
 
@@ -279,7 +279,7 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 lines.append(f"{line}: {cell.reason}")
             elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
                 lines.append(f"{line}: {row.sentence}")
-    for line in dict.fromkeys(lines):  # an engine gives the same reason for all claims of a study
+    for line in dict.fromkeys(lines):  # an engine gives one reason for all claims of a study
         print(line)
     for what, failure in _failures(result).items():
         print(f"{what}: {failure}")
@@ -292,7 +292,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _failures(result: Run) -> dict[str, Failure]:
-    """Return what failed besides the measurements, by a name that can be printed."""
+    """Return failed drawings and errata, by a description to print."""
     from compare.run.workers import Failure
 
     work: dict[str, object] = {
@@ -305,13 +305,13 @@ def _failures(result: Run) -> dict[str, Failure]:
     return {name: value for name, value in work.items() if isinstance(value, Failure)}
 
 
-# --- One claim of a study, to measure it by itself.
+# --- A single claim of a study.
 
 
 def with_claim(studies: Sequence[Study], identity: str) -> Study:
-    """Return the study that makes the claim ``identity``, "fig06/rests", with no other claim and no figures.
+    """Return the study of the claim ``identity``, for example "fig06/rests", without its other claims and figures.
 
-    Raises ``ValueError`` for a claim that no study declares.
+    Raises ``ValueError`` if no study declares the claim.
     """
     found = {
         declared.identity(study.name, case): (study, declared, case)

@@ -1,4 +1,4 @@
-"""``friction-discs simulate pin | disc``: one motion as a file."""
+"""``friction-discs simulate pin | disc``: a motion as a file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from reference_model.trajectory import Trajectory
 
 MOST_SAMPLES = 10_000_000
-"""More would fill the memory of a machine."""
+"""Limit of ``--samples``; more would exhaust the memory."""
 
 simulate = typer.Typer(rich_markup_mode=None)
 
@@ -56,7 +56,7 @@ File = Annotated[
 
 @dataclass(frozen=True)
 class Request:
-    """What both systems take from the command line."""
+    """Options that both systems share."""
 
     engine: EngineName = "reference"
     settings: Settings = None
@@ -80,10 +80,10 @@ def simulate_system() -> None:
 @simulate.command("pin", cls=Command)
 @taking(Request)
 def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
-    """Simulate a pin and write its motion; what is not set is the second case of Fig. 5.
+    """Simulate a pin and write its motion; the defaults are the second case of Fig. 5.
 
     \b
-    Parameters, with their values in Fig. 5:
+    Parameters in SI units, with their defaults:
       mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
       hardening=0 stop_gap=0 stop_stiffness=0
     \b
@@ -100,10 +100,10 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
 @simulate.command("disc", cls=Command)
 @taking(Request)
 def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) -> None:
-    """Simulate a friction disc and write its motion; what is not set is Fig. 11 with X0 = 0.
+    """Simulate a friction disc and write its motion; the defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters, with their values in Fig. 11; contact_points=none is the continuous ring:
+    Parameters in SI units, with their defaults; contact_points=none is the continuous ring:
       mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
       contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
       hardening=0 stop_gap=0 stop_stiffness=0
@@ -119,7 +119,7 @@ def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) 
 
 
 def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
-    """Simulate ``paper`` with its changes and write the motion to a file or standard output."""
+    """Simulate ``paper`` with the settings of the request; write the motion to a file or standard output."""
     import numpy as np
 
     from compare.cli.trajectory_files import write_csv, writer
@@ -159,7 +159,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
 def _told(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
-    """Return the motion as numbers, with its phases if they are asked for: the engine may be asked again for them."""
+    """Return the motion as arrays; include its phases on request, because they may need another simulation."""
     from reference_model.trajectory import Trajectory
 
     found = engine.simulate(system, state, times, tolerance=tolerance)
@@ -171,7 +171,7 @@ def _unwritable(path: Path, error: OSError) -> str:
 
 
 def _check_file(path: Path) -> None:
-    """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
+    """Raise ``ValueError`` if ``path`` cannot be written; do not change an existing file."""
     try:
         check_writable(path)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""``friction-discs sweep basin | map | uncertainty | figures``: what is simulated, as a plan."""
+"""Commands of ``friction-discs sweep``; each turns its options into a plan."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 MOST_POINTS = 100_000_000
-"""Of a plane."""
+"""Largest number of points of a grid."""
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -42,14 +42,14 @@ MAPS = {
     "pin": ("disc_speed=1.05:3:64", "friction_force=0.01:0.15:64"),
     "disc": ("disc_speed=1.05:1.95:64", "friction_force=0.005:0.06:64"),
 }
-"""Axes x and y unless others are asked for."""
+"""Default axes x and y."""
 
 ALONG = {"pin": "disc_speed=1.05:3:100", "disc": "disc_speed=1.05:1.95:100"}
 SCATTERED = {
     "pin": ("x=uniform(-0.3, 0.5)", "vx=uniform(-0.4, 0.4)"),
     "disc": ("x=uniform(-0.1, 0.1)", "vx=uniform(-0.1, 0.1)"),
 }
-"""Axis and random starts of a continuation unless others are asked for."""
+"""Default axis and random starts of a continuation."""
 
 sweep = typer.Typer(rich_markup_mode=None)
 
@@ -58,11 +58,12 @@ sweep = typer.Typer(rich_markup_mode=None)
 def sweep_command() -> None:
     """Simulate many trajectories: basins of attraction, maps, uncertain parameters, motions along a parameter.
 
-    What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
-    store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
-    with --resume does the rest. The exit status is 0 when the plain reference finds the same ends in a sample, 1 when
-    it does not or the work was lost, 2 on bad input, 3 when more than half of the trajectories are undecided, and 130
-    after Ctrl-C.
+    The defaults are Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results are written chunk
+    by chunk into a Zarr store of labelled arrays, which xarray can open. After an interruption, repeat the command
+    with --resume.
+
+    The exit status is 0 if the plain reference confirms a sample of the ends, and 1 if it does not or the work was
+    lost. It is 2 for bad input, 3 if more than half of the trajectories are undecided, and 130 after Ctrl-C.
 
     \b
     Examples:
@@ -81,12 +82,12 @@ def sweep_basin(
     coarse: Coarse = None,
     random: RandomStarts = None,
 ) -> int:
-    """Find what starts in a plane of two components of the state end as, and how large a share of them.
+    """Compute basins of attraction in a plane of two state components, and the share of each end.
 
-    The grid is first a coarse one, and then refined where neighbouring points end differently.
+    The command starts with a coarse grid and refines it where neighbouring points end differently.
 
     \b
-    Axes, unless others are given:
+    Default axes:
       pin   --x x=-0.3:0.5:257 --y vx=-0.4:0.4:257
       disc  --x x=-0.1:0.1:65 --y vx=-0.1:0.1:65
     \b
@@ -116,10 +117,10 @@ def sweep_basin(
 @sweep.command("map", cls=Command)
 @taking(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
-    """Find what motions end as over a plane of two parameters, with the boundaries that formulas draw there.
+    """Map the ends of motions over a plane of two parameters, together with the theory's boundaries.
 
     \b
-    Axes, unless others are given:
+    Default axes:
       pin   --x disc_speed=1.05:3:64 --y friction_force=0.01:0.15:64
       disc  --x disc_speed=1.05:1.95:64 --y friction_force=0.005:0.06:64
     \b
@@ -145,10 +146,10 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 @sweep.command("uncertainty", cls=Command)
 @taking(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
-    """Find how likely the whirl is, how large it is, and what that depends on, where parameters are uncertain.
+    """Compute the probability and the radius of the whirl, and their sensitivities to uncertain parameters.
 
     \b
-    Distributions, with numbers in SI units:
+    Distributions, in SI units:
       normal(mean, deviation)        truncnorm(mean, deviation, low, high)
       uniform(low, high)             triangular(low, mode, high)
       lognormal(median, deviation of the logarithm)
@@ -176,13 +177,13 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 def sweep_continuation(
     request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
 ) -> int:
-    """Find what random starts end as along one parameter, and which motions continue each other.
+    """Find the ends of random starts along one parameter, and connect them into branches.
 
-    The starts are the same at each value. Beside the motions are those that formulas and continuation give, the
-    unstable ones too.
+    The starts are the same at each value. The figure also shows the stable and unstable motions that formulas and
+    continuation give.
 
     \b
-    Axis and starts, unless others are given:
+    Default axis and starts:
       pin   --x disc_speed=1.05:3:100 --vary "x=uniform(-0.3, 0.5)" --vary "vx=uniform(-0.4, 0.4)"
       disc  --x disc_speed=1.05:1.95:100 --vary "x=uniform(-0.1, 0.1)" --vary "vx=uniform(-0.1, 0.1)"
     \b
@@ -214,7 +215,7 @@ def sweep_continuation(
 def sweep_figures(
     folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
 ) -> int:
-    """Draw the figures of a finished sweep once more and print its results.
+    """Redraw the figures of a finished sweep and print its results.
 
     \b
     Example:
@@ -224,7 +225,7 @@ def sweep_figures(
 
 
 def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:
-    """Return the axes x and y; raise ``ValueError`` for what is none, or the same one twice."""
+    """Return the axes x and y; raise ``ValueError`` if one is invalid, or both vary the same quantity."""
     from compare.sweep.quantities import Axis
 
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
@@ -238,7 +239,7 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
 
 
 def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
-    """Return the state of "NAME=VALUE,..."; raise ``ValueError`` for what is none."""
+    """Return the default state with the changes "NAME=VALUE,..."; raise ``ValueError`` for an invalid text."""
     from compare.engines import one_of
     from reference_model.systems import finite_number
 
@@ -260,7 +261,7 @@ def _names_of(text: str) -> list[str]:
 
 
 def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequence[str]) -> None:
-    """Raise ``ValueError`` if an option gives a value to what has its values from elsewhere."""
+    """Raise ``ValueError`` if an option sets one of ``names``, which ``by`` varies."""
     for option, of_option in given.items():
         for name in of_option:
             if name in names:
@@ -268,7 +269,7 @@ def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequen
 
 
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
-    """Raise ``ValueError`` if a start in a plane can't be one."""
+    """Raise ``ValueError`` if an initial state at an end of an axis is invalid."""
     from reference_model.systems import checked_state
 
     for axis in axes:
@@ -285,17 +286,17 @@ def _check_varied(names: Sequence[str]) -> None:
             raise ValueError(f"--vary {name}: it is there more than once")
 
 
-# --- ``friction-discs sweep shock``: the smallest shock that leads to the whirl.
+# --- Smallest shock that leads to the whirl.
 
 AGREEMENT = 1e-6
-"""Largest relative difference of both ways to find it."""
+"""Largest relative difference between the orbit's result and the bisection."""
 
 
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
-    """Find the smallest shock that throws a pin from its self-centred equilibrium into the whirl.
+    """Find the smallest shock that moves a pin from its self-centred equilibrium to the whirl.
 
-    It is the point of the basin's boundary, the stable set of a stick–slip orbit, that is nearest in velocity. The
-    ends of motions on both sides of it check that by bisection.
+    The boundary of the basin is the stable manifold of a stick–slip orbit. The shock is the smallest change of
+    velocity that reaches it. A bisection by simulated motions checks the result.
 
     \b
     Example:

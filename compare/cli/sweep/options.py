@@ -1,4 +1,4 @@
-"""Options of the sweeps, each declared once, and what all of them have in common."""
+"""Options of the sweeps."""
 
 from __future__ import annotations
 
@@ -21,15 +21,16 @@ COARSE = 65
 MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**31, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
-"""As of ``simulate``."""
+"""Default initial states, equal to those of ``simulate``."""
 
 UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
-"""In s. The modulated motions of Fig. 11 near its Hopf curve take as long to be told from whirls. Where single points
-of contact come to rest, which the plain reference has to follow, a longer time costs most and settles nothing."""
+"""Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls.
+For single contact points it is shorter: the plain reference simulates their rests slowly, and more time decides no
+further motion."""
 
 
 def rows(text: str) -> int:
-    """Return the number of rows that ``text`` says."""
+    """Return ``text`` as a number of rows, a power of 2."""
     from compare.sweep.compute.sensitivity import LEAST_SAMPLES
 
     with refused():
@@ -147,7 +148,7 @@ Resume = Annotated[bool, typer.Option("--resume", help="Go on with the sweep tha
 
 @dataclass(frozen=True)
 class Request:
-    """What every sweep takes from the command line."""
+    """Options that all sweeps share."""
 
     system: SystemName
     settings: Settings = None
@@ -160,7 +161,7 @@ class Request:
     resume: Resume = False
 
     def common(self) -> dict[str, Any]:
-        """Return what all plans have; raise ``ValueError`` for what can't be."""
+        """Return the arguments that all plans share; raise ``ValueError`` for invalid options."""
         from compare.claims.parameters import FIG5, FIG11
         from reference_model.support import require_linear_support
 
@@ -176,9 +177,9 @@ class Request:
         }
 
     def set_names(self) -> list[str]:
-        """Return the names of the parameters that are set."""
+        """Return the names of parameters that ``--set`` changes."""
         return [setting.partition("=")[0].strip() for setting in self.settings or []]
 
     def run(self, plan: Plan) -> int:
-        """Run the sweep of ``plan``, or the rest of it."""
+        """Run or resume the sweep of ``plan`` and return the exit status."""
         return run_sweep(plan, self.chunk, self.scheduler, self.output, self.resume)

@@ -1,4 +1,4 @@
-"""A sweep of the command line is run, or the rest of it, and its results are printed and drawn."""
+"""Runs, resumes, prints and draws the sweeps of the command line."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from compare.sweep.store import SweepStore
 
 STORE = "sweep.zarr"
-"""Name of the store in its folder."""
+"""File name of the store."""
 
 CHUNK = 32768
-"""Trajectories in a chunk, unless another number is asked for."""
+"""Default number of trajectories per chunk."""
 
 MOST_UNDECIDED = 0.5
-"""Largest share of undecided trajectories of a sweep that ends with status 0."""
+"""Largest share of undecided trajectories for exit status 0."""
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
-    """Run a sweep, or the rest of it; print and draw its results."""
+    """Run or resume a sweep, print and draw its results, and return the exit status."""
     from compare.run.workers import lacks_memory
     from compare.sweep.compute.executors import ClusterError
     from compare.sweep.compute.run import run
@@ -85,7 +85,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
 
 @contextmanager
 def _looking() -> Iterator[None]:
-    """Turn what is wrong with a place, or with what is there, into ``BadInputError``."""
+    """Turn errors of the folder or its store into ``BadInputError``."""
     from compare.sweep.files import StoreError
 
     with refused():
@@ -96,7 +96,7 @@ def _looking() -> Iterator[None]:
 
 
 def _check_writable(folder: Files) -> None:
-    """Raise ``ValueError`` or ``StoreError`` if no file can be written to the folder or URL."""
+    """Raise ``ValueError`` or ``StoreError`` if the folder or URL is not writable."""
     from compare.sweep.files import is_remote
 
     if is_remote(folder.url):
@@ -107,7 +107,7 @@ def _check_writable(folder: Files) -> None:
 
 
 def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
-    """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
+    """Return the store to resume, or None; raise ``ValueError`` if it belongs to another plan."""
     from compare.sweep.store import SweepStore, is_free
 
     if is_free(files):
@@ -122,7 +122,7 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
 
 
 def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
-    """Raise ``ValueError`` if a store is not that of ``plan``, or must not be gone on with."""
+    """Raise ``ValueError`` if the store belongs to another plan or cannot be resumed."""
     from compare.run.provenance import stamp
 
     if store.plan != plan:
@@ -139,7 +139,7 @@ def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) 
 
 @contextmanager
 def _executor(scheduler: str | None) -> Iterator[Executor]:
-    """Yield what does the work."""
+    """Yield the executor: this process, or the workers of a Dask scheduler."""
     from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 
     if scheduler is None:
@@ -156,7 +156,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
 
 
 def finish(store: SweepStore, folder: Files) -> int:
-    """Print and draw the results; return 1 if the plain reference differs, 3 if most is undecided, else 0."""
+    """Print and draw the results; return 1 if the plain reference differs, 3 if too many are undecided, else 0."""
     from compare.sweep.figures import write_figures
     from compare.sweep.summary import same_ends, summary, undecided
 
@@ -176,7 +176,7 @@ def finish(store: SweepStore, folder: Files) -> int:
 
 
 def redraw(place: str) -> int:
-    """Do as ``finish`` for a finished sweep; raise ``BadInputError`` for one that is not finished."""
+    """Call ``finish`` for a stored sweep; raise ``BadInputError`` if it is incomplete."""
     from compare.sweep.files import Files
     from compare.sweep.store import SweepStore
 
