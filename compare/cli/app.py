@@ -131,7 +131,7 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
             raise
         return say(str(error), BAD_INPUT)
     except MemoryError:
-        return say("there is not enough memory", SOMETHING_DIFFERS)
+        return say("not enough memory", SOMETHING_DIFFERS)
     except SystemExit as end:
         if not isinstance(end.__context__, BrokenPipeError):  # typer turns it into status 1
             raise
@@ -139,7 +139,7 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
         return FINE
     except OSError as error:
         close_output()
-        return say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
+        return say(f"cannot write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
     except (KeyboardInterrupt, InterruptedByUserError, typer.Abort):
         return say("Interrupted.", INTERRUPTED)
     return result if isinstance(result, int) else FINE

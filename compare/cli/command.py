@@ -44,7 +44,7 @@ class Command(TyperCommand):
             if values[option.name] == "":
                 raise BadInputError(f"{option.opts[0]} '': it must not be empty")
             if given.count(option) > 1:
-                raise BadInputError(f"{option.opts[0]} is there {given.count(option)} times: give it once")
+                raise BadInputError(f"{option.opts[0]} is given {given.count(option)} times; give it once")
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:

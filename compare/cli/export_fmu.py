@@ -14,13 +14,13 @@ from compare.output.text_files import check_writable
 
 export_fmu = typer.Typer(rich_markup_mode=None)
 
-File = Annotated[Path, typer.Option("--output", metavar="FILE", help="File to write, .fmu.")]
+File = Annotated[Path, typer.Option("--output", metavar="FILE", help="Output file, .fmu.")]
 Standard = Annotated[
     int,
     typer.Option(
         "--fmi",
         metavar="2|3",
-        help="Version of the standard: 2 is what every importer reads, 3 has intermediate updates.",
+        help="FMI version; every importer reads 2, and 3 adds intermediate updates.",
         parser=whole("fmi", 2, 3),
     ),
 ]
@@ -111,13 +111,13 @@ def _export(name: str, unit: Unit) -> None:
         try:
             check_writable(unit.output)
         except OSError as error:
-            raise BadInputError(f"can't write the file {str(unit.output)!r}: {error.strerror}") from None
+            raise BadInputError(f"cannot write the file {str(unit.output)!r}: {error.strerror}") from None
         try:
             made = fmu_models.export(model, unit.output, cast(Literal[2, 3], unit.fmi))
         except RuntimeError as error:
             raise EngineFailedError(str(error)) from None
     what = f"with its sources and a library for {made.platform}" if made.platform else made.remark
-    print(f"{made.file}: {name} by FMI {unit.fmi}, {what}.")
+    print(f"{made.file}: {name}, FMI {unit.fmi}, {what}.")
 
 
 def _numbers(changes: dict[str, str]) -> dict[str, float]:

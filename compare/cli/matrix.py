@@ -28,13 +28,13 @@ Limit = Annotated[
     float,
     typer.Option(
         metavar="SECONDS",
-        help="Time after which a part of an engine's row is given up.",
+        help="Time limit in s for each part of an engine's row.",
         parser=positive("limit", "s"),
     ),
 ]
 Recorded = Annotated[
     bool,
-    typer.Option("--recorded", help="Show the engines of other people besides, as they are recorded."),
+    typer.Option("--recorded", help="Also show the recorded results of other engines."),
 ]
 
 LIMIT = 60.0
@@ -83,7 +83,7 @@ def matrix(
                     _print_row(row)
     except KeyboardInterrupt:
         done = len(rows) - others
-        return say(f"Interrupted; {done} of {len(chosen)} rows are in {output}.", INTERRUPTED)
+        return say(f"Interrupted; {done} of {len(chosen)} rows were written to {output}.", INTERRUPTED)
     write_picture(rows, output)
     with printing():
         _print_table(rows)
@@ -93,7 +93,8 @@ def matrix(
     empty = [row.engine for row in rows[others:] if row.empty]
     if empty:
         return say(
-            f"nothing was measured: {', '.join(empty)} simulates none of these motions", NOTHING_MEASURED
+            f"nothing was measured: none of these motions can be simulated by {', '.join(empty)}",
+            NOTHING_MEASURED,
         )
     return FINE
 
@@ -115,8 +116,8 @@ def _print_table(rows: Sequence[Row]) -> None:
     table = Table(
         "engine",
         *names,
-        caption="✓ error in m and the engine's own estimate of it; ✗ it is not explained "
-        "by that; ? the estimate is too large to tell another law; ! no result",
+        caption="Error in m ± the engine's own estimate. ✓ the estimate explains the error; ✗ it does not; "
+        "? the estimate is too large to distinguish friction laws; ! no result",
         highlight=False,
     )
     for row in rows:

@@ -111,13 +111,13 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="A parameter in SI units, several times for several.",
+        help="Parameter and its value in SI units; repeat for more parameters.",
         show_default=False,
     ),
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(metavar="TOL", help="Accuracy to aim at.", parser=tolerance_of),
+    typer.Option(metavar="TOL", help="Requested relative accuracy.", parser=tolerance_of),
 ]
 Folder = Annotated[Path, typer.Option("--output", metavar="DIR", help="Folder for the results.")]
 Jobs = Annotated[
@@ -126,12 +126,14 @@ Jobs = Annotated[
         metavar="N",
         help="Number of processes.",
         parser=whole("jobs", 1, MOST_JOBS),
-        show_default="one for each core",
+        show_default="one per core",
     ),
 ]
 Resume = Annotated[
     bool,
-    typer.Option("--resume", help="Keep what the same code and libraries have already computed there."),
+    typer.Option(
+        "--resume", help="Complete an earlier run; reuse its results if code and libraries are unchanged."
+    ),
 ]
 
 
@@ -185,7 +187,7 @@ def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
             raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
         name = one_of("parameter", name.strip(), names)
         if name in changes:
-            raise ValueError(f"--set {name}: it is there more than once")
+            raise ValueError(f"--set {name} is given more than once; give it once")
         changes[name] = value
     return changes
 
@@ -196,7 +198,7 @@ def studies_of(context: typer.Context, names: Sequence[str], level: str = "full"
 
     with refused():
         if level == "quick" and names:
-            raise ValueError(f"--level quick chooses the studies: leave out {', '.join(names)}, or the level")
+            raise ValueError(f"--level quick cannot be combined with named studies ({', '.join(names)})")
         found = studies(names, STUDIES if context.obj is None else context.obj)
     return tuple(study for study in found if study.quick or level == "full")
 
@@ -208,4 +210,4 @@ def check_folder(folder: Path) -> None:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise ValueError(f"can't write into the folder {str(folder)!r}: {error.strerror}") from None
+        raise ValueError(f"cannot write to the folder {str(folder)!r}: {error.strerror}") from None

@@ -46,15 +46,15 @@ MOST_LISTED = 10
 
 Names = Annotated[
     list[str] | None,
-    typer.Argument(metavar="STUDY", help="Studies to run; all without any.", show_default=False),
+    typer.Argument(metavar="STUDY", help="Studies to run; all by default.", show_default=False),
 ]
 Engines = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME",
-        help="Engine to measure, several times for several; all without any. "
-        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, files:DIR "
-        "answers to what plan has asked for, and fmu:FILE a model for co-simulation.",
+        help="Engine to measure; repeat for more engines (default: all). Your own engine is MODULE:FUNCTION "
+        "(a Python function), exec:COMMAND (a program in any language), files:DIR (answers to the motions of plan) "
+        "or fmu:FILE (a co-simulation FMU).",
         show_default=False,
     ),
 ]
@@ -62,7 +62,7 @@ Level = Annotated[
     str,
     typer.Option(
         metavar="LEVEL",
-        help="quick takes only studies of seconds, with something of every kind of claim; full takes all.",
+        help="quick (studies that take seconds, with every kind of claim) or full (all studies).",
         parser=chosen_from("level", ("quick", "full")),
     ),
 ]
@@ -72,7 +72,7 @@ Limit = Annotated[
     typer.Option(
         "--study-limit",
         metavar="SECONDS",
-        help="Time after which a study of an engine is given up; without it, never.",
+        help="Time limit in s for one study of one engine; no limit by default.",
         parser=positive("study-limit", "s"),
         show_default=False,
     ),
@@ -84,7 +84,7 @@ LeastConclusive = Annotated[
     typer.Option(
         "--min-conclusive",
         metavar="N",
-        help="How many claims have to agree; the theory's own algebra does not count.",
+        help="Least number of claims that must agree; the theory's own algebra does not count.",
         parser=whole("min-conclusive", 0, 1_000_000),
     ),
 ]
@@ -94,7 +94,7 @@ OneClaim = Annotated[
     str | None,
     typer.Option(
         metavar="ID",
-        help="Measure this one claim, as the report calls it, and print its numbers.",
+        help="Measure only this claim, for example fig06/rests, and print its numbers.",
         show_default=False,
     ),
 ]
@@ -178,9 +178,7 @@ def _asked(
         return studies
     with refused():
         if names or level != "full" or resume:
-            raise ValueError(
-                f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
-            )
+            raise ValueError("--claim cannot be combined with named studies, --level or --resume")
         return (with_claim(studies, claim),)
 
 
@@ -234,7 +232,8 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
     if result.interrupted:
         missing = _listed([f"{study} {column}" for study, column in result.missing]) or "figures"
         return say(
-            f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
+            f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.",
+            INTERRUPTED,
         )
     wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
     if wrong:
@@ -243,7 +242,9 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
         return say(unexplained, NOTHING_MEASURED)
     conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
     if conclusive < least_conclusive:
-        return say(f"{conclusive} verdicts are conclusive: {least_conclusive} are asked for", NOTHING_SHOWN)
+        return say(
+            f"{conclusive} claims agree, but --min-conclusive requires {least_conclusive}", NOTHING_SHOWN
+        )
     return FINE
 
 
@@ -261,7 +262,7 @@ def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterato
             if not isinstance(found, Findings) or found.not_simulated or study.only:
                 continue
             if missing := study.sentences().keys() - {claim.sentence for claim in found.claims}:
-                yield f"{study.name} {name}: not measured, and no reason given: {_listed(sorted(missing))}"
+                yield f"{study.name} {name}: claims not measured, without a reason: {_listed(sorted(missing))}"
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:

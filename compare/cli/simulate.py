@@ -24,7 +24,7 @@ MOST_SAMPLES = 10_000_000
 
 simulate = typer.Typer(rich_markup_mode=None)
 
-EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
+EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine to use.")]
 PinState = Annotated[
     tuple[float, float, float, float],
     typer.Option(
@@ -39,7 +39,7 @@ DiscState = Annotated[
         parser=finite("start"),
     ),
 ]
-Until = Annotated[float, typer.Option(metavar="T", help="Last time in s.", parser=positive("until", "s"))]
+Until = Annotated[float, typer.Option(metavar="T", help="Final time in s.", parser=positive("until", "s"))]
 Samples = Annotated[
     int,
     typer.Option(
@@ -48,9 +48,7 @@ Samples = Annotated[
 ]
 File = Annotated[
     Path | None,
-    typer.Option(
-        metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
-    ),
+    typer.Option(metavar="FILE", help="Output file, .csv or .json.", show_default="CSV on standard output"),
 ]
 
 
@@ -167,7 +165,7 @@ def _told(
 
 
 def _unwritable(path: Path, error: OSError) -> str:
-    return f"can't write the file {str(path)!r}: {error.strerror}"
+    return f"cannot write the file {str(path)!r}: {error.strerror}"
 
 
 def _check_file(path: Path) -> None:

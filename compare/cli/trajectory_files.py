@@ -16,7 +16,7 @@ from reference_model.trajectory import Trajectory
 def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:
     """Return the function that writes the format of ``path``; raise ``ValueError`` for an unknown suffix."""
     if path.suffix not in WRITERS:
-        raise ValueError(f"can't tell the format of {path.name!r}: it must end in {' or '.join(WRITERS)}")
+        raise ValueError(f"unknown format of {path.name!r}: the file name must end in {' or '.join(WRITERS)}")
     return WRITERS[path.suffix]
 
 

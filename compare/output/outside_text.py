@@ -45,7 +45,7 @@ def one_of(kind: str, name: str, names: Iterable[str]) -> str:
     if name in names:
         return name
     nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
-    hint = f"did you mean {nearest[0]!r}?" if nearest else f"known are {', '.join(names)}"
+    hint = f"did you mean {nearest[0]!r}?" if nearest else f"choose from {', '.join(names)}"
     raise ValueError(f"unknown {kind} {name!r}: {hint}")
 
 

@@ -97,7 +97,7 @@ class Uncertain:
         """Refuse what is no distribution."""
         kind = KINDS[one_of("distribution", self.kind, KINDS)]
         if len(self.numbers) != len(kind.arguments) or not kind.possible(*self.numbers):
-            raise ValueError(f"{self}: it takes ({', '.join(kind.arguments)}) with {kind.allowed}")
+            raise ValueError(f"{self}: {self.kind} takes ({', '.join(kind.arguments)}) with {kind.allowed}")
 
     def __str__(self) -> str:
         return f"{self.name}={self.kind}({', '.join(f'{number:g}' for number in self.numbers)})"
@@ -110,7 +110,7 @@ class Uncertain:
         """
         found = re.fullmatch(r"\s*(\w+)\s*=\s*(\w+)\s*\(([^()]*)\)\s*", text)
         if not found:
-            raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION, which is one of {in_words()}")
+            raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION with one of {in_words()}")
         name = one_of("parameter or component", found[1], units(system))
         numbers = tuple(finite_number(name, number) for number in found[3].split(","))
         uncertain = cls(name, found[2], numbers)
@@ -131,8 +131,8 @@ class Uncertain:
             except ValueError as error:
                 allowed = str(error).rpartition(": ")[2]
                 raise ValueError(
-                    f"{self}: it allows {self.name} = {end:g}, and {allowed}; "
-                    "truncnorm(mean, deviation, low, high) cuts a normal distribution off"
+                    f"{self} includes {self.name} = {end:g}, but {allowed}; "
+                    "use truncnorm(mean, deviation, low, high) to limit a normal distribution"
                 ) from None
 
     @cached_property

@@ -59,7 +59,9 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
     """
     result = store.get(RESULT)
     if result is None:
-        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+        raise ValueError(
+            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
+        )
     contents = {}
     with paper_style():
         drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))

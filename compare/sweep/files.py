@@ -63,7 +63,7 @@ class Files:
             needed = "s3fs: pip install 'friction-discs[cluster]'" if self.url.startswith("s3:") else "more"
             raise StoreError(f"{self.url!r} needs {needed}") from None
         except ValueError as error:  # of a protocol that it does not know
-            raise StoreError(f"{self.url!r}: {error}") from None
+            raise StoreError(f"cannot open {self.url!r}: {error}; use a folder or s3://BUCKET/NAME") from None
         return system, root
 
     def below(self, name: str) -> str:
@@ -139,7 +139,7 @@ def told(url: str, action: str = "write to") -> Iterator[None]:
         raise
     except Exception as error:  # each file system has its own
         reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
-        raise StoreError(f"can't {action} {url!r}: {reason}") from error
+        raise StoreError(f"cannot {action} {url!r}: {reason}") from error
 
 
 # --- A small finished store as one file: a ZIP archive, which Zarr opens as it is.

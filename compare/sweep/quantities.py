@@ -110,12 +110,12 @@ class Axis:
         """Refuse what has no points."""
         if not self.low < self.high:
             raise ValueError(
-                f"{self.name} from {self.low:g} to {self.high:g}: the range must begin below its end"
+                f"axis {self.name} from {self.low:g} to {self.high:g}: the lower end must be less than the upper end"
             )
         if not math.isfinite(self.high - self.low):
-            raise ValueError(f"{self.name} from {self.low:g} to {self.high:g}: the range must be finite")
+            raise ValueError(f"axis {self.name} from {self.low:g} to {self.high:g}: the range must be finite")
         if not 2 <= self.points <= MOST_POINTS:
-            raise ValueError(f"{self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
+            raise ValueError(f"axis {self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
 
     @classmethod
     def parse(cls, text: str, kind: str, names: Iterable[str]) -> Axis:

@@ -121,5 +121,7 @@ def _differing(check: xr.Dataset) -> np.ndarray:
 def _group(store: SweepStore, name: str) -> xr.Dataset:
     group = store.get(name)
     if group is None:
-        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+        raise ValueError(
+            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
+        )
     return group

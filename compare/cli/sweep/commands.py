@@ -107,7 +107,7 @@ def sweep_basin(
         _check_given_once({"--start": _names_of(start)}, "--x or --y", [axis.name for axis in axes])
         _check_states(common["system"], state, list(names), axes)
         if random is not None and coarse is not None:
-            raise ValueError("--coarse is of a grid: leave it out with --random")
+            raise ValueError("--coarse cannot be combined with --random")
     if random is None:
         return request.run(Basin(**common, start=state, x=axes[0], y=axes[1], coarse=coarse or COARSE))
     ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
@@ -213,7 +213,7 @@ def sweep_continuation(
 
 @sweep.command("figures", cls=Command)
 def sweep_figures(
-    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
+    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="Folder or URL of a finished sweep.")],
 ) -> int:
     """Redraw the figures of a finished sweep and print its results.
 
@@ -230,11 +230,9 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
 
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
     if axes[0].name == axes[1].name:
-        raise ValueError(f"{axes[0].name} is on both axes: they must be different")
-    if axes[0].points * axes[1].points > MOST_POINTS:
-        raise ValueError(
-            f"{axes[0].points} times {axes[1].points} points: there may be {MOST_POINTS} in a plane"
-        )
+        raise ValueError(f"{axes[0].name} is on both axes; --x and --y must be different quantities")
+    if (points := axes[0].points * axes[1].points) > MOST_POINTS:
+        raise ValueError(f"grid too large: {points:g} points, the limit is {MOST_POINTS:g}")
     return axes
 
 
@@ -250,7 +248,7 @@ def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...
             raise ValueError(f"--start {text!r}: write it as NAME=VALUE,NAME=VALUE")
         name = one_of("component", name.strip(), names)
         if _names_of(text).count(name) > 1:
-            raise ValueError(f"--start {text!r}: {name} is there more than once")
+            raise ValueError(f"--start {text!r}: {name} is given more than once")
         state[name] = finite_number(name, value)
     return tuple(state.values())
 
@@ -265,7 +263,7 @@ def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequen
     for option, of_option in given.items():
         for name in of_option:
             if name in names:
-                raise ValueError(f"{option} {name}: it has its values from {by}, leave one of them out")
+                raise ValueError(f"{option} {name}: {by} already varies {name}; leave one of them out")
 
 
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
@@ -280,10 +278,12 @@ def _check_states(system: System, state: Sequence[float], names: Sequence[str], 
 
 def _check_varied(names: Sequence[str]) -> None:
     if not names:
-        raise ValueError('nothing is uncertain: say what is, --vary "offset=normal(0.1, 0.005)" for instance')
+        raise ValueError(
+            'no uncertain quantity given; use --vary, for example --vary "offset=normal(0.1, 0.005)"'
+        )
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f"--vary {name}: it is there more than once")
+            raise ValueError(f"--vary {name} is given more than once; give it once")
 
 
 # --- Smallest shock that leads to the whirl.
@@ -318,9 +318,9 @@ def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     difference = abs(checked / shock.speed - 1.0)
     with printing():
         print(
-            f"smallest shock that leads to the whirl: {shock.impulse:.9g} N s, a change of the velocity by "
+            f"smallest shock that leads to the whirl: {shock.impulse:.9g} N s, a velocity change of "
             f"{shock.speed:.9g} m/s, ({shock.vx:.6g}, {shock.vy:.6g}) m/s"
         )
         print(f"  direction: {math.degrees(shock.direction):.2f}° from the x-axis")
-        print(f"  by bisection of ends: {checked:.9g} m/s, relative difference {difference:.0e}")
+        print(f"  check by bisection: {checked:.9g} m/s, relative difference {difference:.0e}")
     return FINE if difference <= AGREEMENT else SOMETHING_DIFFERS

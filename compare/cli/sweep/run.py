@@ -61,26 +61,25 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
         return finish(store, folder)
     except FileExistsError:
         return say(
-            f"another command has just begun {files.url!r}: wait until it ends, or take another --output",
+            f"another command has just started {files.url!r}; wait until it ends, or choose another --output",
             BAD_INPUT,
         )
     except (ClusterError, OtherCodeError) as error:
-        return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
+        return say(f"{error}. Repeat the command with --resume to continue.", SOMETHING_DIFFERS)
     except (OSError, MemoryError, StoreError) as error:
         if lacks_memory(error):
-            return say(
-                "there is not enough memory. The same command with --resume goes on.", SOMETHING_DIFFERS
-            )
+            return say("not enough memory. Repeat the command with --resume to continue.", SOMETHING_DIFFERS)
         return say(
-            f"{error}. What is written stays valid; the same command with --resume goes on.", BAD_INPUT
+            f"{error}. Results written so far remain valid; repeat the command with --resume to continue.",
+            BAD_INPUT,
         )
     except KeyboardInterrupt:
-        return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
+        return say("Interrupted. Repeat the command with --resume to continue.", INTERRUPTED)
     finally:
         if store is not None:
             store.tidy()
             if store.broken:
-                say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
+                say(f"recomputed damaged parts of {store.path!r}: {'; '.join(store.broken)}", FINE)
 
 
 @contextmanager
@@ -126,15 +125,17 @@ def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) 
     from compare.run.provenance import stamp
 
     if store.plan != plan:
-        raise ValueError(f"{store.path!r} belongs to another sweep: take another --output")
+        raise ValueError(f"{store.path!r} contains a different sweep; choose another --output")
     if not resume:
         raise ValueError(
-            f"{store.path!r} is there already: --resume goes on with it, or take another --output"
+            f"{store.path!r} already exists; use --resume to continue it, or choose another --output"
         )
     if store.stamp != stamp():
-        raise ValueError(f"{store.path!r} was computed by other code or libraries: take another --output")
+        raise ValueError(
+            f"{store.path!r} was computed by a different version of the code or libraries; choose another --output"
+        )
     if chunk not in (None, store.chunk):
-        raise ValueError(f"chunk = {chunk}: {store.path!r} has chunks of {store.chunk}")
+        raise ValueError(f"chunk = {chunk}: {store.path!r} was begun with {store.chunk}; leave out --chunk")
 
 
 @contextmanager
@@ -169,7 +170,7 @@ def finish(store: SweepStore, folder: Files) -> int:
         return SOMETHING_DIFFERS
     if undecided(store) > MOST_UNDECIDED:
         return say(
-            f"{100.0 * undecided(store):.0f} % are undecided: raise --until to follow them longer",
+            f"{100.0 * undecided(store):.0f} % of the trajectories are undecided; use a larger --until",
             NOTHING_SHOWN,
         )
     return FINE
@@ -198,6 +199,6 @@ def _check_finished(store: SweepStore) -> None:
         return
     if store.broken:
         raise ValueError(
-            f"{store.path!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
+            f"{store.path!r} is damaged ({'; '.join(store.broken)}); repeat the sweep with --resume to recompute it"
         )
-    raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+    raise ValueError(f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it")

@@ -162,8 +162,8 @@ def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypat
     assert out.splitlines()[0] == "verdicts theory differs: A claim"
     assert len(out.splitlines()) == 2
     listed = ", ".join(f"verdicts engine-{i}" for i in range(10))
-    assert (
-        err == f"Interrupted; missing: {listed} and 10 more. The same command with --resume completes it.\n"
+    assert err.startswith(
+        f"Interrupted; still missing: {listed} and 10 more. Repeat the command with --resume"
     )
     assert report("verdicts", "--study-limit", "2.5", output=tmp_path) == 130
     assert limits == [None, 2.5]
@@ -259,7 +259,7 @@ def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path, monkeypatch, caps
     with open("/dev/full", "w") as full:
         monkeypatch.setattr(sys, "stdout", full)
         assert cli.status(arguments.split()) == 2
-    assert re.fullmatch(r"can't write .*: No space left on device\n", capsys.readouterr().err)
+    assert re.fullmatch(r"cannot write .*: No space left on device\n", capsys.readouterr().err)
 
 
 @pytest.fixture
@@ -316,15 +316,13 @@ def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
 
     monkeypatch.setattr("compare.sweep.compute.run.run", run)
     assert cli.status(["sweep", "basin", "pin", "--output", str(tmp_path)]) == 1
-    assert capsys.readouterr().err == (
-        "there is not enough memory. The same command with --resume goes on.\n"
-    )
+    assert capsys.readouterr().err == ("not enough memory. Repeat the command with --resume to continue.\n")
 
 
 ENDS_OF_PROCESSES = [
     (["simulate", "pin", "--set", "mass=-1"], os.devnull, 2, "mass = -1 kg: it must be > 0\n"),
     pytest.param(
-        ["list"], "/dev/full", 2, "can't write to the output: No space left on device\n", marks=needs_full
+        ["list"], "/dev/full", 2, "cannot write to the output: No space left on device\n", marks=needs_full
     ),
     (["interrupted while it loads"], os.devnull, 130, "Interrupted.\n"),
 ]

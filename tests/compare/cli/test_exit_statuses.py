@@ -77,7 +77,7 @@ def test_the_theorys_own_algebra_is_not_conclusive(least, status, tmp_path, caps
     assert cli.status([*arguments, "--min-conclusive", least], (study,)) == status
     out, err = capsys.readouterr()
     assert out.startswith("1 agrees on independent evidence, besides 1 of algebra and 1 implied; ")
-    assert err == ("2 verdicts are conclusive: 3 are asked for\n" if status else "")
+    assert err == ("2 claims agree, but --min-conclusive requires 3\n" if status else "")
 
 
 def itself(engine, value):
@@ -90,7 +90,7 @@ def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_p
     study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--engine", "fake_studies:straight"], (study,)) == 4
-    sentence = "silent fake_studies:straight: not measured, and no reason given: One is itself\n"
+    sentence = "silent fake_studies:straight: claims not measured, without a reason: One is itself\n"
     assert capsys.readouterr().err.endswith(sentence)
 
 

@@ -162,7 +162,10 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
 def assert_that_the_rest_is_missing(status, out, err, output):
     assert status == 130
     missing = "unending also-good, unending failing"
-    assert err == f"Interrupted; missing: {missing}. The same command with --resume completes it.\n"
+    assert (
+        err
+        == f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.\n"
+    )
     assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
     results = json.loads((output / "results.json").read_text(encoding="utf-8"))
     assert results["interrupted"]

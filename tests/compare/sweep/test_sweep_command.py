@@ -39,7 +39,7 @@ def test_of_two_commands_that_begin_at_once_the_later_one_is_told(more, tmp_path
     monkeypatch.setattr(Files, "inside", lambda self, folder="": there.pop(0))
     assert cli.status([*BASIN, "--output", str(tmp_path), *more]) == 2
     place = str(tmp_path / STORE)
-    sentence = f"another command has just begun {place!r}: wait until it ends, or take another --output\n"
+    sentence = f"another command has just started {place!r}; wait until it ends, or choose another --output\n"
     assert capsys.readouterr() == ("", sentence)
 
 
@@ -75,9 +75,9 @@ def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch)
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        ("", "is there already: --resume goes on with it, or take another --output"),
-        ("--seed 2 --resume", "belongs to another sweep: take another --output"),
-        ("--set mass=2", "belongs to another sweep: take another --output"),
+        ("", "already exists; use --resume to continue it, or choose another --output"),
+        ("--seed 2 --resume", "contains a different sweep; choose another --output"),
+        ("--set mass=2", "contains a different sweep; choose another --output"),
         ("--chunk 5 --resume", "chunk = 5: "),
         ("--resume", "was computed by other code or libraries"),
     ],
@@ -147,7 +147,7 @@ def test_parameters_and_the_other_components_are_taken(tmp_path):
 def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys):
     output = str(tmp_path / "short")
     assert cli.status([*BASIN[:-2], "--until", "0.1", "--output", output]) == NOTHING_SHOWN
-    assert "100 % are undecided: raise --until" in capsys.readouterr().err
+    assert "100 % of the trajectories are undecided; use a larger --until" in capsys.readouterr().err
     assert cli.status(["sweep", "figures", output]) == NOTHING_SHOWN
 
 
@@ -177,7 +177,7 @@ def test_the_smallest_shock_is_told_and_whether_both_ways_agree(bisected, status
     monkeypatch.setattr("reference_model.orbits.shock.by_bisection", lambda shock: bisected)
     assert cli.status(["sweep", "shock", "--set", "mass=2"]) == status
     assert capsys.readouterr().out == (
-        "smallest shock that leads to the whirl: 0.2 N s, a change of the velocity by 0.1 m/s, (0.06, -0.08) m/s\n"
+        "smallest shock that leads to the whirl: 0.2 N s, a velocity change of 0.1 m/s, (0.06, -0.08) m/s\n"
         "  direction: -53.13° from the x-axis\n"
-        f"  by bisection of ends: {bisected:.9g} m/s, relative difference {bisected / 0.1 - 1.0:.0e}\n"
+        f"  check by bisection: {bisected:.9g} m/s, relative difference {bisected / 0.1 - 1.0:.0e}\n"
     )

@@ -116,9 +116,9 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
     assert cli.status(["sweep", "figures", str(copied)]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
-    assert err == f"{str(path)!r} is broken ({broken}): --resume computes that again\n"
+    assert err == f"{str(path)!r} is damaged ({broken}); repeat the sweep with --resume to recompute it\n"
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
-    assert capsys.readouterr().err == f"{str(path)!r} was broken and is computed again: {broken}\n"
+    assert capsys.readouterr().err == f"recomputed damaged parts of {str(path)!r}: {broken}\n"
     assert_same(content(path), whole[1])
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert capsys.readouterr().err == ""
@@ -155,7 +155,7 @@ def assert_refused(folder, capsys):
 def test_what_is_gone_is_computed_again(copied, whole, capsys):
     remove(copied / STORE / "round-0/end/c/1")
     assert cli.status(["sweep", "figures", str(copied)]) == 2
-    assert "is not finished: --resume goes on with it" in capsys.readouterr().err
+    assert "is not finished; repeat it with --resume to complete it" in capsys.readouterr().err
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert_same(content(copied / STORE), whole[1])
 

@@ -22,7 +22,7 @@ def unfinished(interrupted, tmp_path):
 
 def test_an_interrupt_from_the_keyboard_is_told(interrupted):
     code, out, err = interrupted[1]
-    assert (code, out, said(err)) == (130, "", ["Interrupted. The same command with --resume goes on."])
+    assert (code, out, said(err)) == (130, "", ["Interrupted. Repeat the command with --resume to continue."])
 
 
 def said(err):
@@ -60,7 +60,7 @@ def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undis
     assert (code, out) == (2, "")
     path = unfinished / "sweep.zarr"
     (line,) = said(err)
-    assert line.startswith(f"can't write to {str(path)!r}: File too large. What is written stays")
+    assert line.startswith(f"cannot write to {str(path)!r}: File too large. Results written so far remain")
     assert marks(unfinished) == before
     assert resumed(unfinished) == 0
     assert_same(content(path), undisturbed)

@@ -16,7 +16,7 @@ def test_a_sweep_into_memory_is_there_and_drawn(undisturbed, tmp_path, capsys):
     assert cli.status(["sweep", "figures", url]) == 0
     assert f"figures: {url}/basin.svg" in capsys.readouterr().out
     assert cli.status([*LONG, "--output", url]) == 2
-    assert "is there already: --resume goes on with it" in capsys.readouterr().err
+    assert "already exists; use --resume to continue it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("url", ["memory://claimed", "file://{}/claimed", "{}/claimed"])
