@@ -52,7 +52,7 @@ class Change:
         return self.kind in BAD and not self.known
 
     def __str__(self) -> str:
-        """Return a line."""
+        """Return the line that ``diff`` prints."""
         return f"{self.kind.value}{' (known)' * self.known}: {self.claim} {self.engine}: {self.words}"
 
 
