@@ -284,7 +284,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
     }
     if claim.answers:
-        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to tell"
+        first = f"{in_short(claim)} hold, {answers_text(element.numerical)} are too close to decide"
         return _listed(first, {"claim": f"{claim.sentence} {claim.equation}".rstrip()} | repeat)
     unit = f" {element.unit}" if element.unit else ""
     allowed = f"{error_text(element.total)}{unit}"

@@ -109,13 +109,13 @@ def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recor
     cells = recorded.cells(best)
     names = cases(recorded)
     parts = [f"{best.setting}: {_errors(best)}" if best.setting else _errors(best)]
-    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to tell")):
+    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to decide")):
         listed = [name for name, cell in zip(names, cells, strict=True) if cell and cell.state is state]
         parts += [f"{word}: {', '.join(listed)}"] if listed else []
     lacking = [name for name, cell in zip(names, cells, strict=True) if cell is None]
-    parts += [f"cannot: {', '.join(lacking)}"] if lacking else []
+    parts += [f"not simulated: {', '.join(lacking)}"] if lacking else []
     wrong = [one.setting for one in settings if one is not best and _grade(one) == DIFFERS]
-    parts += [f"another law by {', '.join(wrong)}"] if wrong else []
+    parts += [f"another friction law with {', '.join(wrong)}"] if wrong else []
     return Glance(
         best.engine,
         best.version,

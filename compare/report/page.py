@@ -114,18 +114,22 @@ def environment() -> Environment:
 def summary(matrix: Matrix) -> str:
     """Return the totals in words: agreement by kind of evidence, then the other states.
 
-    Example: "41 agree on independent evidence, in addition 7 by self-check, 3 by algebra and 5 implied; 1 differs".
+    Example: "41 agree on independent evidence, plus 7 by self-check, 3 by algebra and 5 by implication; 1 differs".
     """
     agree = {evidence: matrix.of_evidence(evidence)[State.AGREES] for evidence in EVIDENCE}
-    besides = [f"{agree[evidence]} {name}" for evidence, name in BESIDES.items() if agree[evidence]]
+    other = [f"{agree[evidence]} {name}" for evidence, name in OTHER_EVIDENCE.items() if agree[evidence]]
     words = f"{_agree(agree['independent'])} on independent evidence"
-    if besides:
-        listed = " and ".join([", ".join(besides[:-1]), besides[-1]] if len(besides) > 1 else besides)
-        words += f", besides {listed}"
+    if other:
+        listed = " and ".join([", ".join(other[:-1]), other[-1]] if len(other) > 1 else other)
+        words += f", plus {listed}"
     return f"{words}; {_others_in_words(matrix.totals)}"
 
 
-BESIDES: dict[Evidence, str] = {"self-check": "by self-check", "algebra": "of algebra", "implied": "implied"}
+OTHER_EVIDENCE: dict[Evidence, str] = {
+    "self-check": "by self-check",
+    "algebra": "by algebra",
+    "implied": "by implication",
+}
 """Words for verdicts without independent evidence."""
 
 

@@ -103,7 +103,7 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
     if asked.part == "measured":
         if place is None:
             raise ValueError(
-                f"{asked.name!r} names all numbers of a claim: ask for their 'error' or 'difference'"
+                f"{asked.name!r} names all numbers of a claim; quote their 'error' or 'difference'"
             )
         value = asked.factor * (float(claim.measured.flat[place]) - asked.origin)
         sign = "+" if asked.origin and value > 0.0 else ""

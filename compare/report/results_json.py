@@ -128,7 +128,8 @@ def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
 def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, Any]:
     if len(rows) != int(np.prod(claim["shape"], dtype=int)):
         raise ValueError(
-            f"{claim['arrays']} has {len(rows)} numbers of {claim['engine']}: is it of this report?"
+            f"{claim['arrays']} contains {len(rows)} numbers of {claim['engine']}, but results.json expects "
+            f"{int(np.prod(claim['shape'], dtype=int))}; they may be from different reports"
         )
 
     def column(name: str) -> FloatArray:
@@ -174,20 +175,20 @@ def read_results(path: Path) -> dict[str, Any]:
     try:
         content = all_printable(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
-        raise ValueError(f"can't read {str(file)!r}: {error.strerror}") from None
+        raise ValueError(f"cannot read {str(file)!r}: {error.strerror}") from None
     except ValueError:
         content = None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise ValueError(f"{str(file)!r} is no results.json of a report")
+        raise ValueError(f"{str(file)!r} is not the results.json of a report")
     if content["version"] != VERSION:
         raise ValueError(
-            f"{str(file)!r} has version {content['version']}: this program reads version {VERSION}"
+            f"{str(file)!r} has version {content['version']}, but this program reads version {VERSION}"
         )
     try:
         return with_arrays(content, file.parent)
     except OSError as error:
         raise ValueError(
-            f"can't read {str(error.filename)!r}, a table of {str(file)!r}: {error.strerror}"
+            f"cannot read {str(error.filename)!r}, a table of {str(file)!r}: {error.strerror}"
         ) from None
 
 

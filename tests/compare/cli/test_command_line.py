@@ -86,7 +86,7 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
     gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
     assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
-    first = "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed"
+    first = "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed"
     totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
     assert totals == f" ({folder / 'index.html'})"
     assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
@@ -100,13 +100,13 @@ REPORTS = [
         "verdicts",
         "fake_studies:straight",
         1,
-        "2 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive (",
+        "2 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive (",
     ),
     (
         "verdicts",
         "fake_studies:failing",
         1,
-        f"{NONE}, besides 1 of algebra; 0 differ, 0 inconclusive, 1 failed (",
+        f"{NONE}, plus 1 by algebra; 0 differ, 0 inconclusive, 1 failed (",
     ),
     ("inconclusive", "fake_studies:straight", 3, f"{NONE}; 0 differ, 1 inconclusive ("),
     (

@@ -69,14 +69,17 @@ def test_a_grade_is_the_largest_error_over_what_another_law_would_change(found):
 
 def test_the_best_setting_of_the_engines_own_friction_speaks_for_it(found):
     assert found["Kite"].sentence == (
-        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another law by box."
+        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another friction law with box."
     )
     assert found["Kite"].where == "#agreement-recorded"
 
 
 def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):
-    assert found["Pins"].sentence == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; cannot: disc."
-    assert found["Open"].sentence.endswith("; too coarse to tell: disc.")
+    assert (
+        found["Pins"].sentence
+        == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; not simulated: disc."
+    )
+    assert found["Open"].sentence.endswith("; too coarse to decide: disc.")
     assert "; differs: slides" in found["Wrong"].sentence
     assert found["Pins"].cells[2] is None
 

@@ -110,7 +110,7 @@ def test_what_is_gone_counts_and_what_is_new_does_not(old, tmp_path, capsys):
     assert (found, lines[-1]) == (1, "0 worse, 0 moved, 1 gone, 2 new, 0 better")
     assert "gone: verdicts/the-pin-comes-to-rest-at-the-point-of-eq-3 good: " in lines[0]
     found, lines = told(capsys, new, old)
-    assert lines[0] == "gone: agreement good: is no part of the new report"
+    assert lines[0] == "gone: agreement good: missing in the new report"
 
 
 def test_a_study_that_fails_is_told_once(old, tmp_path, capsys):
@@ -118,7 +118,7 @@ def test_a_study_that_fails_is_told_once(old, tmp_path, capsys):
     found, lines = told(capsys, old, new)
     assert found == 1
     assert [line.partition(": the")[0] for line in lines[:-1]] == [
-        "worse: verdicts good: was finished, failed",
+        "worse: verdicts good: finished before, failed now",
     ]
 
 
@@ -142,9 +142,9 @@ def test_known_failures_do_not_count(old, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (None, "can't read"),
-        ("{}", "is no baseline"),
-        ("[", "is no baseline"),
+        (None, "cannot read"),
+        ("{}", "is not a baseline"),
+        ("[", "is not a baseline"),
         ('{"format": 1, "version": 1}', "is no"),
     ],
 )
@@ -172,5 +172,5 @@ def test_reports_with_other_numbers_are_not_compared_one_by_one(old, tmp_path, c
         ),
     )
     found, lines = told(capsys, old, shorter)
-    assert (found, lines[0].endswith("they can't be compared one by one")) == (1, True)
+    assert (found, lines[0].endswith("so they cannot be compared")) == (1, True)
     assert content["format"] == "friction-discs results"

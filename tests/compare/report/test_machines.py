@@ -101,10 +101,13 @@ def test_a_badge_counts_what_agrees_and_is_red_where_something_differs(reported,
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (None, "can't read .*: No such file"),
-        ("{", "is no results.json of a report"),
-        ("[]", "is no results.json of a report"),
-        ('{"format": "friction-discs results", "version": 7}', "has version 7: this program reads version 1"),
+        (None, "cannot read .*: No such file"),
+        ("{", "is not the results.json of a report"),
+        ("[]", "is not the results.json of a report"),
+        (
+            '{"format": "friction-discs results", "version": 7}',
+            "has version 7, but this program reads version 1",
+        ),
     ],
 )
 def test_another_file_is_refused(tmp_path, content, sentence):
@@ -116,11 +119,11 @@ def test_another_file_is_refused(tmp_path, content, sentence):
 
 def test_a_table_of_another_report_is_refused(reported, tmp_path):
     (tmp_path / "results.json").write_bytes((reported[1] / "results.json").read_bytes())
-    with pytest.raises(ValueError, match=r"can't read .*, a table of .*: No such file"):
+    with pytest.raises(ValueError, match=r"cannot read .*, a table of .*: No such file"):
         read_results(tmp_path)
     one = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"][0]
     table = tmp_path / one["arrays"]
     table.parent.mkdir(parents=True)
     table.write_text(",".join(arrays.COLUMNS) + "\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="has 0 numbers of theory"):
+    with pytest.raises(ValueError, match="contains 0 numbers of theory"):
         read_results(tmp_path)

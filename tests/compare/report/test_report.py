@@ -90,9 +90,7 @@ def results(reported):
 def test_the_totals_are_those_of_the_claims(results, page):
     gaps = {"failed": 4, "missing": 0, "not simulated": 0}
     assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
-    assert (
-        "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed." in page
-    )
+    assert "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed." in page
     verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
     for verdict in ("agrees", "differs", "inconclusive"):
         assert verdicts.count(verdict) == results["totals"][verdict]

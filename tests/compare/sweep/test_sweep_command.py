@@ -79,7 +79,7 @@ def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch)
         ("--seed 2 --resume", "contains a different sweep; choose another --output"),
         ("--set mass=2", "contains a different sweep; choose another --output"),
         ("--chunk 5 --resume", "chunk = 5: "),
-        ("--resume", "was computed by other code or libraries"),
+        ("--resume", "was computed by a different version of the code or libraries"),
     ],
 )
 def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(
@@ -111,7 +111,7 @@ def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch,
     assert plans[0].duration == until
     cli.status(["sweep", "basin", "--help"])
     words = " ".join(capsys.readouterr().out.split())
-    assert "[default: (12000, of a disc on single points 1200)]" in words
+    assert "[default: (12000; 1200 for a disc on single points)]" in words
 
 
 def test_a_folder_that_is_no_store_is_refused_and_left_alone(capsys, tmp_path):

@@ -34,7 +34,7 @@ def test_a_server_that_is_not_there_is_told_in_one_sentence(monkeypatch, capsys)
 
     monkeypatch.setattr(fsspec.get_filesystem_class("memory"), "cat_file", refuse)
     assert cli.status(["sweep", "figures", "memory://there"]) == 2
-    sentence = "can't read from 'memory://there/sweep.zarr': Could not connect to the endpoint\n"
+    sentence = "cannot read from 'memory://there/sweep.zarr': Could not connect to the endpoint\n"
     assert capsys.readouterr() == ("", sentence)
     with pytest.raises(StoreError, match="Could not connect to the endpoint"):
         Files("memory://there").read("name")
