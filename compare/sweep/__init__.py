@@ -1,12 +1,12 @@
-"""Many trajectories at once: basins of attraction, maps over two parameters, uncertain parameters.
+"""Sweeps of many trajectories: basins of attraction, maps over two parameters, uncertain parameters.
 
-What their stores need comes with the extra ``sweep``; without it an import of anything in here says so.
+Their stores need the extra ``sweep``; without it, importing this package raises ``ModuleNotFoundError``.
 """
 
 from importlib.util import find_spec
 
 NEEDED = ("fsspec", "xarray", "zarr")
-"""Of the extra ``sweep``."""
+"""Packages of the extra ``sweep``."""
 
 EXTRA = "friction-discs[sweep]"
 
