@@ -1,4 +1,4 @@
-"""Results of a sweep in words."""
+"""Results of a sweep as text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 
 def summary(store: SweepStore) -> Iterator[str]:
-    """Yield the lines of what a finished sweep found."""
+    """Yield the lines of the results of a finished sweep."""
     result, check = _group(store, RESULT), _group(store, CHECK)
     total = result["end"].size
     if "simulated" in result:
@@ -48,12 +48,12 @@ def summary(store: SweepStore) -> Iterator[str]:
 
 
 def same_ends(store: SweepStore) -> bool:
-    """Return whether no trajectory of the random sample ended as something else with the plain reference."""
+    """Return whether no trajectory of the random sample ended differently with the plain reference."""
     return not np.any(_differing(_group(store, CHECK)))
 
 
 def undecided(store: SweepStore) -> float:
-    """Return the share of the trajectories that are undecided."""
+    """Return the share of undecided trajectories."""
     count = _group(store, RESULT)["count"].values
     return float(count[EndState.UNDECIDED] / np.sum(count))
 
@@ -86,7 +86,7 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
 
 
 def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
-    """Yield from where to where each motion goes, and what it is at both ends."""
+    """Yield the range of each branch, with radius and share at both ends."""
     name, unit = plan.x.name, units(plan.system)[plan.x.name]
     for j, end in enumerate(result["motion_end"].values):
         share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
@@ -100,7 +100,7 @@ def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
-    """Return how a random sample compares with the plain reference."""
+    """Return the line that compares a random sample with the plain reference."""
     velocities = COLUMNS[type(store.plan.system)].index(("vx", "m/s"))
     difference = check["difference"].values
     place = np.hypot(difference[:, 0], difference[:, 1])
