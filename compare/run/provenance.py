@@ -35,7 +35,7 @@ def platform_stamp() -> dict[str, str]:
     """Return versions, operating system, number of cores and date as texts, without names of machines or folders."""
     return {
         "friction-discs": version_of("friction-discs"),
-        "commit": commit() or "not known",
+        "commit": commit() or "unknown",
         "Python": platform.python_version(),
         **{name: version_of(name) for name in LIBRARIES},
         "user settings of Exudyn": exudyn_user_settings(),

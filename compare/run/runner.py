@@ -239,7 +239,7 @@ def measured(study: Study, engine: Engine | str | None, only: Collection[str] = 
     elif study.has_theory:
         findings = study.measure_theory(only=only)
     if not isinstance(findings, Findings):
-        raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
+        raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
     return replace(findings, not_simulated=printable(findings.not_simulated))
 
 
@@ -267,7 +267,7 @@ def _loaded(name: str, workers: Workers) -> Engine:
     if isinstance(found, str):
         raise ValueError(found)
     if isinstance(found, Failure):
-        raise ValueError(f"engine {name!r} can't be loaded: {found}")
+        raise ValueError(f"cannot load engine {name!r}: {found}")
     engine: Engine = found
     return engine
 

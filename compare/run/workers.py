@@ -149,7 +149,7 @@ class Workers:
             try:
                 message = pickle.dumps((work.function, work.arguments))
             except Exception as error:  # whatever an object's own pickling raises
-                reason = f"it cannot be sent to another process ({error}): use functions of a module"
+                reason = f"cannot be sent to another process ({error}); use functions of a module"
                 yield Done(work.key, Failure(reason), 0.0)
                 continue
             if worker and worker.owner not in ("", work.owner):
@@ -219,7 +219,7 @@ class _Worker:
             cause = "it closed its connection" if code is None else cause_of_end(code)
             said = self._errors.hand_on().strip().splitlines()
             self.end()
-            reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
+            reason = ": ".join([f"its process ended unexpectedly ({cause})", *said[-1:]])
             value = Failure(reason)
         return Done(key, value, time.monotonic() - self.started)
 
@@ -307,7 +307,7 @@ def _serve(connection: Connection) -> None:
             try:
                 answer = pickle.dumps(value)
             except Exception as error:
-                answer = pickle.dumps(Failure(f"its result cannot be sent back: {error}"))
+                answer = pickle.dumps(Failure(f"cannot send its result back: {error}"))
             connection.send_bytes(answer)
     except EOFError:
         pass
@@ -343,7 +343,7 @@ def failure(error: BaseException) -> Failure:
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
     if lacks_memory(error):
-        reason = f"there is not enough memory ({reason})"
+        reason = f"not enough memory ({reason})"
     frames = traceback.extract_tb(error.__traceback__)
     # file names only, because a report must not reveal the folders of its machine
     where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)

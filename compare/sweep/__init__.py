@@ -12,5 +12,6 @@ EXTRA = "friction-discs[sweep]"
 
 if _missing := [name for name in NEEDED if find_spec(name) is None]:
     raise ModuleNotFoundError(
-        f"a sweep needs {EXTRA} (missing: {', '.join(_missing)}): pip install '{EXTRA}'", name=EXTRA
+        f"sweeps need {EXTRA} (missing: {', '.join(_missing)}); install it with: pip install '{EXTRA}'",
+        name=EXTRA,
     )

@@ -109,8 +109,8 @@ class Group:
         with told(self.files.url):
             if description_of(self.files) != self.description:
                 raise StoreError(
-                    f"a worker does not find the sweep in {self.files.url!r}: --output must be a folder that all "
-                    "share, or an object store"
+                    f"a worker cannot find the sweep in {self.files.url!r}; --output must be a shared folder or an "
+                    "object store"
                 )
             dimensions = (*region, "component")
             written = xr.Dataset({name: (dimensions[: one.ndim], one) for name, one in values.items()})

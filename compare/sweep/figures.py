@@ -49,6 +49,8 @@ MOST_DRAWS = 1 << 20
 
 BINS = 60
 
+ORDERS = {"first": "first-order index", "total": "total index"}
+
 CURVE_DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0.0, (6.0, 1.5, 1.0, 1.5)))
 
 
@@ -150,7 +152,7 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
     shown = (
         ("largest_radius", "largest radius in m"),
         ("modulation", "(largest − least)/(largest + least) radius"),
-        ("slip_power", "power of friction in W"),
+        ("slip_power", "friction power in W"),
     )
     rows = np.array(panels, dtype=object).reshape(len(plan.starts), 4)
     for i, row in enumerate(rows):
@@ -204,8 +206,8 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
             edgecolor=BLACK,
             linewidth=0.3,
         )
-    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" of the first {MOST_DRAWS}"
-    left.set(xlabel="largest radius of the end state in m", ylabel=f"draws{which}")
+    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" among the first {MOST_DRAWS}"
+    left.set(xlabel="largest radius of the end state in m", ylabel=f"number of draws{which}")
     places = np.arange(len(plan.varied))
     bars = (
         ("first", "largest_radius", BLUE),
@@ -216,12 +218,17 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     for i, (order, quantity, colour) in enumerate(bars):
         values = result[f"sobol_{order}"].sel(quantity=quantity).values
         errors = result[f"sobol_{order}_error"].sel(quantity=quantity).values
-        words = "largest radius" if quantity == "largest_radius" else "whirl or not"
+        words = "largest radius" if quantity == "largest_radius" else "whirl (yes or no)"
         right.bar(
-            places + 0.2 * (i - 1.5), values, 0.18, yerr=errors, color=colour, label=f"{words}, {order} order"
+            places + 0.2 * (i - 1.5),
+            values,
+            0.18,
+            yerr=errors,
+            color=colour,
+            label=f"{words}, {ORDERS[order]}",
         )
     right.set_xticks(places, [f"${symbol(uncertain.name)}$" for uncertain in plan.varied])
-    right.set(ylabel="Sobol's index")
+    right.set(ylabel="Sobol index")
     right.legend(fontsize=8.5)
     legend(figure, result)
     return figure

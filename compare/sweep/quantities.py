@@ -45,8 +45,8 @@ class Result(NamedTuple):
 
 
 RESULTS = {
-    "end": Result("u1", "", "what the trajectory ends as"),
-    "time": Result("f8", "s", "when the end was certain, or the duration"),
+    "end": Result("u1", "", "end of the trajectory"),
+    "time": Result("f8", "s", "time at which the end was certain, or the duration"),
     "states": Result("f8", "", "state at that time"),
     "least_radius": Result("f8", "m", "least distance from the axis in the end state"),
     "largest_radius": Result("f8", "m", "largest distance from the axis in the end state"),

@@ -119,7 +119,7 @@ class SweepStore:
         if not whole:
             if folder is not None:
                 folder.cleanup()
-            raise ValueError(f"{place!r} is no store of a sweep, or its description is broken")
+            raise ValueError(f"{place!r} is not the store of a sweep, or its description is damaged")
         store = cls(files, plan, chunk, stamp, place)
         store._unpacked = folder
         return store
@@ -161,7 +161,8 @@ class SweepStore:
         if chunks:
             shown = ", ".join(map(str, chunks[:MOST_NAMED]))
             more = f" and {len(chunks) - MOST_NAMED} more" if len(chunks) > MOST_NAMED else ""
-            self.broken.append(f"of {count} chunks of {ROUND.format(i)} these: {shown}{more}")
+            word = "chunk" if len(chunks) == 1 else "chunks"
+            self.broken.append(f"{ROUND.format(i)}: {word} {shown}{more} (of {count})")
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
         """Write a group and replace an older one."""

@@ -67,9 +67,9 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
             for part, value in zip(QUANTILES, np.quantile(radii, QUANTILES), strict=True)
         )
         which = "draws" if result.sizes["sample"] <= MOST_DRAWS else f"first {MOST_DRAWS} draws"
-        yield f"largest radius below which a part of the {which} lies: {values}"
+        yield f"quantiles of the largest radius of the {which}: {values}"
     for quantity in result["quantity"].values:
-        words = "largest radius" if quantity == "largest_radius" else "whirl or not"
+        words = "largest radius" if quantity == "largest_radius" else "whirl (yes or no)"
         for name in result["uncertain"].values:
             at = {"quantity": quantity, "uncertain": name}
             first, total, first_error, total_error = (
@@ -78,11 +78,11 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
             )
             if np.isfinite(first):
                 yield (
-                    f"  {words} by {name}: first order {first:.3f} ± {first_error:.3f}, "
-                    f"total {total:.3f} ± {total_error:.3f}"
+                    f"  sensitivity of {words} to {name}: first-order index {first:.3f} ± {first_error:.3f}, "
+                    f"total index {total:.3f} ± {total_error:.3f}"
                 )
             else:
-                yield f"  {words} by {name}: does not vary"
+                yield f"  sensitivity of {words} to {name}: none, because it does not vary"
 
 
 def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
@@ -107,8 +107,9 @@ def _checked(store: SweepStore, check: xr.Dataset) -> str:
     speed = np.hypot(difference[:, velocities], difference[:, velocities + 1])
     undecided = int(np.count_nonzero(check["plain_end"].values == EndState.UNDECIDED))
     return (
-        f"{len(place)} of them by the plain reference: {np.count_nonzero(_differing(check))} end differently, "
-        f"{undecided} undecided; states differ by up to {np.nanmax(place):.1e} m and {np.nanmax(speed):.1e} m/s"
+        f"check of {len(place)} trajectories by the plain reference: "
+        f"{np.count_nonzero(_differing(check))} end differently, {undecided} undecided; "
+        f"states differ by up to {np.nanmax(place):.1e} m and {np.nanmax(speed):.1e} m/s"
     )
 
 

@@ -151,7 +151,9 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
     except (ValueError, ClusterError) as error:
         raise BadInputError(str(error)) from None
     except ModuleNotFoundError:
-        raise BadInputError("--scheduler needs Dask: pip install 'friction-discs[cluster]'") from None
+        raise BadInputError(
+            "--scheduler needs Dask; install it with: pip install 'friction-discs[cluster]'"
+        ) from None
     with cluster:
         yield cluster
 

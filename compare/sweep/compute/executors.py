@@ -118,13 +118,13 @@ class Cluster:
         except TimeoutError:
             self._client.close()
             raise ClusterError(
-                f"the scheduler at {address} has no workers: start some, dask worker {address}"
+                f"the scheduler at {address} has no workers; start one with: dask worker {address}"
             ) from None
         except (ImportError, RuntimeError, self._dask.KilledWorker):
             self._client.close()
             raise ClusterError(
-                f"the scheduler at {address} or its workers can't import friction-discs: "
-                "install the same version everywhere"
+                f"the scheduler at {address} or its workers cannot import friction-discs; "
+                "install the same version on all machines"
             ) from None
 
     def __enter__(self) -> Cluster:
@@ -182,7 +182,7 @@ def _reach(dask: Any, address: str) -> None:
     except Exception:  # Dask may raise anything for the answer of another program
         answer = "nothing"
     if answer != "Scheduler":
-        raise ClusterError(f"no Dask scheduler answers at {address}: start one, dask scheduler")
+        raise ClusterError(f"no Dask scheduler answers at {address}; start one with: dask scheduler")
 
 
 def _checked_address(address: str) -> str:

@@ -138,7 +138,7 @@ def large_of(plan: Plan) -> dict[str, Large]:
         found["modulation"] = large("f8", {"long_name": "(largest − least)/(largest + least) radius"})
     if isinstance(plan, Basin):
         meaning = {
-            "long_name": "1 where the trajectory was simulated; the others, 0, end as those around them"
+            "long_name": "1 if the trajectory was simulated, 0 if its end was inferred from its neighbours"
         }
         found["simulated"] = large("u1", meaning)
     return found
@@ -216,7 +216,9 @@ def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Da
     """Return the labelled results of the whole sweep from the ordered summaries of its blocks."""
     rows = np.concatenate([one.counts for one in found])
     counts = np.sum(rows, axis=0)
-    variables: Variables = {"count": (("end_state",), counts, {"long_name": "how many end like this"})}
+    variables: Variables = {
+        "count": (("end_state",), counts, {"long_name": "number of trajectories with this end"})
+    }
     coordinates: dict[str, Any] = {"end_state": ENDS}
     if isinstance(plan, Basin | Map):
         axes = (plan.y, plan.x)

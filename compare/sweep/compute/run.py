@@ -164,7 +164,7 @@ def _checked(
         plain[i] = found
         progress("check by the plain reference", len(plain), count)
     difference = np.array([states[i] - plain[i].state for i in range(count)])
-    meaning = "state at that time minus that of the plain reference"
+    meaning = "state at this time minus the state of the plain reference"
     return xr.Dataset(
         {
             "time": (("trajectory",), np.array(time), {"units": "s"}),

@@ -46,7 +46,7 @@ def simulate_chunk(
     Raises :class:`OtherCodeError`, before anything is written, if the code does not match the stamp ``made_by``.
     """
     if stamp() != made_by:
-        raise OtherCodeError("a worker has other code or libraries than this process")
+        raise OtherCodeError("a worker uses a different version of the code or libraries")
     chunks.write(chunk, compute(plan, numbers, threads))
     return len(numbers)
 

@@ -63,7 +63,8 @@ for arguments in (["sweep", "basin", "pin"], ["sweep", "basin", "--help"], ["lis
 
 def test_help_needs_no_heavy_library_and_only_a_sweep_needs_the_extra():
     done = subprocess.run([REAL[0], "-c", WITHOUT], env=environment(), capture_output=True, encoding="utf-8")
-    needs = "a sweep needs friction-discs[sweep] (missing: zarr): pip install 'friction-discs[sweep]'\n"
+    extra = "friction-discs[sweep]"
+    needs = f"sweeps need {extra} (missing: zarr); install it with: pip install '{extra}'\n"
     assert done.stderr == needs
     assert re.findall(r"^(?:heavy|status) .*$", done.stdout, re.MULTILINE) == [
         "heavy []",
@@ -307,7 +308,7 @@ def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
             raise OSError("Could not find/load shared object file 'libllvmlite.so'") from error
     except OSError as error:
         library = error
-    assert failure(library).reason.startswith("there is not enough memory (OSError: Could not find/load")
+    assert failure(library).reason.startswith("not enough memory (OSError: Could not find/load")
     assert lacks_memory(MemoryError())
     assert not lacks_memory(OSError(28, "No space left on device"))
 

@@ -167,7 +167,7 @@ BAD = [
     (f"{ALONG} --set disc_speed=2", "--set disc_speed: --x already varies disc_speed; leave one of them out"),
     (f"{ALONG} --x mass=-1:1:3", "mass = -1 kg: it must be > 0"),
     ("sweep shock --set offset=0", "no equilibrium to start from…"),
-    ("sweep figures nowhere", "…is no store of a sweep…"),
+    ("sweep figures nowhere", "…is not the store of a sweep…"),
 ]
 
 ENGINE = """

@@ -56,7 +56,7 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_way
     assert failure.where[-1].startswith("fake_studies.py:")
     assert "/" not in "".join(failure.where)
     if way == 1:
-        assert result.outcomes["death", "good"].reason == "its process came to a sudden end (exit status 7)"
+        assert result.outcomes["death", "good"].reason == "its process ended unexpectedly (exit status 7)"
 
 
 def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
@@ -102,11 +102,10 @@ def test_what_is_no_result_is_said(tmp_path):
     unsendable = replace(fake.NO_FINDINGS, name="unsendable", provided={"measure": lambda engine: None})
     found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
     assert (
-        found["no-findings", "good"].reason == "TypeError: the study returned NoneType: it must be Findings"
+        found["no-findings", "good"].reason
+        == "TypeError: the study returned NoneType, but must return Findings"
     )
-    assert found["unsendable", "good"].reason.startswith(
-        "it cannot be sent to another process (Can't pickle "
-    )
+    assert found["unsendable", "good"].reason.startswith("cannot be sent to another process (Can't pickle ")
     assert found["unsendable", "good"].reason.endswith("use functions of a module")
 
 

@@ -41,7 +41,7 @@ def close_all_descriptors(then, *arguments):
     then(*arguments)
 
 
-SUDDEN = "its process came to a sudden end"
+SUDDEN = "its process ended unexpectedly"
 
 ENDS = [
     (sys.exit, 0, "SystemExit: 0"),
@@ -123,7 +123,7 @@ def test_a_stray_module_does_not_take_the_place_of_one_of_the_library(stray, fol
 
 def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(workers, capfd):
     assert workers.ask(last_words, 3) == Failure(
-        "its process came to a sudden end (exit status 3): the last word: 1 µm"
+        "its process ended unexpectedly (exit status 3): the last word: 1 µm"
     )
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
 

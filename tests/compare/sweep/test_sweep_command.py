@@ -118,7 +118,7 @@ def test_a_folder_that_is_no_store_is_refused_and_left_alone(capsys, tmp_path):
     (tmp_path / STORE).mkdir()
     (tmp_path / STORE / "precious").write_text("data")
     assert cli.status([*BASIN, "--output", str(tmp_path), "--resume"]) == 2
-    assert "is no store of a sweep" in capsys.readouterr().err
+    assert "is not the store of a sweep" in capsys.readouterr().err
     assert [path.name for path in (tmp_path / STORE).iterdir()] == ["precious"]
 
 
@@ -165,7 +165,7 @@ def test_every_sweep_prints_and_draws_its_results(arguments, tmp_path, capsys):
     kind, *more = arguments.split()
     status = cli.status(["sweep", kind, *more, *SMALL, "--output", str(tmp_path)])
     assert status in (NOTHING_SHOWN, 1)
-    assert "of them by the plain reference" in capsys.readouterr().out
+    assert "trajectories by the plain reference" in capsys.readouterr().out
     for suffix in ("svg", "png"):
         assert (tmp_path / f"{kind}.{suffix}").stat().st_size > 5000
     assert {group for group, _ in content(tmp_path / STORE)} >= {"round-0", "check", "result"}

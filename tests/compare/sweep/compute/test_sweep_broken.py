@@ -96,7 +96,7 @@ MENDED = [
     (foreign(storage_transformers=PICKLE), "check/time/zarr.json", "check"),
     (foreign(codecs=PICKLE), "round-0/end/zarr.json", "the description of round-0"),
     (foreign(codecs=[{"name": "bytes"}]), "round-0/end/zarr.json", "the description of round-0"),
-    (empty, "round-0/end/c/1", "of 3 chunks of round-0 these: 1"),
+    (empty, "round-0/end/c/1", "round-0: chunk 1 (of 3)"),
     (another_unit, "round-0/time/zarr.json", "the description of round-0"),
     (remove, "round-0/time", "the description of round-0"),
     (one_bit, "result/time/c/0/0/0", "result"),
@@ -148,7 +148,7 @@ def assert_refused(folder, capsys):
         assert cli.status(arguments) == 2
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1)
-        assert "broken" in err
+        assert "damaged" in err
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == left
 
 

@@ -46,7 +46,7 @@ def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
     assert finished(store)
     store.files.write({"round-0/end/c/3": store.files.read("round-0/end/c/4") + b"more"})
     assert not finished(store)
-    assert store.broken == ["of 60 chunks of round-0 these: 3"]
+    assert store.broken == ["round-0: chunk 3 (of 60)"]
 
 
 def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
@@ -73,7 +73,10 @@ def test_a_scheduler_that_is_not_there_is_told_in_time(tmp_path, capsys):
         code = cli.status([*LONG, "--scheduler", address, "--output", str(tmp_path)])
     assert time.monotonic() - clock < 10.0
     assert code == 2
-    assert capsys.readouterr() == ("", f"no Dask scheduler answers at {address}: start one, dask scheduler\n")
+    assert capsys.readouterr() == (
+        "",
+        f"no Dask scheduler answers at {address}; start one with: dask scheduler\n",
+    )
     assert not (tmp_path / "sweep.zarr").exists()
 
 
@@ -92,7 +95,7 @@ def test_a_scheduler_without_workers_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 2.0)
     with (
         cluster(tmp_path, workers=0) as local,
-        pytest.raises(ClusterError, match="has no workers: start some"),
+        pytest.raises(ClusterError, match="has no workers; start one"),
     ):
         Cluster(local.address)
 
@@ -119,14 +122,14 @@ class Elsewhere(InProcess):
 
 def test_a_worker_with_other_code_is_refused_and_writes_nothing(store, tmp_path, monkeypatch):
     other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.stamp", lambda: "other"))
-    with pytest.raises(OtherCodeError, match="other code or libraries than this process"):
+    with pytest.raises(OtherCodeError, match="a different version of the code or libraries"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 
 
 def test_a_worker_that_has_another_store_at_that_place_is_refused(store, tmp_path):
     other = Elsewhere(lambda: (tmp_path / "sweep.zarr" / DESCRIPTION).write_text("{}"))
-    with pytest.raises(StoreError, match="--output must be a folder that all share, or an object store"):
+    with pytest.raises(StoreError, match="--output must be a shared folder or an object store"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 

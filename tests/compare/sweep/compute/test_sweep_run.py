@@ -164,7 +164,7 @@ def test_a_kernel_that_is_wrong_is_found_by_the_plain_reference(tmp_path, monkey
     np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
     assert not same_ends(store)
     assert (
-        f"{len(difference)} of them by the plain reference: {len(difference)} end differently"
+        f"check of {len(difference)} trajectories by the plain reference: {len(difference)} end differently"
         in list(summary(store))[-1]
     )
 
