@@ -189,9 +189,11 @@ def imported(name: str, place: str) -> Engine:
         simulate = function.imported
     except (Exception, SystemExit) as error:  # whatever a module may do when it is imported
         kind = "" if isinstance(error, ImportError | AttributeError) else f"{type(error).__name__}: "
-        raise ValueError(f"engine {name!r} can't be imported: {kind}{error}") from None
+        raise ValueError(f"engine {name!r} cannot be imported: {kind}{error}") from None
     if not callable(simulate):
-        raise ValueError(f"engine {name!r} is no function")
+        raise ValueError(
+            f"engine {name!r} is not callable: expected simulate(system, initial_state, times, *, tolerance)"
+        )
     declared = {key: getattr(simulate, key) for key in DECLARED if hasattr(simulate, key)}
     if "version" in declared:
         declared["version"] = str(declared["version"])

@@ -103,8 +103,8 @@ def installed_engine(name: str, setting: str) -> Engine:
         adapter = importlib.import_module(module)
     except ImportError as error:
         raise ValueError(
-            f"engine {name!r}: {known.title} is not installed ({error}): pip install {known.package}; "
-            f"wheels are for {known.wheels}"
+            f"engine {name!r}: {known.title} is not installed ({error}); install it with: "
+            f"pip install {known.package} (wheels exist for {known.wheels})"
         ) from None
     simulate = getattr(adapter, known.settings[setting])
     return Engine(

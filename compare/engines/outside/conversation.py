@@ -100,7 +100,7 @@ def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
     try:
         return conversation_with(command, folder).greeting
     except OSError as error:
-        raise ValueError(f"{command[0]} can't be started: {error.strerror}") from None
+        raise ValueError(f"cannot start {command[0]}: {error.strerror}") from None
     except ProgramError as error:
         raise ValueError(str(error)) from None
 
@@ -115,15 +115,15 @@ def check_command(command: tuple[str, ...], folder: str) -> None:
             if os.access(found, os.X_OK)
             else "it is not executable"
             if found.exists()
-            else "it is not there"
+            else "command not found"
         )
         reason = "it is a folder" if found.is_dir() else reason
     else:
-        reason = "" if shutil.which(program) else "no folder of PATH has it"
+        reason = "" if shutil.which(program) else "command not found in PATH"
         if reason and Path(folder, program).is_file():
-            reason += f", write ./{program} for the one in this folder"
+            reason += f"; use ./{program} for the file in this folder"
     if reason:
-        raise ValueError(f"{program} can't be started: {reason}")
+        raise ValueError(f"{program}: {reason}")
 
 
 _OPEN: dict[tuple[int, tuple[str, ...], str], Conversation] = {}

@@ -92,7 +92,7 @@ class Fmu:
         except (
             Exception
         ) as error:  # of the library: for another platform, or without what a model has to have
-            raise FmuError(f"{name} can't be started: {_reason(error, model.folder)}") from None
+            raise FmuError(f"cannot start {name}: {_reason(error, model.folder)}") from None
         try:
             return _motion(instance, model, values, system, at, **accuracy)
         except Exception as error:  # of FMPy, which has one class for each version of the standard
@@ -244,7 +244,7 @@ def fmu_engine(text: str) -> Engine:
     """Return the engine "fmu:TEXT"; raise ``ValueError`` if the file is no model of a system."""
     file = Path(text).resolve()
     if not file.is_file():
-        raise ValueError(f"fmu:{text}: there is no such file")
+        raise ValueError(f"fmu:{text}: file not found")
     model = _model(str(file))
     kinds = _kinds(file.name, model.variables)
     experiment = model.description.defaultExperiment

@@ -79,7 +79,7 @@ def read_motion(path: Path, system: System, times: FloatArray) -> Trajectory:
     except FileNotFoundError:
         raise UnsupportedSystemError(f"{place} is missing") from None
     except OSError as error:
-        raise BadFileError(f"{place} can't be read: {error.strerror}") from None
+        raise BadFileError(f"cannot read {place}: {error.strerror}") from None
     columns = ("t", *(name for name, _ in COLUMNS[type(system)]))
     rows = [(number, line.split(",")) for number, line in enumerate(lines, 1) if line.strip()]
     if rows and not any(map(_is_number, rows[0][1])):
@@ -123,12 +123,12 @@ def _index(folder: str) -> dict[str, Any]:
             raise ValueError
         frozenset(content["motions"])
     except OSError as error:
-        reason = f"{error.strerror}; friction-discs plan writes it"
+        reason = f"{error.strerror}; write it with friction-discs plan"
     except (ValueError, KeyError, TypeError):
-        reason = "it is no plan of this version"
+        reason = "it is not a plan of this version"
     else:
         return content
-    raise ValueError(f"{Path(folder).name}/{INDEX} can't be read: {reason}")
+    raise ValueError(f"cannot read {Path(folder).name}/{INDEX}: {reason}")
 
 
 @functools.cache

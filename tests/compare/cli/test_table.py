@@ -36,12 +36,12 @@ HELP = [
 BAD = [
     ("report verdict", "unknown study 'verdict': did you mean 'verdicts'?"),
     ("report --engine exudin", "unknown engine 'exudin': did you mean 'exudyn'?"),
-    ("report --engine exec:./missing", "./missing can't be started: it is not there"),
+    ("report --engine exec:./missing", "./missing: command not found"),
     (
         "report --engine files:.",
-        "…/plan.json can't be read: No such file or directory; friction-discs plan writes it",
+        "cannot read …/plan.json: No such file or directory; write it with friction-discs plan",
     ),
-    ("report --engine fmu:missing.fmu", "…there is no such file…"),
+    ("report --engine fmu:missing.fmu", "fmu:missing.fmu: file not found"),
     ("report --jobs 0", "jobs = 0: it must lie between 1 and 1000"),
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
@@ -166,7 +166,7 @@ BAD = [
     (f"{ALONG} --vary 'mass=uniform(1, 2)'", "…unknown component 'mass'…"),
     (f"{ALONG} --set disc_speed=2", "--set disc_speed: --x already varies disc_speed; leave one of them out"),
     (f"{ALONG} --x mass=-1:1:3", "mass = -1 kg: it must be > 0"),
-    ("sweep shock --set offset=0", "no equilibrium to start from…"),
+    ("sweep shock --set offset=0", "friction_force = 0.09 N: the self-centred equilibrium exists only…"),
     ("sweep figures nowhere", "…is not the store of a sweep…"),
 ]
 

@@ -90,8 +90,8 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function_and_says_what_it_
 @pytest.mark.parametrize(
     ("code", "reason"),
     [
-        ("1 / 0", " can't be imported: ZeroDivisionError: division by zero"),
-        ("def (", " can't be imported: SyntaxError: "),
+        ("1 / 0", " cannot be imported: ZeroDivisionError: division by zero"),
+        ("def (", " cannot be imported: SyntaxError: "),
         ("simulate.kinds = ('rings',)", ", attribute kinds = … did you mean 'ring'"),
         ("simulate.kinds = 'ring'", ", attribute kinds = …'r'"),
         ("simulate.kinds = 7", ", attribute kinds = …not iterable"),

@@ -123,10 +123,10 @@ def test_what_is_wrong_in_a_file_is_told_with_its_line(change, kind, reason, ans
 @pytest.mark.parametrize(
     ("index", "reason"),
     [
-        (None, "No such file or directory; friction-discs plan writes it"),
-        ("{", "it is no plan of this version"),
-        (json.dumps({"format": 0, "kinds": [], "motions": []}), "it is no plan of this version"),
-        (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is no plan of this version"),
+        (None, "No such file or directory; write it with friction-discs plan"),
+        ("{", "it is not a plan of this version"),
+        (json.dumps({"format": 0, "kinds": [], "motions": []}), "it is not a plan of this version"),
+        (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is not a plan of this version"),
     ],
 )
 def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folder):
@@ -135,7 +135,7 @@ def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folde
     else:
         (folder / "plan.json").write_text(index)
     for look in (lambda name: engines([name]), known_name):
-        with pytest.raises(ValueError, match=f"^motions/plan.json can't be read: {reason}$"):
+        with pytest.raises(ValueError, match=f"^cannot read motions/plan.json: {reason}$"):
             look(f"files:{folder}")
 
 

@@ -143,11 +143,11 @@ def test_a_program_that_does_not_greet_is_refused_in_one_sentence(greeting, reas
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
-        ("./missing", "./missing can't be started: it is not there"),
-        ("missing-program", "missing-program can't be started: no folder of PATH has it"),
-        ("here", "no folder of PATH has it, write ./here for the one in this folder"),
-        ("./here", "./here can't be started: it is not executable"),
-        ("./folder", "./folder can't be started: it is a folder"),
+        ("./missing", "./missing: command not found"),
+        ("missing-program", "missing-program: command not found in PATH"),
+        ("here", "command not found in PATH; use ./here for the file in this folder"),
+        ("./here", "./here: it is not executable"),
+        ("./folder", "./folder: it is a folder"),
         ("", "a command has to follow, as in exec:./my_engine"),
         ("'open", "no closing quotation"),
     ],
