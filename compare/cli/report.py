@@ -165,7 +165,7 @@ def report(
 
 
 def store_of(output: Path) -> Path:
-    """Return the folder of measurements for ``--resume``, next to the report because readers do not need it."""
+    """Return the folder of measurements for ``--resume``, outside the report because readers do not need it."""
     return output.resolve().with_name(f"{output.resolve().name}.data")
 
 

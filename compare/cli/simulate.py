@@ -1,4 +1,4 @@
-"""``friction-discs simulate pin | disc``: a motion as a file."""
+"""``friction-discs simulate pin | disc``: simulates a motion and writes it to a file."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ OTHER_LAW = 10.0
 """Change of a recorded motion due to another friction law, over the resolution of its claim."""
 
 ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
-"""Further grades: agrees with a larger error than any ``compare.claims.claim.Grade``; differs; nothing agrees."""
+"""Grades beyond ``compare.claims.claim.Grade``: agreement with a larger error; a claim differs; nothing agrees."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from compare.run.runner import Run
 from compare.run.store import Drawing
 
 LINES = 4
-"""Depth to which values of ``results.json`` have their own lines; each claim has one line."""
+"""Number of nesting levels of ``results.json`` with one line per value; each claim gets one line."""
 
 
 def write_report(run: Run, output: Path) -> Matrix:

@@ -41,7 +41,7 @@ from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_jso
 from compare.sweep.quantities import RESULTS, components
 
 SMALL = 1_000_000
-"""Number of trajectories from which a finished store remains a folder."""
+"""Least number of trajectories of a finished store that remains a folder."""
 
 MOST_NAMED = 10
 """Largest number of chunks that a message lists."""

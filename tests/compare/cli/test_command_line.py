@@ -1,4 +1,4 @@
-"""What the commands print and write, and how they end, beyond the table of arguments."""
+"""Output, files and exit statuses of the commands, beyond the table of arguments."""
 
 import csv
 import io
@@ -83,7 +83,7 @@ def report(*arguments, engine="fake_studies:straight", output, studies=fake_stud
 def test_a_report_that_differs_ends_with_status_1(reported):
     process, folder = reported
     assert process.returncode == 1
-    assert "\r" not in process.stderr  # no progress bar but on a terminal
+    assert "\r" not in process.stderr  # no progress bar without a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
     gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
     assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
@@ -129,7 +129,7 @@ def test_status_and_totals_of_a_report(study, engine, status, said, tmp_path, ca
 
 def test_a_report_without_differences_prints_its_totals_and_nothing_else(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert report("--level", "quick", output="new/folder") == 0  # of all studies
+    assert report("--level", "quick", output="new/folder") == 0  # the default is all studies
     page = os.path.join("new", "folder", "index.html")
     totals = f"1 agrees on independent evidence; 0 differ, 0 inconclusive ({page})\n"
     assert capsys.readouterr() == (totals, "")
@@ -265,10 +265,10 @@ def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path, monkeypatch, caps
 
 @pytest.fixture
 def without_reader(monkeypatch):
-    """A standard output that nobody reads; closing it, as a process does at its end, must be no error either."""
+    """Standard output without a reader; closing it, as a process does at its end, must not fail either."""
     reader, writer = os.pipe()
     os.close(reader)
-    monkeypatch.setattr(sys, "stderr", sys.stderr)  # which typer may replace
+    monkeypatch.setattr(sys, "stderr", sys.stderr)  # typer may replace it
     with open(writer, "w") as output:
         monkeypatch.setattr(sys, "stdout", output)
         yield

@@ -1,4 +1,4 @@
-"""Exit statuses where an engine has measured nothing, or less than it was asked for."""
+"""Exit statuses if an engine measured nothing, or less than requested."""
 
 import json
 from dataclasses import replace
@@ -25,7 +25,7 @@ def dying(*arguments, **accuracy):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """A folder with engines that do not answer, and one that ends the process that imports it."""
+    """A folder with engines that do not answer, and an engine that ends the importing process."""
     (tmp_path / "hostile.py").write_text(ENGINES)
     (tmp_path / "exiting.py").write_text("import os\nos._exit(0)")
     monkeypatch.chdir(tmp_path)
@@ -47,7 +47,7 @@ ENDING = [
     ("matrix --engine exiting:simulate", 2),
     ("simulate pin --engine hostile:dying", 1),
 ]
-"""The engine ends the process in which it works."""
+"""Ends its own process."""
 
 
 @pytest.mark.parametrize(("command", "status"), RAISING + ENDING)
@@ -62,7 +62,7 @@ def test_no_command_ends_with_status_0_where_an_engine_has_measured_nothing(
 
 
 def measure_with_another(engine):
-    """Return an independent claim and one that follows from it."""
+    """Return an independent claim and a claim that it implies."""
     independent = fake_studies.measure_agreement(engine).claims
     implied = fake_studies.claim("It follows", engine.name, 0.5, 0.5, 0.0, implied_by=independent[0].sentence)
     return Findings((*independent, implied))

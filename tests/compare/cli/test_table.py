@@ -1,4 +1,4 @@
-"""What the command line says to arguments that need no work: a table of arguments, exit status and sentence."""
+"""Answers of the command line before any work: a table of arguments, exit status and message."""
 
 import errno
 import os
@@ -192,7 +192,7 @@ FAILED = [
 ]
 
 STUDIES = (fake_studies.VERDICTS, fake_studies.AGREEMENT)
-"""Not all fake ones: a mistake that lets a report begin must not end this process."""
+"""Harmless fake studies only, so a bug that starts a report does not end this process."""
 
 TABLE = [
     ("", 0, "Usage: friction-discs…"),
@@ -209,7 +209,7 @@ TABLE = [
 def test_arguments_are_answered_by_status_and_sentence(
     arguments, status, sentence, tmp_path, monkeypatch, capsys
 ):
-    """In one line on the error stream unless the status is 0, and before anything is written."""
+    """Expect one line on the error stream unless the status is 0, and no written files."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "file").touch()

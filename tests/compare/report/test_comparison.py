@@ -1,4 +1,4 @@
-"""What parts two reports, by their files, and the exit status of ``friction-discs diff``."""
+"""Differences of two reports, and the exit status of ``friction-discs diff``."""
 
 import json
 from dataclasses import replace
@@ -19,14 +19,14 @@ PLACES = "the pin comes to rest at the point of eq. (3)"
 
 
 def written(folder, measure=measure_verdicts, studies=(), engine=GOOD):
-    """Return the folder of a report of one study, made by hand, and of ``studies``."""
+    """Return the folder of a report of ``studies`` and a handmade study."""
     study = fake(VERDICTS.name, VERDICTS.title, "Any.", measure)
     write_report(run((study, *studies), (engine,), folder=folder / "data"), folder)
     return folder
 
 
 def with_first(**changes):
-    """Measure as always, but for the first two claims: numbers beside the old ones."""
+    """Measure as before, except for changed numbers in the first two claims."""
 
     def measure(engine):
         first, second, *others = measure_verdicts(engine).claims
@@ -68,7 +68,7 @@ def test_what_stays_within_both_error_bars_has_not_moved(old, tmp_path, capsys):
 def test_what_leaves_them_has_moved_though_both_agree(old, tmp_path, capsys):
     verdicts = measure_verdicts(GOOD).claims
     semicircle = verdicts[1].measured.copy()
-    semicircle[4] -= 5e-10  # allowed are 2e-10 of each report
+    semicircle[4] -= 5e-10  # each report allows 2e-10
     wide = replace_measured(verdicts[1], semicircle)
     new = written(tmp_path, lambda engine: Findings((verdicts[0], wide_as_it(wide), *verdicts[2:])))
     found, lines = told(capsys, old, new)
@@ -81,7 +81,7 @@ def test_what_leaves_them_has_moved_though_both_agree(old, tmp_path, capsys):
 
 
 def wide_as_it(one):
-    """Return a claim that allows what it is off by, a little."""
+    """Return a claim whose difference is slightly within its error."""
     predicted = one.predicted.copy()
     predicted[4] = one.measured[4]
     return claim(one.sentence, one.engine, predicted, one.measured, 2.4e-10, equation=one.equation)

@@ -1,4 +1,4 @@
-"""What programs read of a report: results by their published schema, tables with every number, to the last bit."""
+"""Files of a report for programs: results with a published schema, and tables in full precision."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -66,7 +66,7 @@ def test_all_numbers_of_a_claim_come_back_from_its_table(reported):
 
 
 def mixed(engine):
-    """A claim with numbers of two units, one of them missing, which an engine makes twice."""
+    """A claim with numbers in two units, one of them missing, that an engine makes twice."""
     parts = {"unit": "m, rad", "axes": (("a", "b"), ("x in m", "angle in rad")), "size": [1.0, np.inf]}
     values = np.array([[0.1, np.nan], [0.3, 1.0 / 3.0]])
     return Findings(

@@ -17,7 +17,7 @@ WIDTHS = 1280, 400
 
 @contextmanager
 def page_at(width, browser, reported):
-    """Yield the page at a width, with the addresses that it asked for."""
+    """Yield the page at a width, with the addresses that it requested."""
     page = browser.new_page(viewport={"width": width, "height": 800})
     asked = []
     page.on("request", lambda sent: asked.append(sent.url))
@@ -28,13 +28,13 @@ def page_at(width, browser, reported):
 
 @pytest.fixture(params=WIDTHS)
 def opened(request, browser, reported):
-    """The page, and the addresses that it asked for."""
+    """The page, and the addresses that it requested."""
     with page_at(request.param, browser, reported) as opened:
         yield opened
 
 
 def overhang(page):
-    """How far the page is wider than the window."""
+    """Return the excess of the page's width over the window's."""
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
 
 
@@ -50,7 +50,7 @@ NAMED = """[...document.querySelectorAll('table')].every(table => table.caption)
 def test_the_page_fits_is_legible_has_names_and_asks_nothing_of_the_network(opened):
     page, asked = opened
     assert overhang(page) <= 0
-    assert page.evaluate(TABLES_OUTSIDE) == 0  # or they scroll in their own container
+    assert page.evaluate(TABLES_OUTSIDE) == 0  # or inside a scrolling container
     assert page.evaluate(SMALLEST) >= 11
     assert page.evaluate(NAMED)
     assert asked
@@ -59,9 +59,7 @@ def test_the_page_fits_is_legible_has_names_and_asks_nothing_of_the_network(open
 
 def test_the_first_screen_shows_totals_what_differs_and_a_grade_for_each_engine(opened):
     page, _ = opened
-    page.evaluate(
-        "scrollTo(0, document.getElementById('glance').offsetTop)"
-    )  # below the contents on a telephone
+    page.evaluate("scrollTo(0, document.getElementById('glance').offsetTop)")  # below the contents on a phone
     top = page.locator("#glance").bounding_box()["y"]
     table = page.locator("#engines table").bounding_box()
     assert page.locator("#totals").bounding_box()["y"] < table["y"] < top + 500
@@ -118,7 +116,7 @@ def test_without_a_script_all_can_be_read(browser, reported):
 
 
 def shown(page):
-    """Return the claims that a filter leaves."""
+    """Return the claims that a filter shows."""
     return page.evaluate("[...document.querySelectorAll('details.claim:not([hidden])')].map(one => one.id)")
 
 
@@ -209,7 +207,7 @@ def test_text_stands_out_from_its_paper(browser, reported, scheme):
 
 
 def test_the_print_fits_on_its_paper(browser, reported):
-    page = browser.new_page(viewport={"width": 688, "height": 1000})  # A4 within its margins
+    page = browser.new_page(viewport={"width": 688, "height": 1000})  # A4 without margins
     page.goto((reported[1] / "index.html").as_uri())
     page.emulate_media(media="print")
     assert overhang(page) <= 0

@@ -1,4 +1,4 @@
-"""A text quotes what a claim measured, with the digits that its error allows, or says that it was not measured."""
+"""Quotes of measured numbers in texts, with the digits that their errors allow."""
 
 import re
 from dataclasses import replace
@@ -66,7 +66,7 @@ def test_a_claim_has_no_name_for_an_element_that_it_does_not_have():
 
 
 def quoted(engine):
-    """Return one claim that agrees, with a name."""
+    """Return an agreeing claim with named numbers."""
     return Findings((claim("The radius", engine.name, 0.05, 0.05 + 1e-8, 1e-7, **NAMED),))
 
 

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 
 class Cells(HTMLParser):
-    """Collects what the cells of all tables say: [class of table, id of body, label, text, numbers]."""
+    """Collects the cells of all tables: [class of table, id of body, label, text, numbers]."""
 
     def __init__(self, page):
         super().__init__()
@@ -60,7 +60,7 @@ class Cells(HTMLParser):
 
 
 def claims_of(page):
-    """Return what is said of each engine beside each claim, by the claim's id."""
+    """Return the texts for each engine next to each claim, by the claim's id."""
     found = {}
     for identity, said in re.findall(
         r'<details class="claim" id="([^"]*)".*?<span class="cells">(.*?)</summary>', page, flags=re.DOTALL
@@ -126,7 +126,7 @@ def test_an_array_shows_its_worst_element(results, cells):
 
 
 def measure_openly(engine):
-    """Return two open claims: in the first the element nearest to failing is not the least certain one."""
+    """Return two inconclusive claims; in the first, the element nearest to failing is not the least certain one."""
     numbers = ((1e-9, [1e-9, 0.75, 1e-9]), (0.4, [0.5, 0.5, 0.5]))
     claims = (made("Open", engine.name, np.zeros(3), [off, 0.0, 0.0], errors) for off, errors in numbers)
     return Findings(tuple(claims))
@@ -182,13 +182,13 @@ def test_the_page_shows_the_figures_of_the_folder(page, reported):
     for name, start in files.items():
         assert (reported[1] / "figures" / name).read_bytes().startswith(start)
     assert '<img src="figures/fake-radius.svg" loading="lazy"' in page
-    assert '<img src="figures/fake-motion.png" loading="lazy"' in page  # nothing moves until it is asked for
+    assert '<img src="figures/fake-motion.png" loading="lazy"' in page  # animations start on request
     assert '<a class="play" href="figures/fake-motion.gif">' in page
     assert "Radius of the equilibrium over the load: both engines on the formula (3)." in page
 
 
 SAID = (
-    "friction-discs report verdicts --engine good",  # how to repeat it
+    "friction-discs report verdicts --engine good",  # command that repeats the study
     "friction-discs report agreement --engine failing",
     "towards the centre of the disc, <code>rest(load) &lt; X₀</code>.</p>",
     "mass = 1 kg, stiffness = 1 N/m, damping = 0.1 N s/m, disc_speed = 0.7 rad/s, offset = 0.1 m.",
@@ -247,7 +247,7 @@ def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
 
 @pytest.fixture(scope="module")
 def partly_reported(tmp_path_factory, all_in_this_process):
-    """Matrix and folder of a report with engines that simulate all, some, and a pin only."""
+    """Matrix and folder of a report with engines that simulate all systems, some systems, and only a pin."""
     folder = tmp_path_factory.mktemp("partly")
     engines = (
         Engine("all", straight, EVERY_KIND),
@@ -275,7 +275,7 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
     assert summary(matrix) == "7 agree on independent evidence; 0 differ, 0 inconclusive, 5 not simulated"
-    assert set(result.data(RING_ONLY)) == {"all"}  # the others have nothing to draw
+    assert set(result.data(RING_ONLY)) == {"all"}  # other studies have no figures
 
 
 def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
@@ -283,7 +283,7 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
     reason = "some does not simulate a disc on a continuous ring"
     (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
     assert legend.count(reason) == 1
-    assert page.count(f": {reason}.") == 2  # one a study
+    assert page.count(f": {reason}.") == 2  # one per study
     assert (
         page.count("2 claims: pins does not simulate a disc on single points or a disc on a continuous ring")
         == 1
@@ -292,7 +292,7 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
     assert overview == [
         "2 of 2 agree",  # independent evidence
         "2 of 2 agree, 2 not simulated",
-        "2 exact",  # how finely
+        "2 exact",  # grades
         "2 of 2 agree, 1 not simulated",
         "1 not simulated",
     ]
@@ -314,7 +314,7 @@ GIVEN = {
     "fig11": ["0.1 m"],
     "drivetrain-frozen": ["10 %", "1.4 N", "0.2 N"],
 }
-"""What a finding says of parameters, which no claim measures."""
+"""Numbers of parameters in findings, which no claim measures."""
 
 
 def test_numbers_of_a_finding_are_quoted_from_claims():
@@ -361,7 +361,7 @@ def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
 
 
 def settings():
-    """Return what two engines of others made of two claims: one agrees with both, the other with neither."""
+    """Return recorded results of two engines for two claims: one agrees with both, the other with neither."""
     settings = {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}
     return [
         recorded(
@@ -375,7 +375,7 @@ def settings():
 
 @pytest.fixture(scope="module")
 def recorded_reported(tmp_path_factory, all_in_this_process):
-    """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
+    """Exit status and folder of a report of an agreeing study with a recorded engine that differs."""
     folder = tmp_path_factory.mktemp("recorded")
     study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": settings})
     arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]

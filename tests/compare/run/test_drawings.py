@@ -1,4 +1,4 @@
-"""What is drawn of equal data by equal code is drawn once; anything else is drawn again."""
+"""Reuse of stored drawings: only equal data and equal code give the same drawing."""
 
 import shutil
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Run one study in the same folder as before; return its drawing, and whether it was drawn now."""
+    """Run a study in the same folder as before; return its drawing, and whether it was redrawn."""
     drawn = []
 
     def draw(study, data):

@@ -1,4 +1,4 @@
-"""What studies ask for, as far as it does not depend on the answers."""
+"""Motions of studies that do not depend on the answers."""
 
 import json
 from functools import lru_cache

@@ -1,4 +1,4 @@
-"""From which commit, versions and processor results are."""
+"""Commit, versions and processor of results."""
 
 import json
 import platform
@@ -16,7 +16,7 @@ from compare.run import provenance
 
 @pytest.fixture
 def installed(monkeypatch, tmp_path):
-    """The project without a repository; return what says how its distribution was installed."""
+    """The project without a repository; return a function that sets the record of its installation."""
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
 
     def as_said(content):

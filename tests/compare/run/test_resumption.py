@@ -1,4 +1,4 @@
-"""Findings are resumed while sources, libraries and the engine's own files are the same: what the stamp sees."""
+"""Stamps of findings change with sources, libraries and the engine's own files."""
 
 import importlib
 import sys
@@ -20,7 +20,7 @@ from compare.studies import STUDIES
 
 @pytest.fixture
 def code(tmp_path, monkeypatch):
-    """Write modules in place of older ones, which are forgotten, into a folder where imports find them."""
+    """Write modules into an import folder and forget their older versions."""
     folder = tmp_path / "code"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
@@ -46,7 +46,7 @@ def code(tmp_path, monkeypatch):
 
 
 def stamp_of(module, *promises, folder=""):
-    """Return the stamp of the engine that is the function ``simulate`` of a module."""
+    """Return the stamp of the function ``simulate`` of a module as an engine."""
     return engine_stamp(Engine("mine", ByName(module, "simulate", str(folder)), *promises))
 
 
@@ -123,7 +123,7 @@ OUTSIDE = {
     "an FMU": (lambda folder: Fmu(f"{folder}/model.fmu"), "model.fmu"),
     "a motion in a file": (MotionFiles, "0f3a.csv"),
 }
-"""Engines from elsewhere by their kind, with the file that is changed."""
+"""Foreign engines by kind, with the file to change."""
 
 
 @pytest.mark.parametrize(("function", "changed"), OUTSIDE.values(), ids=OUTSIDE)
@@ -168,7 +168,7 @@ def test_any_source_and_any_library_changes_the_stamp(changed, tmp_path, monkeyp
     else:
         with open(tmp_path / changed, "a", encoding="utf-8") as stream:
             stream.write("\n")
-        stamp._sources.cache_clear()  # a process has the code that it was started with
+        stamp._sources.cache_clear()  # a process keeps the code it started with
     assert stamp.stamp() != before
 
 

@@ -25,7 +25,7 @@ BOTH = (fake.GOOD, fake.FAILING)
 
 @pytest.fixture(scope="module")
 def both_ways(tmp_path_factory):
-    """Runs in one and in two processes, of which one dies, and the progress that the first one told of."""
+    """Runs in one process and in two, one of which dies, and the progress reported by the first run."""
     told = []
     one = run(
         (fake.VERDICTS, fake.AGREEMENT),
@@ -60,9 +60,9 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_way
 
 
 def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
-    """The clock jumps once the measurement runs, first to just before the limit, then beyond it.
+    """The clock jumps during the measurement, first to just before the limit, then beyond it.
 
-    How long its process took to start does not matter.
+    The time that the process takes to start does not count.
     """
     running, limit, wait = tmp_path / "running", 1000.0, workers.wait
     monkeypatch.setenv("RUNNING", str(running))
@@ -133,7 +133,9 @@ def test_resume_computes_only_what_is_not_there_by_the_same_code(tmp_path, count
 
 def test_progress_counts_to_its_end(both_ways):
     _, _, told = both_ways
-    assert [done for done, _, _ in told] == list(range(8))  # theory, twice two engines, the figures of both
+    assert [done for done, _, _ in told] == list(
+        range(8)
+    )  # theory, two engines for each of two studies, and the figures of both
     assert {total for _, total, _ in told} == {7}
 
 
@@ -152,7 +154,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
     )
     wait_for(process, running)
     wait_until(lambda: list(store_of(output).glob("unending--good--*.json.xz")))
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
+    os.killpg(process.pid, signal.SIGINT)  # to all processes, as a terminal does
     out, err = process.communicate(timeout=PATIENCE)
     assert_that_the_rest_is_missing(process.returncode, out, err, output)
     wait_until(lambda: ended(process.pid))
@@ -205,7 +207,7 @@ def test_no_process_outlives_a_killed_one(tmp_path):
 
 
 def ended(group):
-    """Whether every process of the group has ended; an ended one may wait to be collected."""
+    """Return whether every process of the group has ended; zombies count as ended."""
     try:
         os.killpg(group, 0)
     except ProcessLookupError:

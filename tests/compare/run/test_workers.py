@@ -1,4 +1,4 @@
-"""Processes that work for others: what they import, and what is known of their end."""
+"""Worker processes: their imports, and the reasons for their end."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ from compare.run.workers import Failure, Workers
 
 
 def last_words(status):
-    """End this process suddenly, with two lines on its standard error."""
+    """End this process abruptly, after two lines on its standard error."""
     os.write(2, "what comes before\nthe last word: 1 µm\n".encode())
     os._exit(status)
 
@@ -59,7 +59,7 @@ POSIX_ENDS = [
 
 @pytest.fixture(scope="module")
 def workers():
-    """One process that works for several tests, and another one when it has ended."""
+    """One process for several tests, replaced if it ends."""
     with Workers() as workers:
         yield workers
 
@@ -102,7 +102,7 @@ def test_temporary_files_of_a_process_go_with_it_however_it_ends(end, argument, 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The current folder, with an engine that has been imported from there."""
+    """The current folder, with an engine that was imported from it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     (tmp_path / "engine_of_this_folder.py").write_text("def simulate(): return 42\n")
@@ -167,7 +167,7 @@ def start_a_child():
 
 
 def is_alive(number):
-    """Whether a process runs; one that has ended may wait for its new parent."""
+    """Return whether a process runs; zombies do not."""
     try:
         return "Z" not in Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:

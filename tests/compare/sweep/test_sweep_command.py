@@ -1,4 +1,4 @@
-"""The command line of sweeps: what it prints and draws, and stores that it leaves alone."""
+"""Command line of sweeps: output, figures, and stores that it must not overwrite."""
 
 import re
 from dataclasses import asdict
@@ -17,7 +17,7 @@ from compare.sweep.files import Files
 from compare.sweep.store import SweepStore
 from reference_model.orbits.shock import Shock
 
-SMALL = ["--until", "20"]  # most are undecided then
+SMALL = ["--until", "20"]  # leaves most undecided
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
 
 
@@ -35,7 +35,7 @@ def test_help_has_the_axes_and_distributions_that_there_are(capsys):
 
 @pytest.mark.parametrize("more", [[], ["--resume"]])
 def test_of_two_commands_that_begin_at_once_the_later_one_is_told(more, tmp_path, monkeypatch, capsys):
-    there = [set(), {"zarr.json"}]  # it is there when the store is made, and not when the command looks
+    there = [set(), {"zarr.json"}]  # another process creates the store after the check
     monkeypatch.setattr(Files, "inside", lambda self, folder="": there.pop(0))
     assert cli.status([*BASIN, "--output", str(tmp_path), *more]) == 2
     place = str(tmp_path / STORE)
@@ -58,7 +58,7 @@ def files(folder):
 
 
 def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch):
-    """All of it but a cluster of a batch system, which is the last block."""
+    """Run the examples except the last block, which needs a batch system."""
     (tmp_path / "basin").symlink_to(finished[0])
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")

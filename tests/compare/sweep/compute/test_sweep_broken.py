@@ -1,4 +1,4 @@
-"""What is said of stores whose files are missing, cut, or have other contents: all are mended or refused.
+"""Messages for stores with missing, truncated or changed files; all are repaired or rejected.
 
 ``test_sweep_store_states`` damages every file of a store.
 """
@@ -29,7 +29,7 @@ def most_may_be_undecided():
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The folder of a finished sweep whose store is a folder, and what is in it."""
+    """The folder of a finished sweep with an unpacked store, and its contents."""
     folder = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(store, "SMALL", 0)
@@ -77,7 +77,7 @@ def another_seed(path):
 
 
 def foreign(**changes):
-    """Return what makes an array another one, in a group whose checksum is right."""
+    """Return a function that changes the description of an array and corrects the group's checksum."""
 
     def described(path):
         path.write_text(json.dumps(json.loads(path.read_text()) | changes))
@@ -87,7 +87,7 @@ def foreign(**changes):
     return described
 
 
-PICKLE = [{"name": "numcodecs.pickle"}]  # runs code of whoever wrote the array
+PICKLE = [{"name": "numcodecs.pickle"}]  # may run foreign code
 
 MENDED = [
     (foreign(codecs=PICKLE), "result/time/zarr.json", "result"),
@@ -124,7 +124,7 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.filterwarnings("ignore:Object at .* is not recognized")  # zarr lists the folder
+@pytest.mark.filterwarnings("ignore:Object at .* is not recognized")  # because zarr lists the folder
 def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
     for folder in ("", "result", "result/time", "round-0/end"):
         (copied / STORE / folder / ".zarray").write_text(
@@ -162,7 +162,7 @@ def test_what_is_gone_is_computed_again(copied, whole, capsys):
 
 @pytest.fixture
 def packed(copied, monkeypatch, capsys):
-    """The same sweep as one file."""
+    """The same sweep, packed into one file."""
     monkeypatch.setattr(store, "SMALL", 10)
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     capsys.readouterr()

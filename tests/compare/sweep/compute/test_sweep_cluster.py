@@ -25,14 +25,14 @@ from compare.sweep.store import SweepStore
 def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
     undisturbed, tmp_path, monkeypatch, capsys
 ):
-    """In an object store, that of fsspec for files, which needs no server."""
-    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # the chunks stay files
+    """Store in fsspec's local file system, which needs no server."""
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     url = f"file://{tmp_path}"
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(url, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
         written = marks(tmp_path)
-        assert len(written) >= 11  # of workers, which go on for a moment
+        assert len(written) >= 11  # workers continue for a moment
 
         code = resumed(url, "--scheduler", local.address)
         assert local.workers[0].poll() == -signal.SIGKILL
@@ -54,7 +54,7 @@ def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
 ):
     with cluster(tmp_path, workers=1) as local, monkeypatch.context() as patch:
         for owner, name in ((Chunks, "write"), (Cluster, "run")):
-            patch.setattr(owner, name, getattr(owner, name))  # to be undone
+            patch.setattr(owner, name, getattr(owner, name))  # restored after the test
         signalling("SIGKILL", local.scheduler.pid, 10)
         code = cli.status([*LONG, *CHUNKS, "--output", str(tmp_path), "--scheduler", local.address])
     out, err = capsys.readouterr()
@@ -67,7 +67,7 @@ def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
 
 def test_a_scheduler_that_is_not_there_is_told_in_time(tmp_path, capsys):
     with socket.socket() as other:
-        other.bind(("127.0.0.1", 0))  # so that nobody else listens there
+        other.bind(("127.0.0.1", 0))  # reserves the port without listening
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
         clock = time.monotonic()
         code = cli.status([*LONG, "--scheduler", address, "--output", str(tmp_path)])
@@ -109,7 +109,7 @@ def store(tmp_path):
 
 
 class Elsewhere(InProcess):
-    """Workers where something is not what it is here."""
+    """Workers with a difference from this process."""
 
     def __init__(self, otherwise):
         self.otherwise = otherwise
@@ -138,6 +138,6 @@ def test_who_comes_second_does_not_make_the_store_again(store):
     before = store.files.read(DESCRIPTION)
     with pytest.raises(FileExistsError):
         SweepStore.create(store.path, store.plan, 2)
-    with pytest.raises(FileExistsError):  # also where both have found nothing
+    with pytest.raises(FileExistsError):  # also if both failed
         store.files.claim(DESCRIPTION, b"other")
     assert store.files.read(DESCRIPTION) == before

@@ -43,7 +43,7 @@ def test_curves_of_a_disc_pass_through_the_crossings_that_the_reference_finds():
             distance = np.hypot(
                 (found[:, 0] - FIG11.disc_speed) / (x.high - x.low), (found[:, 1] - load) / (y.high - y.low)
             )
-            assert np.min(distance) < 0.03  # that of neighbouring points
+            assert np.min(distance) < 0.03  # distance of neighbouring points
 
 
 def test_a_plane_that_the_reference_does_not_know_has_the_curves_that_remain():

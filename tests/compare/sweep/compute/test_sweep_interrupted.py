@@ -1,4 +1,4 @@
-"""Sweeps that are killed, interrupted, or run out of disk, as processes of their own."""
+"""Sweeps in separate processes that are killed, interrupted or run out of disk space."""
 
 import signal
 from shutil import copytree
@@ -9,7 +9,7 @@ from long_sweeps import assert_same, content, finished_by, long_sweep, marks, re
 
 @pytest.fixture(scope="module")
 def interrupted(undisturbed, tmp_path_factory):
-    """The folder of a sweep that was interrupted from the keyboard, its exit status and what it said."""
+    """The folder of a sweep interrupted by Ctrl-C, its exit status and its output."""
     folder = tmp_path_factory.mktemp("interrupted")
     return folder, finished_by(long_sweep(folder, signalled=("SIGINT", 0, 11)))
 
@@ -26,9 +26,9 @@ def test_an_interrupt_from_the_keyboard_is_told(interrupted):
 
 
 def said(err):
-    """Return the lines on standard error but for those of a slow machine and of old versions of a library.
+    """Return the lines on standard error, except for compilation notes and warnings at import.
 
-    The first say that something is compiled, which takes long to load there; the others are warnings at import.
+    Compilation notes appear on slow machines, warnings with old versions of a library.
     """
     lines = (line for line in err.splitlines() if not line.startswith((" ", "Compiling for this machine")))
     return [line for line in lines if "Warning" not in line]
@@ -40,13 +40,13 @@ def test_interrupted_and_then_killed_a_sweep_comes_to_the_same_results(undisturb
     assert finished_by(process)[0] == -signal.SIGKILL
     now = times(unfinished)
     assert len(now) == len(written) + 10
-    assert {mark: now[mark] for mark in written} == written  # nothing was written once more
+    assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
     assert resumed(unfinished) == 0
     assert_same(content(unfinished / "sweep.zarr"), undisturbed)
 
 
 def times(folder):
-    """Return when the files of all chunks that are whole were written."""
+    """Return the times at which the files of complete chunks were written."""
     chunks = folder / "sweep.zarr" / "round-0"
     return {
         mark: [(chunks / name / "c" / mark).stat().st_mtime_ns for name in ("end", "time", "steps")]

@@ -1,4 +1,4 @@
-"""Ends of single trajectories of the plain reference, for motions whose ends the theory knows."""
+"""Ends of single trajectories of the plain reference for motions with known ends."""
 
 from dataclasses import replace
 
@@ -77,7 +77,7 @@ def test_a_motion_that_is_simulated_on_is_the_same_as_at_once(system, start):
 
 
 def recomputed(monkeypatch, start, time, end):
-    """Return what a start of Fig. 5 comes to and the durations that were simulated for it."""
+    """Return the end of a start of Fig. 5, and the durations of its simulations."""
     durations = []
 
     def watching(function):

@@ -1,4 +1,4 @@
-"""Sweeps in this process: what is in their stores, and resumption."""
+"""Sweeps in this process: contents of their stores, and resumption."""
 
 import json
 import time
@@ -45,7 +45,7 @@ def silent(what, done, total):
 
 
 class Recording(InProcess):
-    """Remembers the arguments of its tasks, and may be interrupted after some of them."""
+    """Records the arguments of its tasks, and may be interrupted after some of them."""
 
     def __init__(self, until=10**9):
         self.calls, self.until = [], until
@@ -189,7 +189,7 @@ def test_likelihood_of_the_whirl_and_what_it_depends_on(tmp_path):
     )
     by_speed, by_mass = (result["sobol_total"].sel(uncertain=name).values for name in ("vx", "mass"))
     assert np.all(by_speed > 10.0 * np.abs(by_mass))
-    for i in (0, 200, 511):  # what is labelled belongs together
+    for i in (0, 200, 511):  # labelled arrays are consistent
         pin = replace(FIG5, mass=float(result["mass"][i]))
         start = [0.1, 0.0, float(result["vx"][i]), 0.0]
         motion = plain_trajectory(pin, np.array(start), 1.0, 400.0, 1e-9)

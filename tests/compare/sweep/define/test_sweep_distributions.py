@@ -9,7 +9,7 @@ from compare.sweep.distributions import Uncertain, uniform_rows
 
 DRAWS = 20_000
 NEVER = 1e-6
-"""Probability with which a right sample would be refused."""
+"""Probability of rejecting a correct sample."""
 
 
 @pytest.mark.parametrize(
