@@ -63,7 +63,9 @@ def list_studies(context: typer.Context) -> None:
 
 
 def errata() -> None:
-    """Print the errors in the paper's formulas, their corrections and numerical evidence.
+    """Print errors in the paper's formulas with corrections.
+
+    Each correction comes with numerical evidence.
 
     \b
     Example:

@@ -33,7 +33,9 @@ WriteBaseline = Annotated[
 
 
 def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBaseline = None) -> int:
-    """Compare two reports: list claims that changed by more than their error bars, are new or are missing.
+    """Compare two reports.
+
+    The command lists claims that changed by more than their error bars, are new or are missing.
 
     The exit status is 0 if no claim outside the baseline changed, got worse or is missing, and 1 otherwise. It is 2
     for bad input, and 4 if an engine of NEW has no verdict, so nothing was compared.

@@ -37,10 +37,11 @@ class Unit:
 
 @export_fmu.callback()
 def export() -> None:
-    """Write a contact as a functional mock-up unit (FMU) for Simulink, Dymola and other FMI importers.
+    """Write a contact as a functional mock-up unit (FMU).
 
-    The unit supports model exchange and co-simulation. It contains its C sources and a library for this platform.
-    Values from --set are its initial parameters; an importer may change them.
+    Simulink, Dymola and other FMI importers can read the unit. It supports model exchange and co-simulation. It
+    contains its C sources and a library for this platform. Values from --set are its initial parameters; an importer
+    may change them.
 
     \b
     Examples:
@@ -52,7 +53,9 @@ def export() -> None:
 @export_fmu.command("pin", cls=Command)
 @taking(Unit)
 def export_pin(unit: Unit) -> None:
-    """Write the pin on a rotating disc; the defaults are the second case of Fig. 5.
+    """Write the pin on a rotating disc.
+
+    The defaults are the second case of Fig. 5.
 
     \b
     Parameters in SI units: those of `friction-discs simulate pin`, the initial state x, y, vx, vy, and
@@ -68,7 +71,9 @@ def export_pin(unit: Unit) -> None:
 @export_fmu.command("disc", cls=Command)
 @taking(Unit)
 def export_disc(unit: Unit) -> None:
-    """Write the friction disc on a ring or on points; the defaults are Fig. 11 with X0 = 0.
+    """Write the friction disc on a ring or on points.
+
+    The defaults are Fig. 11 with X0 = 0.
 
     \b
     Parameters in SI units: those of `friction-discs simulate disc`, the initial state x, y, angle, vx, vy, spin, and

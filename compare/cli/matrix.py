@@ -48,7 +48,7 @@ def matrix(
     output: Folder = Path("matrix"),
     jobs: Jobs = None,
 ) -> int:
-    """Identify the friction laws of engines and measure how fast their errors fall.
+    """Identify the friction laws of engines and their convergence.
 
     Three tests with blocks (sliding, pulled, slip that turns) identify the law within seconds. The motions of the
     recorded engines follow, each with four steps or tolerances. The command prints findings for each engine and a

@@ -34,11 +34,11 @@ def plan(
     output: Folder = Path("plan"),
     jobs: Jobs = None,
 ) -> int:
-    """Write the motions of studies as files, to be simulated by an engine that this command cannot run.
+    """Write the motions of studies as files for another engine.
 
-    Add NAME.csv to each NAME.json in the format of simulate --output: one line per time, with the time and the
-    state. Then judge the answers with report --engine files:DIR. Missing and incomplete answers are not scored.
-    Claims whose motions depend on earlier answers are left out.
+    They are for an engine that this project cannot run. Add NAME.csv to each NAME.json in the format of simulate
+    --output: one line per time, with the time and the state. Then judge the answers with report --engine files:DIR.
+    Missing and incomplete answers are not scored. Claims whose motions depend on earlier answers are left out.
 
     \b
     Examples:

@@ -112,10 +112,11 @@ def report(
     jobs: Jobs = None,
     resume: Resume = False,
 ) -> int:
-    """Measure the claims of studies; write index.html, results.json, junit.xml and figures.
+    """Measure the claims of studies and write a report.
 
-    The full report goes into the folder report. A partial one (some studies or engines, one claim, the quick level)
-    goes into report-part. Choose another folder with --output.
+    The report consists of index.html, results.json, junit.xml and figures. A full report goes into the folder report,
+    a partial one (some studies or engines, one claim, the quick level) into report-part. Choose another folder with
+    --output.
 
     The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
     if too few claims agree. It is 4 if an engine named with --engine has no verdict, or omits a claim without a

@@ -78,7 +78,9 @@ def simulate_system() -> None:
 @simulate.command("pin", cls=Command)
 @taking(Request)
 def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
-    """Simulate a pin and write its motion; the defaults are the second case of Fig. 5.
+    """Simulate a pin and write its motion.
+
+    The defaults are the second case of Fig. 5.
 
     \b
     Parameters in SI units, with their defaults:
@@ -98,7 +100,9 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
 @simulate.command("disc", cls=Command)
 @taking(Request)
 def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) -> None:
-    """Simulate a friction disc and write its motion; the defaults are Fig. 11 with X0 = 0.
+    """Simulate a friction disc and write its motion.
+
+    The defaults are Fig. 11 with X0 = 0.
 
     \b
     Parameters in SI units, with their defaults; contact_points=none is the continuous ring:

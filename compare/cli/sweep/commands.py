@@ -56,7 +56,10 @@ sweep = typer.Typer(rich_markup_mode=None)
 
 @sweep.callback()
 def sweep_command() -> None:
-    """Simulate many trajectories: basins of attraction, maps, uncertain parameters, motions along a parameter.
+    """Simulate many trajectories.
+
+    Sweeps compute basins of attraction, maps over parameters, effects of uncertain parameters and motions along a
+    parameter.
 
     The defaults are Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results are written chunk
     by chunk into a Zarr store of labelled arrays, which xarray can open. After an interruption, repeat the command
@@ -82,9 +85,10 @@ def sweep_basin(
     coarse: Coarse = None,
     random: RandomStarts = None,
 ) -> int:
-    """Compute basins of attraction in a plane of two state components, and the share of each end.
+    """Compute basins of attraction in a plane of initial states.
 
-    The command starts with a coarse grid and refines it where neighbouring points end differently.
+    The results are the end of each start and the share of each end. The command begins with a coarse grid and refines
+    it where neighbouring points end differently.
 
     \b
     Default axes:
@@ -117,7 +121,9 @@ def sweep_basin(
 @sweep.command("map", cls=Command)
 @taking(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
-    """Map the ends of motions over a plane of two parameters, together with the theory's boundaries.
+    """Map the ends of motions over a plane of two parameters.
+
+    The map also shows the theory's boundaries.
 
     \b
     Default axes:
@@ -146,7 +152,9 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 @sweep.command("uncertainty", cls=Command)
 @taking(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
-    """Compute the probability and the radius of the whirl, and their sensitivities to uncertain parameters.
+    """Compute the effects of uncertain parameters and starts.
+
+    The results are the probability of the whirl, the distribution of its radius, and the sensitivities of both.
 
     \b
     Distributions, in SI units:
@@ -177,10 +185,10 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 def sweep_continuation(
     request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
 ) -> int:
-    """Find the ends of random starts along one parameter, and connect them into branches.
+    """Follow the ends of random starts along one parameter.
 
-    The starts are the same at each value. The figure also shows the stable and unstable motions that formulas and
-    continuation give.
+    The starts are the same at each value, and the command connects their ends into branches. The figure also shows
+    the stable and unstable motions that formulas and continuation give.
 
     \b
     Default axis and starts:
@@ -215,7 +223,7 @@ def sweep_continuation(
 def sweep_figures(
     folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="Folder or URL of a finished sweep.")],
 ) -> int:
-    """Redraw the figures of a finished sweep and print its results.
+    """Redraw and print the results of a finished sweep.
 
     \b
     Example:
@@ -293,10 +301,11 @@ AGREEMENT = 1e-6
 
 
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
-    """Find the smallest shock that moves a pin from its self-centred equilibrium to the whirl.
+    """Find the smallest shock that moves a pin to the whirl.
 
-    The boundary of the basin is the stable manifold of a stick–slip orbit. The shock is the smallest change of
-    velocity that reaches it. A bisection by simulated motions checks the result.
+    The pin starts in its self-centred equilibrium. The boundary of the basin is the stable manifold of a stick–slip
+    orbit. The shock is the smallest change of velocity that reaches it. A bisection by simulated motions checks the
+    result.
 
     \b
     Example:
