@@ -87,13 +87,13 @@ def say(sentence: str, result: int) -> int:
 
 # --- Progress: a bar on a terminal; elsewhere, measurements print a line from time to time.
 
-SELDOM = 10.0
+LINE_INTERVAL = 10.0
 """Time between two lines of progress without a terminal, in s."""
 
 
 @contextmanager
 def measurements() -> Iterator[Callable[[int, int, str], None]]:
-    """Show the number of finished measurements: a bar on a terminal, else a line every ``SELDOM`` s."""
+    """Show the number of finished measurements: a bar on a terminal, else a line every ``LINE_INTERVAL`` s."""
     if not sys.stderr.isatty():
         yield _lines()
         return
@@ -111,7 +111,7 @@ def _lines() -> Callable[[int, int, str], None]:
 
     def show(done: int, total: int, name: str) -> None:
         nonlocal last
-        if time.monotonic() - last >= SELDOM:
+        if time.monotonic() - last >= LINE_INTERVAL:
             last = time.monotonic()
             print(f"{done} of {total}: {name}", file=sys.stderr, flush=True)
 

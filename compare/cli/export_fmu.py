@@ -9,7 +9,7 @@ from typing import Annotated, Literal, cast
 import typer
 
 from compare.cli.command import BadInputError, Command, EngineFailedError, refused
-from compare.cli.options import Settings, changes_of, taking, whole
+from compare.cli.options import Settings, changes_of, whole, with_options
 from compare.output.text_files import check_writable
 
 export_fmu = typer.Typer(rich_markup_mode=None)
@@ -51,7 +51,7 @@ def export() -> None:
 
 
 @export_fmu.command("pin", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_pin(unit: Unit) -> None:
     """Write the pin on a rotating disc.
 
@@ -69,7 +69,7 @@ def export_pin(unit: Unit) -> None:
 
 
 @export_fmu.command("disc", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_disc(unit: Unit) -> None:
     """Write the friction disc on a ring or on points.
 
@@ -88,7 +88,7 @@ def export_disc(unit: Unit) -> None:
 
 
 @export_fmu.command("clutch", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_clutch(unit: Unit) -> None:
     """Write a clutch between two flanges.
 

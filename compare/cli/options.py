@@ -137,7 +137,7 @@ Resume = Annotated[
 ]
 
 
-def taking(
+def with_options(
     group: type[Group], **defaults: Any
 ) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
     """Add the fields of the dataclass ``group`` to a command as options.

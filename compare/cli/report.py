@@ -133,7 +133,7 @@ def report(
     from compare.run.runner import loaded
     from compare.run.workers import Workers
 
-    studies = _asked(context, names or [], claim, level, resume)
+    studies = _requested_studies(context, names or [], claim, level, resume)
     output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
     with refused(), Workers() as workers:
         chosen = loaded(engine or [], workers)
@@ -170,7 +170,7 @@ def store_of(output: Path) -> Path:
     return output.resolve().with_name(f"{output.resolve().name}.data")
 
 
-def _asked(
+def _requested_studies(
     context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
 ) -> tuple[Study, ...]:
     """Return the studies to measure; for ``--claim``, its study. Reject options that conflict with it."""

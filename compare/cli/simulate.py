@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, finite, positive, taking, whole
+from compare.cli.options import Settings, Tolerance, changed, finite, positive, whole, with_options
 from compare.output.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def simulate_system() -> None:
 
 
 @simulate.command("pin", cls=Command)
-@taking(Request)
+@with_options(Request)
 def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
     """Simulate a pin and write its motion.
 
@@ -98,7 +98,7 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
 
 
 @simulate.command("disc", cls=Command)
-@taking(Request)
+@with_options(Request)
 def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) -> None:
     """Simulate a friction disc and write its motion.
 
@@ -143,7 +143,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             if output is not None:
                 _check_file(output)
         trajectory = workers.ask(
-            _told, chosen, system, state, times, request.tolerance, write is not write_csv
+            _simulated, chosen, system, state, times, request.tolerance, write is not write_csv
         )
     if isinstance(trajectory, Failure):
         raise EngineFailedError(f"engine {chosen.name!r} failed: {trajectory}")
@@ -158,7 +158,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
         raise BadInputError(_unwritable(output, error)) from None
 
 
-def _told(
+def _simulated(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
     """Return the motion as arrays; include its phases on request, because they may need another simulation."""

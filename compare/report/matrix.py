@@ -261,7 +261,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
                 cells[column] = gaps[column]
         identity = _identity(study, next(iter(found.values()))[0], rows)
         rows.append(Row(study, identity, sentence, equation, cells))
-    rows = [_weighed(row, rows, study) for row in rows]
+    rows = [_with_evidence(row, rows, study) for row in rows]
     # keep gaps that no row shows because no column made a claim
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
@@ -280,12 +280,12 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
     return f"{name}~{same + 1}" if same else name
 
 
-def _weighed(row: Row, rows: list[Row], study: Study) -> Row:
+def _with_evidence(row: Row, rows: list[Row], study: Study) -> Row:
     """Return ``row`` with the kind of evidence of each verdict; another of ``rows`` may imply a verdict."""
-    return replace(row, cells={column: _weighed_cell(row, column, rows, study) for column in row.cells})
+    return replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
 
 
-def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
+def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
     cell = row.cells[column]
     if not cell.claims:
         return cell

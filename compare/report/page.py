@@ -73,7 +73,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             paths=paths,
             glances=glances(run, matrix),
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
-            off=_off,
+            deviation=_largest_difference,
             hero=hero,
             hero_study=hero_study,
             filters=_filters(matrix),
@@ -289,7 +289,7 @@ def _hero(run: Run) -> tuple[Study | None, Picture | None]:
     return None, None
 
 
-def _off(cell: Cell) -> str:
+def _largest_difference(cell: Cell) -> str:
     """Return the largest difference of a recorded motion."""
     return error_text(max(float(claim.difference.max()) for claim in cell.claims), 1)
 

@@ -213,11 +213,11 @@ class _Worker:
         key, self.key = self.key, None
         try:
             value = pickle.loads(self.connection.recv_bytes())
-            self._errors.hand_on()
+            self._errors.forward()
         except Exception:  # the engine has ended the process, or used its connection
             code = self._exit_code()
             cause = "it closed its connection" if code is None else cause_of_end(code)
-            said = self._errors.hand_on().strip().splitlines()
+            said = self._errors.forward().strip().splitlines()
             self.end()
             reason = ": ".join([f"its process ended unexpectedly ({cause})", *said[-1:]])
             value = Failure(reason)
@@ -249,7 +249,7 @@ class _Errors:
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115
-        self._handed_on = 0
+        self._forwarded = 0
 
     @contextmanager
     def written(self) -> Iterator[None]:
@@ -270,17 +270,17 @@ class _Errors:
 
     def close(self) -> None:
         """Forward the remaining text and close the file."""
-        self.hand_on()
+        self.forward()
         self._file.close()
 
-    def hand_on(self) -> str:
+    def forward(self) -> str:
         """Write new text to the standard error of this process, and return it."""
         size = os.fstat(self._file.fileno()).st_size
-        if size == self._handed_on:
+        if size == self._forwarded:
             return ""
         # Both processes share the file position, so reading must not move it.
-        new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
-        self._handed_on += len(new)
+        new = os.pread(self._file.fileno(), size - self._forwarded, self._forwarded)
+        self._forwarded += len(new)
         text = printable(new.decode(errors="replace"), MOST_ERRORS)
         if text and sys.stderr is not None:
             sys.stderr.write(text)

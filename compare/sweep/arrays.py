@@ -18,7 +18,7 @@ import zarr
 from numpy.typing import NDArray
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from compare.sweep.files import Files, StoreError, told
+from compare.sweep.files import Files, StoreError, store_errors
 from compare.sweep.plan import Numbers
 from compare.sweep.quantities import RESULTS
 
@@ -106,7 +106,7 @@ class Group:
 
         Raises :class:`StoreError` if it cannot be written, or if this is a different store.
         """
-        with told(self.files.url):
+        with store_errors(self.files.url):
             if description_of(self.files) != self.description:
                 raise StoreError(
                     f"a worker cannot find the sweep in {self.files.url!r}; --output must be a shared folder or an "
@@ -177,7 +177,7 @@ class Group:
 @lru_cache(maxsize=64)
 def _opened(group: Group, name: str) -> Any:
     files = group.files
-    with told(files.url, "read from"):
+    with store_errors(files.url, "read from"):
         place = f"{group.name}/{name}"
         return zarr.open_array(files.url, path=place, mode="r", zarr_format=3, storage_options=files.options)
 

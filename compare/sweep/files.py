@@ -73,7 +73,7 @@ class Files:
     def read(self, name: str) -> bytes | None:
         """Return the contents of a file, None if it does not exist."""
         system, root = self._system
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             try:
                 return bytes(system.cat_file(f"{root}/{name}"))
             except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
@@ -82,14 +82,14 @@ class Files:
     def write(self, contents: Mapping[str, bytes]) -> None:
         """Write files; overwrite existing ones."""
         system, root = self._system
-        with told(self.url):
+        with store_errors(self.url):
             system.pipe({f"{root}/{name}": content for name, content in contents.items()})
 
     def claim(self, name: str, content: bytes) -> None:
         """Write a new file; raise ``FileExistsError`` if it exists."""
         system, root = self._system
         path = f"{root}/{name}"
-        with told(self.url):
+        with store_errors(self.url):
             system.makedirs(system._parent(path), exist_ok=True)
             try:
                 with system.open(path, "xb") as stream:
@@ -103,14 +103,14 @@ class Files:
     def names(self, folder: str) -> list[str]:
         """Return the names of all files below a folder, sorted."""
         system, root = self._system
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             return sorted(path[len(root) + 1 :] for path in system.find(f"{root}/{folder}"))
 
     def inside(self, folder: str = "") -> list[str]:
         """Return the names of the files and folders directly in a folder, relative to it."""
         system, root = self._system
         path = f"{root}/{folder}".rstrip("/")
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             try:
                 found = system.ls(path, detail=False)
             except (FileNotFoundError, NotADirectoryError):
@@ -120,7 +120,7 @@ class Files:
     def remove(self, folder: str) -> None:
         """Remove a folder and its contents if it exists."""
         system, root = self._system
-        with told(self.url):
+        with store_errors(self.url):
             if system.exists(f"{root}/{folder}"):
                 system.rm(f"{root}/{folder}", recursive=True)
 
@@ -131,7 +131,7 @@ def is_remote(place: str | Path) -> bool:
 
 
 @contextmanager
-def told(url: str, action: str = "write to") -> Iterator[None]:
+def store_errors(url: str, action: str = "write to") -> Iterator[None]:
     """Turn any exception of a file system into ``StoreError``, except ``FileExistsError`` and ``MemoryError``."""
     try:
         yield

@@ -36,7 +36,7 @@ from compare.sweep.arrays import (
     description_of,
     group_content,
 )
-from compare.sweep.files import Files, is_remote, pack, told, unpacked
+from compare.sweep.files import Files, is_remote, pack, store_errors, unpacked
 from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_json
 from compare.sweep.quantities import RESULTS, components
 
@@ -130,7 +130,7 @@ class SweepStore:
         if archive is None or count(self.plan) >= SMALL:
             return
         if not archive.exists() or self.broken:
-            with told(str(archive)):
+            with store_errors(str(archive)):
                 pack(Path(self.files.url), archive)
 
     def tidy(self) -> None:
@@ -156,7 +156,7 @@ class SweepStore:
             return None
         return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
-    def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
+    def note_damaged(self, i: int, chunks: list[int], count: int) -> None:
         """Add damaged ``chunks`` of the ``count`` chunks of round ``i`` to ``broken``."""
         if chunks:
             shown = ", ".join(map(str, chunks[:MOST_NAMED]))
@@ -172,13 +172,13 @@ class SweepStore:
         """Begin a group of arrays that workers write, and replace an older group; :meth:`end` completes it."""
         self.files.remove(name)
         group = self._group(name)
-        with told(self.files.url):
+        with store_errors(self.files.url):
             group.create(arrays)
         return group
 
     def end(self, group: Group, dataset: xr.Dataset) -> None:
         """Add a dataset to a group and seal it."""
-        with told(self.files.url):
+        with store_errors(self.files.url):
             group.add(dataset)
         group.seal()
         self._whole.add(group.name)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, Command, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, taking
+from compare.cli.options import Settings, Tolerance, changed, with_options
 from compare.cli.sweep.options import (
     COARSE,
     STARTS,
@@ -76,7 +76,7 @@ def sweep_command() -> None:
 
 
 @sweep.command("basin", cls=Command)
-@taking(Request, output="basin")
+@with_options(Request, output="basin")
 def sweep_basin(
     request: Request,
     start: Start = "",
@@ -119,7 +119,7 @@ def sweep_basin(
 
 
 @sweep.command("map", cls=Command)
-@taking(Request, output="map")
+@with_options(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
     """Map the ends of motions over a plane of two parameters.
 
@@ -150,7 +150,7 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 
 
 @sweep.command("uncertainty", cls=Command)
-@taking(Request, output="uncertainty")
+@with_options(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
     """Compute the effects of uncertain parameters and starts.
 
@@ -181,7 +181,7 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 
 
 @sweep.command("continuation", cls=Command)
-@taking(Request, output="continuation")
+@with_options(Request, output="continuation")
 def sweep_continuation(
     request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
 ) -> int:

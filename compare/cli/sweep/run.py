@@ -50,9 +50,9 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     files = Files.at(folder.below(STORE))
     try:
         with _executor(scheduler) as executor:
-            with _looking():
+            with _reporting_store_errors():
                 _check_writable(folder)
-                store = _there(files, plan, chunk, resume)
+                store = _existing_store(files, plan, chunk, resume)
             with trajectories() as progress:
                 if store is None:
                     store = SweepStore.create(files.url, plan, chunk or CHUNK)
@@ -83,7 +83,7 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
 
 
 @contextmanager
-def _looking() -> Iterator[None]:
+def _reporting_store_errors() -> Iterator[None]:
     """Turn errors of the folder or its store into ``BadInputError``."""
     from compare.sweep.files import StoreError
 
@@ -105,7 +105,7 @@ def _check_writable(folder: Files) -> None:
         check_folder(Path(folder.url))
 
 
-def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
+def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
     """Return the store to resume, or None; raise ``ValueError`` if it belongs to another plan."""
     from compare.sweep.store import SweepStore, is_free
 
@@ -183,11 +183,11 @@ def redraw(place: str) -> int:
     from compare.sweep.files import Files
     from compare.sweep.store import SweepStore
 
-    with _looking():
+    with _reporting_store_errors():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
     try:
-        with _looking():
+        with _reporting_store_errors():
             _check_finished(store)
             return finish(store, folder)
     finally:

@@ -25,7 +25,7 @@ WAIT = 3.0
 IN_FLIGHT = 3
 """Submitted tasks per thread of the cluster: enough to keep it busy, and few to lose."""
 
-GLANCE = 1.0
+COUNT_INTERVAL = 1.0
 """Interval in s between counts of the cluster's threads."""
 
 
@@ -164,7 +164,7 @@ class Cluster:
     def _room(self) -> int:
         """Return the largest number of submitted tasks."""
         now = time.monotonic()
-        if now >= self._counted + GLANCE:
+        if now >= self._counted + COUNT_INTERVAL:
             self._counted = now
             self._most = max(1, IN_FLIGHT * sum(self._client.nthreads().values()))
         return self._most

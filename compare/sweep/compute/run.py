@@ -66,7 +66,7 @@ def finished(store: SweepStore) -> bool:
             found = store.look(i, plan.send(ends))  # type: ignore[arg-type]  # None starts it
             if found is None:
                 return False
-            _look_at_chunks(store, i, found, InProcess())
+            _check_chunks(store, i, found, InProcess())
             if not np.all(found.done):
                 return False
             ends = found.ends
@@ -84,12 +84,12 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
         except StopIteration as last:
             return rounds, last.value
         rounds.append(store.round(len(rounds), numbers))
-        _look_at_chunks(store, len(rounds) - 1, rounds[-1], executor)
+        _check_chunks(store, len(rounds) - 1, rounds[-1], executor)
         _simulate(store, rounds, executor, progress)
         ends = rounds[-1].ends
 
 
-def _look_at_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
+def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
     """Mark intact chunks of round ``i`` as done, and add damaged ones to ``store.broken``."""
     tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.chunks.there())
     broken = []
@@ -97,7 +97,7 @@ def _look_at_chunks(store: SweepStore, i: int, found: Round, executor: Executor)
         found.done[chunk] = whole
         if not whole:
             broken.append(chunk)
-    store.tell_broken(i, sorted(broken), len(found.chunks))
+    store.note_damaged(i, sorted(broken), len(found.chunks))
 
 
 def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress) -> None:
