@@ -148,7 +148,7 @@ def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
     assert "2/2" in sys.stderr.getvalue()
 
 
-def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypatch, capsys):
+def test_missing_measurements_are_listed_once_at_the_end(tmp_path, monkeypatch, capsys):
     names = tuple(f"engine-{i}" for i in range(20))
     limits = []
 
@@ -239,7 +239,7 @@ def test_simulate_without_settings_is_the_second_case_of_fig_5(capsys):
     assert rows[-1].startswith("400.0,")
 
 
-def test_files_stay_as_they_are_when_the_engine_gives_up(tmp_path):
+def test_files_are_kept_if_the_engine_fails(tmp_path):
     (tmp_path / "old.csv").write_text("precious")
     for name in ("old.csv", "new.csv"):
         arguments = ["--engine", "fake_studies:failing", "--output", str(tmp_path / name)]
@@ -254,7 +254,7 @@ needs_full = pytest.mark.skipif(
 
 @needs_full
 @pytest.mark.parametrize("arguments", ["list", "simulate pin --until 1", "simulate pin --output full.csv"])
-def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_gives_a_message_of_one_line(arguments, tmp_path, monkeypatch, capsys):
     (tmp_path / "full.csv").symlink_to("/dev/full")
     monkeypatch.chdir(tmp_path)
     with open("/dev/full", "w") as full:
@@ -291,7 +291,7 @@ def test_a_reader_that_stops_early_changes_no_status(arguments, status, tmp_path
     assert capsys.readouterr().err == ""
 
 
-def test_ctrl_c_while_a_command_runs_is_told(monkeypatch, capsys):
+def test_ctrl_c_during_a_command_is_reported(monkeypatch, capsys):
     def interrupted(*arguments, **more):
         raise KeyboardInterrupt
 
@@ -300,7 +300,7 @@ def test_ctrl_c_while_a_command_runs_is_told(monkeypatch, capsys):
     assert capsys.readouterr().err == "Interrupted.\n"
 
 
-def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
+def test_lack_of_memory_is_reported(monkeypatch, tmp_path, capsys):
     try:
         try:
             raise OSError("libllvmlite.so: failed to map segment from shared object")
@@ -330,7 +330,7 @@ ENDS_OF_PROCESSES = [
 
 
 @pytest.mark.parametrize(("arguments", "output", "status", "sentence"), ENDS_OF_PROCESSES)
-def test_a_process_ends_with_status_and_sentence(arguments, output, status, sentence, tmp_path):
+def test_a_process_ends_with_status_and_message(arguments, output, status, sentence, tmp_path):
     if status == 130:
         (tmp_path / "typer.py").write_text("raise KeyboardInterrupt")
     path = os.pathsep.join([str(tmp_path), environment()["PYTHONPATH"]])
@@ -345,7 +345,7 @@ def test_a_process_ends_with_status_and_sentence(arguments, output, status, sent
     assert (done.returncode, done.stderr) == (status, sentence)
 
 
-def test_a_process_whose_reader_stops_early_ends_well():
+def test_a_process_ends_normally_if_its_reader_stops_early():
     process = subprocess.Popen(
         [*REAL, "simulate", "pin", "--until", "50", "--samples", "20001"],
         env=environment(),

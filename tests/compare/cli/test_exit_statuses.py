@@ -51,9 +51,7 @@ ENDING = [
 
 
 @pytest.mark.parametrize(("command", "status"), RAISING + ENDING)
-def test_no_command_ends_with_status_0_where_an_engine_has_measured_nothing(
-    command, status, hostile, request
-):
+def test_status_is_not_0_if_an_engine_measured_nothing(command, status, hostile, request):
     if (command, status) in RAISING:
         request.getfixturevalue("in_this_process")
     assert cli.status(command.split(), STUDIES) == status
@@ -85,7 +83,7 @@ def itself(engine, value):
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_path, capsys):
+def test_a_claim_omitted_without_a_reason_has_its_own_status(tmp_path, capsys):
     study = Study("silent", Prose("A study with nothing to measure"))
     study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
@@ -95,7 +93,7 @@ def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_p
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_part_of_the_report_does_not_replace_the_whole_one(tmp_path, monkeypatch):
+def test_a_partial_report_does_not_replace_the_full_one(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("compare.engines.registry._REGISTRY", {"good": fake_studies.GOOD})
     studies = (fake_studies.AGREEMENT, fake_studies.PARTLY)

@@ -99,7 +99,7 @@ def at_hand(arguments):
 @pytest.mark.parametrize(
     ("where", "example"), [pytest.param(*pair, id=": ".join(pair)) for pair in HELP + DOCUMENTS]
 )
-def test_an_example_is_understood(where, example, idle, capsys):
+def test_an_example_is_valid(where, example, idle, capsys):
     arguments = at_hand(shlex.split(example, comments=True)[1:])
     try:
         status = cli.status(arguments)
@@ -111,7 +111,7 @@ def test_an_example_is_understood(where, example, idle, capsys):
     assert arguments[0] in ("list", "errata") or arguments[-1] == "--help"
 
 
-def test_every_command_has_an_example_of_its_own():
+def test_every_command_has_its_own_example():
     assert {name for name, _ in HELP} == {name for name, _ in help_texts()}
     for name, example in HELP:
         assert example.startswith(name) or name == "friction-discs"

@@ -51,7 +51,7 @@ def test_one_claim_is_measured_and_its_numbers_printed(reporting, tmp_path, caps
     assert not (tmp_path / "report").exists()  # the full report is not overwritten
 
 
-def test_one_of_a_family_is_measured_by_itself(reporting, tmp_path, capsys):
+def test_one_claim_of_a_family_is_measured_alone(reporting, tmp_path, capsys):
     arguments = ("--claim", "declared/of-size/small-one", "--engine", "good", "--output", "elsewhere")
     assert reporting(*arguments) == 1
     assert ASKED == [1e-9]
@@ -61,7 +61,7 @@ def test_one_of_a_family_is_measured_by_itself(reporting, tmp_path, capsys):
     assert (tmp_path / "elsewhere" / "arrays" / "declared" / "of-size" / "small-one.csv").exists()
 
 
-def test_an_unknown_claim_is_answered_with_the_nearest(reporting, capsys):
+def test_an_unknown_claim_gets_a_suggestion(reporting, capsys):
     assert reporting("--claim", "declared/ones") == 2
     assert "unknown claim 'declared/ones': did you mean 'declared/one'?" in capsys.readouterr().err
     assert ASKED == []

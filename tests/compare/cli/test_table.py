@@ -206,9 +206,7 @@ TABLE = [
 @pytest.mark.parametrize(
     ("arguments", "status", "sentence"), TABLE, ids=[row[0] or "nothing" for row in TABLE]
 )
-def test_arguments_are_answered_by_status_and_sentence(
-    arguments, status, sentence, tmp_path, monkeypatch, capsys
-):
+def test_arguments_give_status_and_message(arguments, status, sentence, tmp_path, monkeypatch, capsys):
     """Expect one line on the error stream unless the status is 0, and no written files."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)

@@ -67,14 +67,14 @@ def test_a_grade_is_the_largest_error_over_what_another_law_would_change(found):
     assert (grades["Wrong"], grades["good"], grades["failing"]) == ("differs",) * 3
 
 
-def test_the_best_setting_of_the_engines_own_friction_speaks_for_it(found):
+def test_the_best_setting_of_its_own_friction_represents_an_engine(found):
     assert found["Kite"].sentence == (
         "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another friction law with box."
     )
     assert found["Kite"].where == "#agreement-recorded"
 
 
-def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):
+def test_a_sentence_lists_missing_motions_and_differences(found):
     assert (
         found["Pins"].sentence
         == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; not simulated: disc."
@@ -84,7 +84,7 @@ def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):
     assert found["Pins"].cells[2] is None
 
 
-def test_an_engine_of_the_run_is_told_by_its_claims(found):
+def test_an_engine_of_the_run_is_described_by_its_claims(found):
     assert found["good"].sentence == "3 of 5 claims agree on independent evidence; 1 differs; 1 inconclusive."
     assert found["good"].version == "3"
     assert found["failing"].sentence == "1 of 1 claims agree on independent evidence; 4 failed."

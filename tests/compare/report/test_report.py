@@ -141,13 +141,13 @@ def test_an_inconclusive_claim_shows_its_least_certain_element_and_a_cell_its_le
     assert claims_of(page) == {"open/open": ["one ? inconclusive ×2 ± 0.75 m"]}
 
 
-def test_each_claim_says_every_verdict_in_a_word_and_a_mark(page):
+def test_each_claim_shows_every_verdict_as_word_and_mark(page):
     said = [text for claim in claims_of(page).values() for text in claim]
     for words in ("theory ✓ agrees", "good ✗ differs", "good ? inconclusive", "failing ! failed"):
         assert any(text.startswith(words) for text in said)
 
 
-def test_what_must_not_be_overlooked_stands_below_the_totals(page):
+def test_exceptions_are_listed_below_the_totals(page):
     (listed,) = re.findall(r'<ul class="exceptions">(.*?)</ul>', page, flags=re.DOTALL)
     lines = [" ".join(re.sub("<[^>]*>", "", line).split()) for line in listed.split("</li>")][:-1]
     assert lines == [
@@ -165,7 +165,7 @@ def test_a_failed_engine_gives_its_reason(results, page):
     assert page.count(unit["reason"]) >= 2
 
 
-def test_links_lead_somewhere_and_the_page_asks_for_nothing(page, cells, reported):
+def test_links_have_targets_and_the_page_loads_nothing(page, cells, reported):
     for link in (re.sub(r"^\?[^#]*", "", link) for link in cells.links):
         assert (
             unquote(link[1:]) in cells.ids if link.startswith("#") else (reported[1] / unquote(link)).exists()
@@ -201,7 +201,7 @@ def test_commands_code_and_parameters_of_claims_are_on_the_page(words, page):
     assert words in page
 
 
-def test_the_report_does_not_tell_where_it_was_made(page, reported):
+def test_the_report_does_not_reveal_its_machine(page, reported):
     for name in ("results.json", "junit.xml"):
         page += (reported[1] / name).read_text(encoding="utf-8")
     assert str(ROOT) not in page
@@ -258,7 +258,7 @@ def partly_reported(tmp_path_factory, all_in_this_process):
     return result, write_report(result, folder), folder
 
 
-def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported):
+def test_not_simulated_is_a_separate_state(partly_reported):
     result, matrix, _ = partly_reported
     states = {
         row.sentence: {column: cell.state for column, cell in row.cells.items()}
@@ -278,7 +278,7 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
     assert set(result.data(RING_ONLY)) == {"all"}  # other studies have no figures
 
 
-def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
+def test_the_page_gives_the_reason_once_per_study_and_counts_it_separately(partly_reported):
     page = (partly_reported[2] / "index.html").read_text(encoding="utf-8")
     reason = "some does not simulate a disc on a continuous ring"
     (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
@@ -326,19 +326,19 @@ def test_numbers_of_a_finding_are_quoted_from_claims():
         assert any(quoted for _, quoted in parts(study.prose.finding))
 
 
-def test_a_caption_and_a_paragraph_have_no_brace_but_of_a_quote():
+def test_captions_and_paragraphs_use_braces_only_for_quotes():
     for study in STUDIES:
         for text in (study.prose.finding, study.prose.paper, *study.figures.values()):
             assert all(quoted != "" for _, quoted in parts(text))
 
 
-def test_studies_of_a_section_stand_together():
+def test_studies_of_a_section_are_adjacent():
     sections = [study.prose.section for study in STUDIES]
     assert all(sections)
     assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
 
 
-def test_programs_see_what_is_not_simulated(partly_reported):
+def test_results_for_programs_contain_claims_not_simulated(partly_reported):
     _, _, folder = partly_reported
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert results["totals"]["not simulated"] == 5
@@ -353,7 +353,7 @@ def test_programs_see_what_is_not_simulated(partly_reported):
     assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
 
 
-def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
+def test_a_gap_is_shown_even_if_no_engine_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
     (row,) = matrix.rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
@@ -382,7 +382,7 @@ def recorded_reported(tmp_path_factory, all_in_this_process):
     return status(arguments, (study,)), folder
 
 
-def test_what_recorded_engines_get_wrong_is_no_failure_of_this_project(recorded_reported):
+def test_errors_of_recorded_engines_do_not_fail_the_report(recorded_reported):
     exit_status, folder = recorded_reported
     assert exit_status == 0
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
@@ -409,7 +409,7 @@ def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_rep
     assert "4 agree, 2 differ, 0 inconclusive." in page
 
 
-def test_every_state_has_its_place_among_the_worst():
+def test_every_state_has_a_priority():
     assert set(WORST_FIRST) == set(State)
     assert WORST_FIRST[-1] is State.AGREES
 

@@ -40,7 +40,7 @@ def both_ways(tmp_path_factory):
 
 
 @pytest.mark.parametrize("way", [0, 1])
-def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_ways):
+def test_a_failing_engine_and_a_dying_process_do_not_affect_the_rest(way, both_ways):
     result = both_ways[way]
     assert not result.interrupted
     assert result.missing == ()
@@ -59,7 +59,7 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_way
         assert result.outcomes["death", "good"].reason == "its process ended unexpectedly (exit status 7)"
 
 
-def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
+def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
     """The clock jumps during the measurement, first to just before the limit, then beyond it.
 
     The time that the process takes to start does not count.
@@ -98,7 +98,7 @@ def test_one_and_two_processes_find_and_draw_the_same(both_ways):
     assert [c.measured.tolist() for c in good[0].claims] == [c.measured.tolist() for c in good[1].claims]
 
 
-def test_what_is_no_result_is_said(tmp_path):
+def test_an_invalid_result_is_reported(tmp_path):
     unsendable = replace(fake.NO_FINDINGS, name="unsendable", provided={"measure": lambda engine: None})
     found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
     assert (
@@ -117,7 +117,7 @@ def count(tmp_path, monkeypatch, in_this_process):
     return lambda: path.read_text().split()
 
 
-def test_resume_computes_only_what_is_not_there_by_the_same_code(tmp_path, count, monkeypatch):
+def test_resume_computes_only_missing_results_of_the_same_code(tmp_path, count, monkeypatch):
     first = run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
     assert count() == ["good"]
     second = run((fake.COUNTED,), (fake.GOOD, fake.ALSO_GOOD), folder=tmp_path, resume=True)
@@ -140,7 +140,7 @@ def test_progress_counts_to_its_end(both_ways):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
-def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
+def test_ctrl_c_keeps_finished_results_and_lists_missing_ones(tmp_path):
     running, output = tmp_path / "running", tmp_path / "report"
     arguments = ["report", "unending", "--engine", "good", "--engine", "also-good", "--engine", "failing"]
     process = subprocess.Popen(

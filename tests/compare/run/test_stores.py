@@ -138,7 +138,7 @@ TestFindingsStore, TestDrawingStore = FindingsStores.TestCase, DrawingStores.Tes
 
 
 @pytest.mark.parametrize("kind", [OfFindings, OfDrawings])
-def test_of_files_with_any_byte_changed_the_same_is_found_or_nothing(kind, tmp_path):
+def test_files_with_any_byte_changed_give_the_same_content_or_nothing(kind, tmp_path):
     store = kind(tmp_path)
     key, value = store.keys[0], store.values[0]
     store.keep(key, "now", value)
@@ -151,7 +151,7 @@ def test_of_files_with_any_byte_changed_the_same_is_found_or_nothing(kind, tmp_p
         path.write_bytes(whole)
 
 
-def test_only_claims_and_figures_that_a_study_declares_are_taken(tmp_path):
+def test_only_declared_claims_and_figures_are_accepted(tmp_path):
     """Claims that are not declared are rejected, because files of the report have their names."""
     store = Store(tmp_path)
     for identity, taken in {"": True, "fig03/rests": True, "fig03/../../escaped": False}.items():

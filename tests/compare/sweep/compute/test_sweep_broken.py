@@ -108,7 +108,7 @@ NAMES = [f"{how.__name__} {file}" for how, file, _ in MENDED]
 
 
 @pytest.mark.parametrize(("how", "file", "broken"), MENDED, ids=NAMES)
-def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, whole, capsys):
+def test_damage_is_reported_and_recomputed(how, file, broken, copied, whole, capsys):
     path = copied / STORE
     before = (path / file).read_bytes() if (path / file).is_file() else None
     how(path / file)
@@ -125,7 +125,7 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
 
 
 @pytest.mark.filterwarnings("ignore:Object at .* is not recognized")  # because zarr lists the folder
-def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
+def test_additional_arrays_of_another_format_are_not_opened(copied):
     for folder in ("", "result", "result/time", "round-0/end"):
         (copied / STORE / folder / ".zarray").write_text(
             '{"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "filters": [{"id": "pickle"}]}'
@@ -134,7 +134,7 @@ def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
 
 
 @pytest.mark.parametrize("how", [empty, garble, remove, another_seed])
-def test_a_store_whose_plan_is_broken_is_refused_and_left_as_it_is(how, copied, capsys):
+def test_a_store_with_a_damaged_plan_is_rejected_and_kept(how, copied, capsys):
     file = copied / STORE / "zarr.json"
     before = file.read_bytes()
     how(file)
@@ -152,7 +152,7 @@ def assert_refused(folder, capsys):
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == left
 
 
-def test_what_is_gone_is_computed_again(copied, whole, capsys):
+def test_missing_parts_are_recomputed(copied, whole, capsys):
     remove(copied / STORE / "round-0/end/c/1")
     assert cli.status(["sweep", "figures", str(copied)]) == 2
     assert "is not finished; repeat it with --resume to complete it" in capsys.readouterr().err
@@ -175,7 +175,7 @@ def test_a_small_sweep_is_one_file(packed, whole):
 
 
 @pytest.mark.parametrize("name", ["round-0/states/c/1/0", "check/time/zarr.json"])
-def test_a_file_of_which_a_part_is_broken_is_mended(name, packed, whole, capsys):
+def test_a_partly_damaged_file_is_repaired(name, packed, whole, capsys):
     content_of, before = bytearray(packed.read_bytes()), packed.read_bytes()
     content_of[before.index(name.encode()) + len(name) + 20] ^= 1
     packed.write_bytes(content_of)
@@ -188,6 +188,6 @@ def test_a_file_of_which_a_part_is_broken_is_mended(name, packed, whole, capsys)
 
 
 @pytest.mark.parametrize("how", [empty, cut])
-def test_a_file_that_is_no_archive_any_more_is_refused_and_left_as_it_is(how, packed, capsys):
+def test_a_damaged_archive_is_rejected_and_kept(how, packed, capsys):
     how(packed)
     assert_refused(packed.parent, capsys)

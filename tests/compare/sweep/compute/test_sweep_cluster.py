@@ -22,9 +22,7 @@ from compare.sweep.quantities import Axis
 from compare.sweep.store import SweepStore
 
 
-def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
-    undisturbed, tmp_path, monkeypatch, capsys
-):
+def test_results_survive_a_killed_driver_and_a_killed_worker(undisturbed, tmp_path, monkeypatch, capsys):
     """Store in fsspec's local file system, which needs no server."""
     monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     url = f"file://{tmp_path}"
@@ -49,9 +47,7 @@ def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
     assert store.broken == ["round-0: chunk 3 (of 60)"]
 
 
-def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
-    undisturbed, tmp_path, monkeypatch, capsys
-):
+def test_a_lost_scheduler_is_reported_and_the_sweep_can_continue(undisturbed, tmp_path, monkeypatch, capsys):
     with cluster(tmp_path, workers=1) as local, monkeypatch.context() as patch:
         for owner, name in ((Chunks, "write"), (Cluster, "run")):
             patch.setattr(owner, name, getattr(owner, name))  # restored after the test
@@ -65,7 +61,7 @@ def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
     assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
 
 
-def test_a_scheduler_that_is_not_there_is_told_in_time(tmp_path, capsys):
+def test_a_missing_scheduler_is_reported_in_time(tmp_path, capsys):
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))  # reserves the port without listening
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
@@ -80,7 +76,7 @@ def test_a_scheduler_that_is_not_there_is_told_in_time(tmp_path, capsys):
     assert not (tmp_path / "sweep.zarr").exists()
 
 
-def test_who_listens_but_says_nothing_is_no_scheduler(monkeypatch):
+def test_a_silent_server_is_not_a_scheduler(monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 0.5)
     with socket.socket() as mute:
         mute.bind(("127.0.0.1", 0))
@@ -91,7 +87,7 @@ def test_who_listens_but_says_nothing_is_no_scheduler(monkeypatch):
     assert time.monotonic() - clock < 5.0
 
 
-def test_a_scheduler_without_workers_is_told(tmp_path, monkeypatch):
+def test_a_scheduler_without_workers_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 2.0)
     with (
         cluster(tmp_path, workers=0) as local,
@@ -120,21 +116,21 @@ class Elsewhere(InProcess):
             yield task.key, task.function(*task.arguments)
 
 
-def test_a_worker_with_other_code_is_refused_and_writes_nothing(store, tmp_path, monkeypatch):
+def test_a_worker_with_different_code_is_rejected_and_writes_nothing(store, tmp_path, monkeypatch):
     other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.stamp", lambda: "other"))
     with pytest.raises(OtherCodeError, match="a different version of the code or libraries"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 
 
-def test_a_worker_that_has_another_store_at_that_place_is_refused(store, tmp_path):
+def test_a_worker_with_a_different_store_at_that_path_is_rejected(store, tmp_path):
     other = Elsewhere(lambda: (tmp_path / "sweep.zarr" / DESCRIPTION).write_text("{}"))
     with pytest.raises(StoreError, match="--output must be a shared folder or an object store"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 
 
-def test_who_comes_second_does_not_make_the_store_again(store):
+def test_the_second_process_does_not_create_the_store_again(store):
     before = store.files.read(DESCRIPTION)
     with pytest.raises(FileExistsError):
         SweepStore.create(store.path, store.plan, 2)

@@ -32,7 +32,7 @@ PLAN = Continuation(
 )
 
 
-def test_motions_that_end_as_the_same_are_told_apart_by_their_radii():
+def test_motions_with_equal_ends_are_separated_by_their_radii():
     ends = np.array([EndState.WHIRL] * 4 + [EndState.UNDECIDED, EndState.STUCK, EndState.STUCK], dtype="u1")
     largest = np.array([0.5, 1.0, 0.501, 0.502, np.nan, 0.1, 0.4])
     found = motions_of(ends, 0.5 * largest, largest)
@@ -43,7 +43,7 @@ def test_motions_that_end_as_the_same_are_told_apart_by_their_radii():
     ]
 
 
-def test_motions_are_matched_by_where_they_were_going():
+def test_motions_are_matched_by_extrapolation():
     # two crossing lines, and a motion of another kind at two values
     up, down = (lambda i: Motion(2, 1, 0.0, 1.0 + 0.1 * i)), (lambda i: Motion(2, 1, 0.0, 1.5 - 0.1 * i))
     found = [[up(i), down(i)] if i % 2 else [down(i), up(i)] for i in range(6)]
@@ -63,7 +63,7 @@ def test_motions_that_differ_in_one_radius_only_are_matched_by_that(radius):
     assert (first, second) == (dict.fromkeys(range(4), one), dict.fromkeys(range(4), other))
 
 
-def test_what_jumps_begins_a_new_branch():
+def test_a_jump_begins_a_new_branch():
     found = [[Motion(2, 1, 0.0, radius)] for radius in (1.0, 1.0, 0.5, 0.5)]
     assert [sorted(branch) for branch in matched(found, lambda motion: motion.end)] == [[0, 1], [2, 3]]
 

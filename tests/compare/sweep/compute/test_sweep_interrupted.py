@@ -20,7 +20,7 @@ def unfinished(interrupted, tmp_path):
     return copytree(interrupted[0], tmp_path / "unfinished")
 
 
-def test_an_interrupt_from_the_keyboard_is_told(interrupted):
+def test_a_keyboard_interrupt_is_reported(interrupted):
     code, out, err = interrupted[1]
     assert (code, out, said(err)) == (130, "", ["Interrupted. Repeat the command with --resume to continue."])
 
@@ -34,7 +34,7 @@ def said(err):
     return [line for line in lines if "Warning" not in line]
 
 
-def test_interrupted_and_then_killed_a_sweep_comes_to_the_same_results(undisturbed, unfinished):
+def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_kill(undisturbed, unfinished):
     written = times(unfinished)
     process = long_sweep(unfinished, "--resume", signalled=("SIGKILL", 0, 11))
     assert finished_by(process)[0] == -signal.SIGKILL
@@ -54,7 +54,7 @@ def times(folder):
     }
 
 
-def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undisturbed, unfinished):
+def test_a_full_disk_is_reported_and_written_results_stay_valid(undisturbed, unfinished):
     before = marks(unfinished)
     code, out, err = finished_by(long_sweep(unfinished, "--resume", limit=100))
     assert (code, out) == (2, "")

@@ -47,13 +47,13 @@ def test_intervals_close_with_the_root_of_the_number_of_rows():
     assert 2.0 < few / many < 8.0  # 4, from the scatter of 16 groups
 
 
-def test_what_does_not_vary_has_no_indices():
+def test_a_constant_result_has_no_indices():
     found = indices_of(np.ones((256, 4)))
     assert np.all(np.isnan(found.first))
     assert np.all(np.isnan(found.total))
 
 
-def test_block_by_block_they_are_those_of_scipy():
+def test_indices_computed_by_blocks_equal_those_of_scipy():
     table = 1e4 + table_of(
         ishigami, 2**10, 3
     )  # a large mean would cancel all digits of a plain sum of squares

@@ -42,7 +42,7 @@ def test_the_table_of_random_numbers_is_uniform_without_correlation():
 
 
 @pytest.mark.parametrize("width", [1, 4, 5])
-def test_any_part_of_the_table_is_the_same_made_alone(width):
+def test_any_part_of_the_table_can_be_computed_separately(width):
     whole = uniform_rows(7, 0, 100, width)
     np.testing.assert_array_equal(uniform_rows(7, 37, 11, width), whole[37:48])
 
@@ -72,6 +72,6 @@ def test_zero_among_the_random_numbers_gives_a_finite_value():
         ("contact_points=uniform(3, 6)", "unknown parameter or component 'contact_points'"),
     ],
 )
-def test_what_is_no_possible_distribution_is_refused(text, words):
+def test_an_invalid_distribution_is_rejected(text, words):
     with pytest.raises(ValueError, match=re.escape(words)):
         Uncertain.parse(text, FIG11 if "contact_points" in text else FIG5)

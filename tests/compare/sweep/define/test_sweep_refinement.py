@@ -67,5 +67,5 @@ def test_a_coarse_grid_as_fine_as_the_finest_simulates_all():
 @pytest.mark.parametrize(
     ("points", "coarse", "stride"), [(257, 65, 4), (1000, 65, 8), (65, 65, 1), (64, 65, 1), (3, 2, 2)]
 )
-def test_the_coarse_grid_has_at_least_the_points_that_were_asked_for(points, coarse, stride):
+def test_the_coarse_grid_has_at_least_the_requested_points(points, coarse, stride):
     assert first_stride((points, 2 * points), coarse) == stride

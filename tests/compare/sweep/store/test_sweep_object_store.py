@@ -8,7 +8,7 @@ from compare.cli import app as cli
 from compare.sweep.files import Files, StoreError
 
 
-def test_a_sweep_into_memory_is_there_and_drawn(undisturbed, tmp_path, capsys):
+def test_a_sweep_in_memory_is_stored_and_drawn(undisturbed, tmp_path, capsys):
     url = "memory://swept"
     assert cli.status([*LONG, "--output", url]) == 0
     fsspec.filesystem("memory").get("/swept/sweep.zarr", str(tmp_path / "sweep.zarr"), recursive=True)
@@ -20,7 +20,7 @@ def test_a_sweep_into_memory_is_there_and_drawn(undisturbed, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("url", ["memory://claimed", "file://{}/claimed", "{}/claimed"])
-def test_only_one_makes_a_store_there(url, tmp_path):
+def test_only_one_process_creates_a_store(url, tmp_path):
     files = Files.at(url.format(tmp_path))
     files.claim("name", b"first")
     with pytest.raises(FileExistsError):
@@ -28,7 +28,7 @@ def test_only_one_makes_a_store_there(url, tmp_path):
     assert files.read("name") == b"first"
 
 
-def test_a_server_that_is_not_there_is_told_in_one_sentence(monkeypatch, capsys):
+def test_a_missing_server_gives_a_message_of_one_line(monkeypatch, capsys):
     def refuse(*arguments, **options):
         raise OSError("Could not connect\nto the endpoint")
 
@@ -40,7 +40,7 @@ def test_a_server_that_is_not_there_is_told_in_one_sentence(monkeypatch, capsys)
         Files("memory://there").read("name")
 
 
-def test_a_library_that_is_missing_is_named(monkeypatch, capsys):
+def test_a_missing_library_is_named(monkeypatch, capsys):
     def missing(url, **options):
         raise ImportError("Install s3fs to access S3")
 
