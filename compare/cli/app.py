@@ -59,7 +59,7 @@ def list_studies(context: typer.Context) -> None:
     print("Studies:")
     for study in studies:
         print(f"  {study.name:{width}}  {study.title}")
-    print(f"Engines: {usual}; on request {others}")
+    print(f"Engines: {usual}; on request: {others}")
 
 
 def errata() -> None:

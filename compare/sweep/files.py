@@ -59,8 +59,9 @@ class Files:
 
         try:
             system, root = url_to_fs(self.url, **(OPTIONS["file"] if self.options is None else self.options))
-        except ImportError:
-            needed = "s3fs: pip install 'friction-discs[cluster]'" if self.url.startswith("s3:") else "more"
+        except ImportError as error:
+            s3 = "s3fs; install it with: pip install 'friction-discs[cluster]'"
+            needed = s3 if self.url.startswith("s3:") else f"a package that is not installed: {error}"
             raise StoreError(f"{self.url!r} needs {needed}") from None
         except ValueError as error:  # unknown protocol
             raise StoreError(f"cannot open {self.url!r}: {error}; use a folder or s3://BUCKET/NAME") from None

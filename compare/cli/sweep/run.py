@@ -135,7 +135,7 @@ def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) 
             f"{store.path!r} was computed by a different version of the code or libraries; choose another --output"
         )
     if chunk not in (None, store.chunk):
-        raise ValueError(f"chunk = {chunk}: {store.path!r} was begun with {store.chunk}; leave out --chunk")
+        raise ValueError(f"chunk = {chunk}: {store.path!r} uses chunks of {store.chunk}; leave out --chunk")
 
 
 @contextmanager

@@ -37,7 +37,7 @@ def test_list_names_studies_and_engines(capsys):
     out = capsys.readouterr().out
     assert "  verdicts      Fig. 3: self-centring of the pin at low speed\n" in out
     assert "Engines: reference, exudyn" in out
-    assert "; on request compiled, plain\n" in out
+    assert "; on request: compiled, plain\n" in out
 
 
 def test_errata_prints_both_forms_and_both_errors(capsys):

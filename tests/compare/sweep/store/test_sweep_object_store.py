@@ -47,5 +47,5 @@ def test_a_missing_library_is_named(monkeypatch, capsys):
     monkeypatch.setattr("fsspec.core.url_to_fs", missing)
     assert cli.status([*LONG, "--output", "s3://sweeps/new"]) == 2
     assert capsys.readouterr().err == (
-        "'s3://sweeps/new' needs s3fs: pip install 'friction-discs[cluster]'\n"
+        "'s3://sweeps/new' needs s3fs; install it with: pip install 'friction-discs[cluster]'\n"
     )
