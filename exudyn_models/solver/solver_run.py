@@ -75,7 +75,7 @@ class StepCount(trajectory.StepCount):
         """Raise ``SimulationError`` if the expected ``steps`` from the time ``start`` on are too many."""
         if steps > trajectory.MOST_AHEAD:
             raise SimulationError(
-                self._sentence(f"more than {trajectory.MOST_AHEAD:,} further steps needed", start)
+                self._sentence(f"more than {trajectory.MOST_AHEAD:,} further steps are needed", start)
             )
 
     def count(self, t: float) -> str:

@@ -89,10 +89,10 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
     if len(saddles) != 1:
-        raise ValueError(
-            f"found {len(saddles)} saddle-type stick-slip orbits at these parameters, but the smallest shock can be "
-            "computed from exactly one only"
+        found = (
+            f"{len(saddles)} saddle-type stick-slip orbits" if saddles else "no saddle-type stick-slip orbit"
         )
+        raise ValueError(f"{found} at these parameters, so the smallest shock cannot be computed")
     separatrix = Separatrix.of(saddles[0])
     angles = np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False)
     low, high = _first_crossings(pin, rest, angles)
