@@ -272,7 +272,7 @@ def _pictures(run: Run, study: Study) -> list[Picture]:
         Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
         for name in drawing.animations
     ]
-    # in the order of the captions, pictures without one last
+    # in the order of the captions; pictures without a caption come last
     order = list(study.figures)
     return sorted(
         figures + animations,

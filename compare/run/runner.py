@@ -34,7 +34,7 @@ class Run:
     studies, engines : tuple
         Requested studies, and names of the requested engines without "theory".
     contact_only : tuple of str
-        Names of the engines that take part only in studies in which the contact decides.
+        Names of the engines that take part only in studies of the contact (``Study.contact``).
     about : tuple of str
         Descriptions of the engines.
     errata : tuple of Erratum

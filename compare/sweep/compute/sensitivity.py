@@ -103,7 +103,7 @@ def _together(one: Moments, other: Moments) -> Moments:
 
 
 def _about(of: Moments, mean: FloatArray) -> FloatArray:
-    """Return the sum of (f_B − ``mean``)(f_M − f_A) for the mean of a larger set."""
+    """Return the sum of (f_B − ``mean``)(f_M − f_A), where ``mean`` is the mean of a larger set of rows."""
     return of.product + (of.mean - mean)[:, np.newaxis] * of.change
 
 

@@ -149,7 +149,7 @@ def twice_as_long(trajectory: Trajectory) -> Trajectory:
 
 
 def watched_until(system: System, certain: float, duration: float) -> float:
-    """Return the duration in s of the simulation of a motion whose end was certain at ``certain`` (s): twice that."""
+    """Return the duration of a check in s: twice the time ``certain`` (s), at least 2·``LEAST_TURNS`` turns."""
     return max(certain, LEAST_TURNS * _turn(system, duration)) / WATCHED
 
 
