@@ -106,7 +106,6 @@ def _print_row(row: Row) -> None:
 
 
 def _print_table(rows: Sequence[Row]) -> None:
-    """Print a table of the error of each engine in each motion."""
     from rich.console import Console
     from rich.table import Table
 

@@ -199,7 +199,6 @@ def _write(result: Run, output: Path) -> Matrix:
 
 
 def _print_numbers(matrix: Matrix) -> None:
-    """Print the numbers that decide each claim."""
     from compare.report.numbers import account
 
     for claim in matrix.claims:
@@ -207,7 +206,6 @@ def _print_numbers(matrix: Matrix) -> None:
 
 
 def _is_suspect(matrix: Matrix, engine: str) -> bool:
-    """Return whether any claim of an engine differs or has no result."""
     from compare.report.matrix import State
 
     found = matrix.count(engine)
@@ -215,7 +213,6 @@ def _is_suspect(matrix: Matrix, engine: str) -> bool:
 
 
 def _print_diagnoses(suspects: Iterable[Engine]) -> None:
-    """Print a short diagnosis of each engine with claims that differ or failed."""
     from compare.diagnosis.run import IN_SHORT, in_short
     from compare.run.workers import Workers
 
@@ -267,7 +264,6 @@ def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterato
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
-    """Print a line for each claim that does not agree, and the totals."""
     from compare.report.matrix import State
     from compare.report.page import summary
 

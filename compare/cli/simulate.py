@@ -121,7 +121,6 @@ def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) 
 
 
 def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
-    """Simulate ``paper`` with the settings of the request; write the motion to a file or standard output."""
     import numpy as np
 
     from compare.cli.trajectory_files import write_csv, writer

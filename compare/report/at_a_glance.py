@@ -62,7 +62,6 @@ def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
 
 
 def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:
-    """Return the summary of an engine of this run."""
     counts = matrix.count(engine)
     grades = matrix.grades(engine)
     if counts[State.DIFFERS] or counts[State.FAILED]:

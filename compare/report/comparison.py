@@ -140,7 +140,6 @@ def _of_claims(old: Results, new: Results) -> Iterator[Change]:
 
 
 def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int], dict[str, Any]]:
-    """Return claims by study, identity, engine and number of the measurement."""
     return {
         (claim["id"].partition("/")[0], claim["id"], claim["engine"], claim["measurement"]): claim
         for claim in claims

@@ -116,7 +116,6 @@ def worst(claim: Claim) -> Worst:
 
 
 def _largest(claim: Claim) -> tuple[Largest, ...]:
-    """Return the largest difference in each unit."""
     units = claim.units
     found = []
     for unit in dict.fromkeys(units):
@@ -128,7 +127,6 @@ def _largest(claim: Claim) -> tuple[Largest, ...]:
 
 
 def _name(claim: Claim, index: int) -> str:
-    """Return the name of the element, or its number if it has no name."""
     if claim.predicted.size == 1:
         return ""
     return claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"

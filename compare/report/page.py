@@ -250,7 +250,6 @@ def _quoting(own: Matrix, text: str) -> Markup:
 
 
 def _with_code(text: str) -> Markup:
-    """Return a text with the passages between backticks as code."""
     parts = (
         Markup("<code>{}</code>" if i % 2 else "{}").format(part) for i, part in enumerate(text.split("`"))
     )
@@ -290,7 +289,6 @@ def _hero(run: Run) -> tuple[Study | None, Picture | None]:
 
 
 def _largest_difference(cell: Cell) -> str:
-    """Return the largest difference of a recorded motion."""
     return error_text(max(float(claim.difference.max()) for claim in cell.claims), 1)
 
 
@@ -335,7 +333,6 @@ def _value(value: float, uncertainty: float) -> Markup:
 
 
 def _answers(value: float) -> Markup:
-    """Return a number of answers, and its exact value as data."""
     return _data(value, answers_text(value))
 
 

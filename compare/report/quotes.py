@@ -51,8 +51,6 @@ class Quote:
 
 @dataclass(frozen=True)
 class _Reference:
-    """Parsed words of a quote."""
-
     name: str
     engine: str = ""
     part: str = "measured"

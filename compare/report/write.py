@@ -40,7 +40,6 @@ def write_report(run: Run, output: Path) -> Matrix:
 
 
 def _pictures(drawing: Drawing) -> dict[str, bytes]:
-    """Return figures and animations by their paths in the report."""
     figures = {f"figures/{name}.svg": content for name, content in drawing.figures.items()}
     moving = {f"figures/{name}.gif": content for name, content in drawing.animations.items()}
     return figures | moving | {f"figures/{name}.png": still(gif) for name, gif in drawing.animations.items()}

@@ -189,6 +189,5 @@ def _sources(root: Path) -> str:
 
 
 def _digest(files: Iterable[tuple[str, Path]]) -> str:
-    """Return the SHA-256 of names and contents of files."""
     contents = [(name, hashlib.sha256(path.read_bytes()).hexdigest()) for name, path in files]
     return hashlib.sha256(repr(contents).encode()).hexdigest()

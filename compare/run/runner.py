@@ -244,7 +244,6 @@ def measured(study: Study, engine: Engine | str | None, only: Collection[str] = 
 
 
 def _identities(study: Study) -> set[str]:
-    """Return the names of the claims that a study declares."""
     return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}
 
 

@@ -168,7 +168,6 @@ class Group:
         return True
 
     def _described(self) -> dict[str, bytes]:
-        """Return the descriptions of all arrays by name."""
         files = {name: f"{self.name}/{name}/{DESCRIPTION}" for name in self.files.inside(self.name)}
         found = {name: self.files.read(file) for name, file in files.items()}
         return {name: content for name, content in found.items() if content is not None}

@@ -192,7 +192,6 @@ class SweepStore:
         return Group(self.files, self._description, name)
 
     def _template(self, count: int) -> dict[str, Large]:
-        """Return the arrays of a round of ``count`` trajectories."""
         arrays: dict[str, Large] = {}
         for name, result in RESULTS.items():
             more = (len(components(self.plan.system)),) if name == "states" else ()

@@ -262,7 +262,6 @@ def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...
 
 
 def _names_of(text: str) -> list[str]:
-    """Return the names in "NAME=VALUE,..."."""
     return [part.partition("=")[0].strip() for part in text.split(",")]
 
 

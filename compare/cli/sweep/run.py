@@ -140,7 +140,6 @@ def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) 
 
 @contextmanager
 def _executor(scheduler: str | None) -> Iterator[Executor]:
-    """Yield the executor: this process, or the workers of a Dask scheduler."""
     from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 
     if scheduler is None:

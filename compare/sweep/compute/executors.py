@@ -162,7 +162,6 @@ class Cluster:
             raise
 
     def _room(self) -> int:
-        """Return the largest number of submitted tasks."""
         now = time.monotonic()
         if now >= self._counted + COUNT_INTERVAL:
             self._counted = now
@@ -186,7 +185,6 @@ def _reach(dask: Any, address: str) -> None:
 
 
 def _checked_address(address: str) -> str:
-    """Return the address; raise ``ValueError`` if it is invalid."""
     try:
         parts = urlsplit(address)
         if parts.scheme and parts.hostname and parts.port:

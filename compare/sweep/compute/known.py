@@ -137,7 +137,6 @@ def _boundaries(plan: Map, disc: DiscOnDisc) -> Iterator[Curve]:
 
 
 def _zeros(plan: Map) -> Iterator[Curve]:
-    """Yield the zero curves of the margins."""
     from contourpy import contour_generator
 
     axes = [np.linspace(axis.low, axis.high, NODES) for axis in (plan.x, plan.y)]

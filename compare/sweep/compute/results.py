@@ -206,7 +206,6 @@ def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
 
 
 def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArray[Any]:
-    """Return the results ``SENSITIVE``, shape (results, rows, 2 + quantities)."""
     last_radius = np.hypot(*states[:, :2].T)
     radius = np.where(found["end"] == EndState.UNDECIDED, last_radius, found["largest_radius"])
     return np.stack((radius, found["end"] == EndState.WHIRL)).reshape(len(SENSITIVE), -1, plan.row)

@@ -101,7 +101,6 @@ def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -
 
 
 def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress) -> None:
-    """Simulate and write the missing chunks of the last of ``rounds``."""
     current = rounds[-1]
     what = f"round {len(rounds)}" if len(rounds) > 1 else "trajectories"
     total = len(current.numbers)
@@ -123,7 +122,6 @@ def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, pr
 def _label(
     store: SweepStore, rounds: Sequence[Round], grid: Grid | None, executor: Executor, progress: Progress
 ) -> None:
-    """Write the labelled results block by block."""
     plan = store.plan
     group = store.begin(RESULT, large_of(plan))
     blocks = blocks_of(plan)
