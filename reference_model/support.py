@@ -158,5 +158,5 @@ def require_linear_support(system: System) -> None:
         value = getattr(system, name)
         if value > 0.0:
             raise ValueError(
-                f"{name} = {value:g} {unit}: this formula holds for a linear support only; set it to 0"
+                f"{name} = {value:g} {unit}: it must be 0 here, because only linear supports are covered"
             )

@@ -306,7 +306,9 @@ def checked_times(times: ArrayLike) -> FloatArray:
     steps = np.diff(result)
     if np.any(steps <= 0.0):
         i = int(np.argmax(steps <= 0.0))
-        raise ValueError(f"times[{i + 1}] = {result[i + 1]:g} follows {result[i]:g}: times must increase")
+        raise ValueError(
+            f"times must increase, but times[{i + 1}] = {result[i + 1]:g} follows times[{i}] = {result[i]:g}"
+        )
     return result
 
 

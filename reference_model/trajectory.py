@@ -39,12 +39,12 @@ class StepCount:
         """Count one more step, which ends at ``t``; return a message if there are or will be too many, else ""."""
         self.steps += 1
         if self.steps > MOST_STEPS:
-            return f"more than {MOST_STEPS:,} steps"
+            return f"more than {MOST_STEPS:,} steps are needed"
         since, counted = self._looked_back
         if self.steps == counted + LOOK_BACK:
             self.look_from(t)
             if (self.end - t) * LOOK_BACK > MOST_AHEAD * (t - since):
-                return f"more than {MOST_AHEAD:,} steps ahead after {self.steps:,}"
+                return f"more than {MOST_AHEAD:,} further steps are needed"
         return ""
 
 

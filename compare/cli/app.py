@@ -1,7 +1,7 @@
 """The command line: ``friction-discs list | report | diff | matrix | simulate | sweep | ...``.
 
-Whatever a user gets wrong ends in one sentence on the error stream and exit status 2. Heavy imports (SciPy,
-Exudyn, matplotlib) happen inside of the commands that need them.
+A user's mistake ends in one sentence on the error stream and exit status 2. Commands import heavy libraries (SciPy,
+Exudyn, matplotlib) themselves.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ try:
     from compare.cli.report import report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
-except KeyboardInterrupt:  # which may come before there is anything that could take it
+except KeyboardInterrupt:  # Ctrl-C during the imports
     print("Interrupted.", file=sys.stderr)
     sys.exit(130)
 
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 def list_studies(context: typer.Context) -> None:
-    """List the studies and the engines.
+    """List studies and engines.
 
     \b
     Example:
@@ -59,11 +59,13 @@ def list_studies(context: typer.Context) -> None:
     print("Studies:")
     for study in studies:
         print(f"  {study.name:{width}}  {study.title}")
-    print(f"Engines: {usual}; on request {others}")
+    print(f"Engines: {usual}; on request: {others}")
 
 
 def errata() -> None:
-    """Print where the paper's formulas are wrong, their corrections, and the numbers that show it.
+    """Print errors in the paper's formulas with corrections.
+
+    Each correction comes with numerical evidence.
 
     \b
     Example:
@@ -105,18 +107,18 @@ app.add_typer(sweep, name="sweep")
 def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | None = None) -> None:
     """Run the command line and exit with its status.
 
-    ``studies`` takes the place of the paper's own, for a project that brings its own studies and engines.
+    ``studies`` replaces the studies of the paper in a project with its own studies and engines.
     """
-    if sys.stdout is None:  # closed by the caller
+    if sys.stdout is None:  # the caller closed it
         sys.stdout = open(os.devnull, "w")  # noqa: SIM115
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may not be text
+        sys.stdout.reconfigure(errors="backslashreplace")  # file names may be undecodable
     sys.exit(status(sys.argv[1:] if arguments is None else arguments, studies))
 
 
 def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:
     """Run the command line and return its exit status."""
-    # public names only: typer brings its own copy of click or takes the installed one
+    # typer exports no base class of usage errors, and click may be its own copy or the installed one
     usage_error: type[Exception] = typer.BadParameter.__mro__[1]
     try:
         with printing():
@@ -127,19 +129,19 @@ def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -
     except EngineFailedError as error:
         return say(str(error), SOMETHING_DIFFERS)
     except ModuleNotFoundError as error:
-        if not (error.name or "").startswith("friction-discs["):  # else an extra that is not installed
+        if not (error.name or "").startswith("friction-discs["):  # not a missing extra
             raise
         return say(str(error), BAD_INPUT)
     except MemoryError:
-        return say("there is not enough memory", SOMETHING_DIFFERS)
+        return say("not enough memory", SOMETHING_DIFFERS)
     except SystemExit as end:
-        if not isinstance(end.__context__, BrokenPipeError):  # which typer ends with status 1
+        if not isinstance(end.__context__, BrokenPipeError):  # typer turns it into status 1
             raise
         close_output()
         return FINE
     except OSError as error:
         close_output()
-        return say(f"can't write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
+        return say(f"cannot write to {error.filename or 'the output'}: {error.strerror}", BAD_INPUT)
     except (KeyboardInterrupt, InterruptedByUserError, typer.Abort):
         return say("Interrupted.", INTERRUPTED)
     return result if isinstance(result, int) else FINE
@@ -150,7 +152,7 @@ def friction_discs(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
-    """Compare two simulations of friction discs with each other and with every formula of the paper.
+    """Compare two simulations of friction discs with each other and with all formulas of the paper.
 
     \b
     Examples:

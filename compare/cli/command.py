@@ -1,4 +1,4 @@
-"""How every command refuses bad input, says what went wrong, and ends: in one sentence and with an exit status."""
+"""Errors, exit statuses and progress of all commands."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ FINE, SOMETHING_DIFFERS, BAD_INPUT, NOTHING_SHOWN, NOTHING_MEASURED, INTERRUPTED
 
 
 class BadInputError(Exception):
-    """A sentence that tells the user what is wrong and what would be right."""
+    """Invalid input; the message says what is wrong and what is allowed."""
 
 
 class EngineFailedError(Exception):
-    """A sentence that tells why an engine has no result."""
+    """An engine has no result; the message gives the reason."""
 
 
 class InterruptedByUserError(Exception):
-    """Ctrl-C, which typer would turn into a status without a word."""
+    """The user pressed Ctrl-C; typer would exit without a message."""
 
 
 class Command(TyperCommand):
-    """A command that takes no option twice and no empty one, and hands on what is no error of its own."""
+    """A command that rejects repeated and empty options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Refuse what would silently be ignored."""
+        """Parse arguments; raise ``BadInputError`` for an empty option or one that a later one would override."""
         values, _, given = self.make_parser(ctx).parse_args(args=list(args))
         for option in given:
             if option.param_type_name != "option" or option.is_flag or option.multiple:  # type: ignore[attr-defined]
@@ -44,11 +44,11 @@ class Command(TyperCommand):
             if values[option.name] == "":
                 raise BadInputError(f"{option.opts[0]} '': it must not be empty")
             if given.count(option) > 1:
-                raise BadInputError(f"{option.opts[0]} is there {given.count(option)} times: give it once")
+                raise BadInputError(f"{option.opts[0]} is given {given.count(option)} times; give it once")
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command."""
+        """Run the command; turn Ctrl-C into ``InterruptedByUserError``."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
@@ -57,7 +57,7 @@ class Command(TyperCommand):
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Print inside; a reader that has seen enough, "head" for instance, is no error and changes no exit status."""
+    """Ignore a reader such as ``head`` that closes the pipe early, so the exit status does not change."""
     try:
         yield
         sys.stdout.flush()
@@ -66,13 +66,13 @@ def printing() -> Iterator[None]:
 
 
 def close_output() -> None:
-    """Leave nothing behind that would be written once more, and fail again, at the end of the process."""
+    """Redirect standard output to the null device, so flushing it at exit cannot fail again."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 @contextmanager
 def refused() -> Iterator[None]:
-    """Turn the ``ValueError`` of a check into ``BadInputError``; not around more, lest it hide a mistake."""
+    """Turn a check's ``ValueError`` into ``BadInputError``; wrap checks only, because it would hide bugs."""
     try:
         yield
     except ValueError as error:
@@ -85,15 +85,15 @@ def say(sentence: str, result: int) -> int:
     return result
 
 
-# --- Progress: a bar on a terminal, and of measurements a line now and then elsewhere.
+# --- Progress: a bar on a terminal; elsewhere, measurements print a line from time to time.
 
-SELDOM = 10.0
-"""In s, between lines where there is no terminal."""
+LINE_INTERVAL = 10.0
+"""Time between two lines of progress without a terminal, in s."""
 
 
 @contextmanager
 def measurements() -> Iterator[Callable[[int, int, str], None]]:
-    """Show how many measurements are done: a bar on a terminal, and a line every ``SELDOM`` seconds elsewhere."""
+    """Show the number of finished measurements: a bar on a terminal, else a line every ``LINE_INTERVAL`` s."""
     if not sys.stderr.isatty():
         yield _lines()
         return
@@ -111,7 +111,7 @@ def _lines() -> Callable[[int, int, str], None]:
 
     def show(done: int, total: int, name: str) -> None:
         nonlocal last
-        if time.monotonic() - last >= SELDOM:
+        if time.monotonic() - last >= LINE_INTERVAL:
             last = time.monotonic()
             print(f"{done} of {total}: {name}", file=sys.stderr, flush=True)
 
@@ -120,7 +120,7 @@ def _lines() -> Callable[[int, int, str], None]:
 
 @contextmanager
 def trajectories() -> Iterator[Progress]:
-    """Show how much is done, how fast and for how long still on a terminal, and nothing at all elsewhere."""
+    """Show progress, rate and remaining time on a terminal, else nothing."""
     if not sys.stderr.isatty():
         yield lambda what, done, total: None
         return

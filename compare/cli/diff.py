@@ -1,4 +1,4 @@
-"""``friction-discs diff``: what parts two reports."""
+"""``friction-discs diff``: the differences of two reports."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import typer
 
 from compare.cli.command import FINE, NOTHING_MEASURED, SOMETHING_DIFFERS, printing, refused, say
 
-Old = Annotated[Path, typer.Argument(metavar="OLD", help="Folder or results.json of a report.")]
-New = Annotated[Path, typer.Argument(metavar="NEW", help="Folder or results.json of a later one.")]
+Old = Annotated[Path, typer.Argument(metavar="OLD", help="Folder or results.json of the older report.")]
+New = Annotated[Path, typer.Argument(metavar="NEW", help="Folder or results.json of the newer report.")]
 Baseline = Annotated[
     Path | None,
     typer.Option(
         "--baseline",
         metavar="FILE",
-        help="Claims that are known to fail: what happens to them is told, and does not count.",
+        help="Claims that are known to fail. Their changes are printed, but do not affect the exit status.",
         show_default=False,
     ),
 ]
@@ -26,17 +26,19 @@ WriteBaseline = Annotated[
     typer.Option(
         "--write-baseline",
         metavar="FILE",
-        help="Write what fails in NEW as a baseline.",
+        help="Write the failing claims of NEW to a baseline.",
         show_default=False,
     ),
 ]
 
 
 def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBaseline = None) -> int:
-    """Tell what parts two reports: what moved by more than its error bars, what is new, what is gone.
+    """Compare two reports.
 
-    The exit status is 0 when no claim moved, got worse or is gone, but for those of the baseline, 1 when one did,
-    2 on bad input, and 4 when an engine of NEW has no verdict, so nothing was compared.
+    The command lists claims that changed by more than their error bars, are new or are missing.
+
+    The exit status is 0 if no claim outside the baseline changed, got worse or is missing, and 1 otherwise. It is 2
+    for bad input, and 4 if NEW contains no verdict for one of its engines.
 
     \b
     Examples:
@@ -58,12 +60,14 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
         for change in found:
             print(change)
         for claim, engine in sorted(known - failing.keys()):
-            print(f"no longer fails: {claim} {engine}: leave it out of {baseline}")
+            print(f"no longer fails: {claim} {engine}; remove it from {baseline}")
         print(", ".join(f"{counts[kind]} {kind.value}" for kind in Kind))
     if write_baseline is not None:
         write(write_baseline, failing)
     if any(change.counts for change in found):
         return SOMETHING_DIFFERS
     if empty := without_verdict(after):
-        return say(f"{new} has no verdict on {', '.join(empty)}: nothing was compared", NOTHING_MEASURED)
+        return say(
+            f"{new} contains no verdict for {', '.join(empty)}; nothing was compared", NOTHING_MEASURED
+        )
     return FINE

@@ -1,4 +1,4 @@
-"""``friction-discs export-fmu pin | disc | clutch``: the contact as a functional mock-up unit."""
+"""``friction-discs export-fmu pin | disc | clutch``: a contact as a functional mock-up unit (FMU)."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from typing import Annotated, Literal, cast
 import typer
 
 from compare.cli.command import BadInputError, Command, EngineFailedError, refused
-from compare.cli.options import Settings, changes_of, taking, whole
+from compare.cli.options import Settings, changes_of, whole, with_options
 from compare.output.text_files import check_writable
 
 export_fmu = typer.Typer(rich_markup_mode=None)
 
-File = Annotated[Path, typer.Option("--output", metavar="FILE", help="File to write, .fmu.")]
+File = Annotated[Path, typer.Option("--output", metavar="FILE", help="Output file, .fmu.")]
 Standard = Annotated[
     int,
     typer.Option(
         "--fmi",
         metavar="2|3",
-        help="Version of the standard: 2 is what every importer reads, 3 has intermediate updates.",
+        help="FMI version; every importer reads 2, and 3 adds intermediate updates.",
         parser=whole("fmi", 2, 3),
     ),
 ]
@@ -28,7 +28,7 @@ Standard = Annotated[
 
 @dataclass(frozen=True)
 class Unit:
-    """What all units take from the command line."""
+    """Options that all units share."""
 
     output: File
     settings: Settings = None
@@ -37,10 +37,11 @@ class Unit:
 
 @export_fmu.callback()
 def export() -> None:
-    """Write the contact as a functional mock-up unit, in C, for Simulink, Dymola and all that imports FMI.
+    """Write a contact as a functional mock-up unit (FMU).
 
-    It is one for model exchange and co-simulation, with its sources and a library for this machine. Parameters that
-    are set are what the unit starts with; an importer may set them anew.
+    Simulink, Dymola and other FMI importers can read the unit. It supports model exchange and co-simulation. It
+    contains its C sources and a library for this platform. Values from --set are its initial parameters; an importer
+    may change them.
 
     \b
     Examples:
@@ -50,13 +51,16 @@ def export() -> None:
 
 
 @export_fmu.command("pin", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_pin(unit: Unit) -> None:
-    """Write the pin on a disc that turns; what is not set is the second case of Fig. 5.
+    """Write the pin on a rotating disc.
+
+    The defaults are the second case of Fig. 5.
 
     \b
-    Parameters are those of `friction-discs simulate pin`, the start x, y, vx, vy, and:
-      exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
+    Parameters in SI units: those of `friction-discs simulate pin`, the initial state x, y, vx, vy, and
+      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+      regularisation=1e-6 (m/s) tolerance=1e-11
     \b
     Example:
       friction-discs export-fmu pin --set disc_speed=2 --set vx=0 --output pin.fmu
@@ -65,14 +69,17 @@ def export_pin(unit: Unit) -> None:
 
 
 @export_fmu.command("disc", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_disc(unit: Unit) -> None:
-    """Write the friction disc, on a continuous ring or on points; what is not set is Fig. 11 with X0 = 0.
+    """Write the friction disc on a ring or on points.
+
+    The defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters are those of `friction-discs simulate disc`, the start x, y, angle, vx, vy, spin, and:
-      exact=1 (sticks by events; 0 creeps below regularisation) regularisation=1e-6 tolerance=1e-11
-      contact_points=0 (a ring; at least 3 for points, which creep whatever exact is)
+    Parameters in SI units: those of `friction-discs simulate disc`, the initial state x, y, angle, vx, vy, spin, and
+      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+      regularisation=1e-6 (m/s) tolerance=1e-11
+      contact_points=0 (continuous ring; single points from 3 on, which always creep)
     \b
     Example:
       friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu
@@ -81,12 +88,14 @@ def export_disc(unit: Unit) -> None:
 
 
 @export_fmu.command("clutch", cls=Command)
-@taking(Unit)
+@with_options(Unit)
 def export_clutch(unit: Unit) -> None:
-    """Write a clutch between two flanges: speeds, load, coefficient and engagement in, torques and forces out.
+    """Write a clutch between two flanges.
+
+    Inputs are speeds, load, friction coefficient and engagement; outputs are torques and forces.
 
     \b
-    Parameters:
+    Parameters in SI units:
       inner_radius=0.1 outer_radius=0.1 wear=0 pressure_inner=1 pressure_mean=1 pressure_outer=1 contact_points=0
       plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
       mass=1 stiffness=1e6 damping=100 offset=0 hardening=0 stop_gap=0 stop_stiffness=0
@@ -107,17 +116,17 @@ def _export(name: str, unit: Unit) -> None:
         try:
             check_writable(unit.output)
         except OSError as error:
-            raise BadInputError(f"can't write the file {str(unit.output)!r}: {error.strerror}") from None
+            raise BadInputError(f"cannot write the file {str(unit.output)!r}: {error.strerror}") from None
         try:
             made = fmu_models.export(model, unit.output, cast(Literal[2, 3], unit.fmi))
         except RuntimeError as error:
             raise EngineFailedError(str(error)) from None
     what = f"with its sources and a library for {made.platform}" if made.platform else made.remark
-    print(f"{made.file}: {name} by FMI {unit.fmi}, {what}.")
+    print(f"{made.file}: {name}, FMI {unit.fmi}, {what}.")
 
 
 def _numbers(changes: dict[str, str]) -> dict[str, float]:
-    """Return values as numbers; the unit's own checks follow."""
+    """Return the values as numbers, ``true`` and ``false`` as 1 and 0; the unit checks their ranges."""
     from reference_model.systems import finite_number
 
     words = {"true": "1", "false": "0"}

@@ -1,4 +1,4 @@
-"""``friction-discs matrix``: which law of friction an engine has, how fast its errors fall, and to what."""
+"""``friction-discs matrix``: friction laws and convergence of engines."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ Limit = Annotated[
     float,
     typer.Option(
         metavar="SECONDS",
-        help="Time after which a part of an engine's row is given up.",
+        help="Time limit in s for each part of an engine's row.",
         parser=positive("limit", "s"),
     ),
 ]
 Recorded = Annotated[
     bool,
-    typer.Option("--recorded", help="Show the engines of other people besides, as they are recorded."),
+    typer.Option("--recorded", help="Also show the recorded results of other engines."),
 ]
 
 LIMIT = 60.0
-"""In s."""
+"""Default of ``--limit`` in s."""
 
 
 def matrix(
@@ -48,13 +48,14 @@ def matrix(
     output: Folder = Path("matrix"),
     jobs: Jobs = None,
 ) -> int:
-    """Find out which law of friction engines have, how fast their errors fall, and to what.
+    """Identify the friction laws of engines and their convergence.
 
-    Blocks that slide, that are pulled and whose slip turns tell the law in seconds; then come the motions by which
-    the recorded engines are measured, each at four steps or tolerances. Prints a few sentences for each engine and a
-    table, and writes matrix.json, as rows come in, and matrix.svg and matrix.png. The exit status is 0 when no engine
-    has anything that a smaller step does not cure, 1 otherwise, 2 on bad input, 4 when an engine simulates none of
-    this, and 130 after Ctrl-C.
+    Three tests with blocks (sliding, pulled, slip that turns) identify the law within seconds. The motions of the
+    recorded engines follow, each with four steps or tolerances. The command prints findings for each engine and a
+    table. It writes matrix.json after each row, then matrix.svg and matrix.png.
+
+    The exit status is 0 if all errors vanish with smaller steps, and 1 otherwise. It is 2 for bad input, 4 if an
+    engine simulates none of these motions, and 130 after Ctrl-C.
 
     \b
     Examples:
@@ -82,7 +83,7 @@ def matrix(
                     _print_row(row)
     except KeyboardInterrupt:
         done = len(rows) - others
-        return say(f"Interrupted; {done} of {len(chosen)} rows are in {output}.", INTERRUPTED)
+        return say(f"Interrupted; {done} of {len(chosen)} rows were written to {output}.", INTERRUPTED)
     write_picture(rows, output)
     with printing():
         _print_table(rows)
@@ -92,7 +93,8 @@ def matrix(
     empty = [row.engine for row in rows[others:] if row.empty]
     if empty:
         return say(
-            f"nothing was measured: {', '.join(empty)} simulates none of these motions", NOTHING_MEASURED
+            f"nothing was measured: none of these motions can be simulated by {', '.join(empty)}",
+            NOTHING_MEASURED,
         )
     return FINE
 
@@ -104,7 +106,6 @@ def _print_row(row: Row) -> None:
 
 
 def _print_table(rows: Sequence[Row]) -> None:
-    """Print how far each engine is off each motion."""
     from rich.console import Console
     from rich.table import Table
 
@@ -114,8 +115,8 @@ def _print_table(rows: Sequence[Row]) -> None:
     table = Table(
         "engine",
         *names,
-        caption="✓ error in m and the engine's own estimate of it; ✗ it is not explained "
-        "by that; ? the estimate is too large to tell another law; ! no result",
+        caption="Error in m ± the engine's own estimate. ✓ the estimate explains the error; ✗ it does not; "
+        "? the estimate is too large to distinguish friction laws; ! no result",
         highlight=False,
     )
     for row in rows:

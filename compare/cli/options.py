@@ -1,6 +1,6 @@
-"""Options of the command line that several commands have, each declared once, with the parser that reads it.
+"""Options that several commands share, and their parsers.
 
-A parser raises ``BadInputError``: of a ``ValueError`` typer would show the value, and not what is allowed.
+Parsers raise ``BadInputError``, because typer's message for a ``ValueError`` does not say what is allowed.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ Group = TypeVar("Group", bound="DataclassInstance")
 Own = ParamSpec("Own")
 
 MOST_JOBS = 1000
-"""More would fill a machine's table of processes."""
+"""Limit of ``--jobs``; more could fill the process table."""
 
 
 def whole(name: str, least: int, most: int) -> Callable[[str], int]:
-    """Return the parser of whole numbers from ``least`` to ``most``."""
+    """Return a parser of integers from ``least`` to ``most``."""
 
     def parsed(text: str) -> int:
         with refused():
@@ -42,7 +42,7 @@ def whole(name: str, least: int, most: int) -> Callable[[str], int]:
 
 
 def positive(name: str, unit: str) -> Callable[[str], float]:
-    """Return the parser of numbers > 0 with ``unit``."""
+    """Return a parser of numbers > 0; messages show ``unit``."""
 
     def parsed(text: str) -> float:
         from reference_model.systems import finite_number
@@ -57,7 +57,7 @@ def positive(name: str, unit: str) -> Callable[[str], float]:
 
 
 def finite(name: str) -> Callable[[str], float]:
-    """Return the parser of finite numbers."""
+    """Return a parser of finite numbers."""
 
     def parsed(text: str) -> float:
         from reference_model.systems import finite_number
@@ -69,7 +69,7 @@ def finite(name: str) -> Callable[[str], float]:
 
 
 def chosen_from(kind: str, names: Sequence[str]) -> Callable[[str], str]:
-    """Return the parser of one of ``names``."""
+    """Return a parser that accepts only ``names``."""
 
     def parsed(text: str) -> str:
         from compare.engines import one_of
@@ -81,7 +81,7 @@ def chosen_from(kind: str, names: Sequence[str]) -> Callable[[str], str]:
 
 
 def tolerance_of(text: str) -> float:
-    """Return the tolerance that ``text`` says."""
+    """Return ``text`` as a valid tolerance."""
     from reference_model.systems import checked_tolerance, finite_number
 
     with refused():
@@ -89,7 +89,7 @@ def tolerance_of(text: str) -> float:
 
 
 def count(name: str, text: str, least: int, most: int) -> int:
-    """Return the whole number from ``least`` to ``most`` that ``text`` says; raise ``ValueError`` otherwise."""
+    """Return ``text`` as an integer; raise ``ValueError`` if it is not one from ``least`` to ``most``."""
     try:
         value = int(text)
     except ValueError:
@@ -100,7 +100,7 @@ def count(name: str, text: str, least: int, most: int) -> int:
 
 
 def cores() -> int:
-    """Return how many cores this process may use."""
+    """Return the number of cores available to this process."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -111,13 +111,13 @@ Settings = Annotated[
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="A parameter in SI units, several times for several.",
+        help="Parameter and its value in SI units; repeat for more parameters.",
         show_default=False,
     ),
 ]
 Tolerance = Annotated[
     float,
-    typer.Option(metavar="TOL", help="Accuracy to aim at.", parser=tolerance_of),
+    typer.Option(metavar="TOL", help="Requested relative accuracy.", parser=tolerance_of),
 ]
 Folder = Annotated[Path, typer.Option("--output", metavar="DIR", help="Folder for the results.")]
 Jobs = Annotated[
@@ -126,22 +126,24 @@ Jobs = Annotated[
         metavar="N",
         help="Number of processes.",
         parser=whole("jobs", 1, MOST_JOBS),
-        show_default="one for each core",
+        show_default="one per core",
     ),
 ]
 Resume = Annotated[
     bool,
-    typer.Option("--resume", help="Keep what the same code and libraries have already computed there."),
+    typer.Option(
+        "--resume", help="Complete an earlier run; reuse its results if code and libraries are unchanged."
+    ),
 ]
 
 
-def taking(
+def with_options(
     group: type[Group], **defaults: Any
 ) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
-    """Let a command take the fields of the dataclass ``group`` as options besides its own.
+    """Add the fields of the dataclass ``group`` to a command as options.
 
-    The command is handed them as its first argument. ``defaults`` are those that this command has others of. Typer
-    reads options from a signature: that of the fields takes the place of the first argument.
+    The command takes a ``group`` as its first argument. In the signature that typer reads, the fields replace it.
+    ``defaults`` override defaults of the fields.
     """
 
     def decorated(command: Callable[Concatenate[Group, Own], Value]) -> Callable[..., Value]:
@@ -167,7 +169,7 @@ def taking(
 
 
 def changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with changes "name=value"; raise ``ValueError`` for what is neither."""
+    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid name or value."""
     changes: dict[str, Any] = dict(changes_of(settings, [field.name for field in fields(system)]))
     if str(changes.get("contact_points", "")).strip().lower() == "none":
         changes["contact_points"] = None
@@ -175,7 +177,7 @@ def changed(system: System, settings: Sequence[str]) -> System:
 
 
 def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
-    """Return the values by name of settings "name=value"; raise ``ValueError`` for what is none of ``names``."""
+    """Return the values of settings "name=value" by name; raise ``ValueError`` for a name not in ``names``."""
     from compare.engines import one_of
 
     changes: dict[str, str] = {}
@@ -185,27 +187,27 @@ def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
             raise ValueError(f"--set {setting!r}: write it as NAME=VALUE")
         name = one_of("parameter", name.strip(), names)
         if name in changes:
-            raise ValueError(f"--set {name}: it is there more than once")
+            raise ValueError(f"--set {name} is given more than once; give it once")
         changes[name] = value
     return changes
 
 
 def studies_of(context: typer.Context, names: Sequence[str], level: str = "full") -> tuple[Study, ...]:
-    """Return the studies of these names, or all of a level; those of ``main`` where it was given its own."""
+    """Return the named studies, or all of a level, from the studies passed to ``main`` or the paper's."""
     from compare.studies import STUDIES, studies
 
     with refused():
         if level == "quick" and names:
-            raise ValueError(f"--level quick chooses the studies: leave out {', '.join(names)}, or the level")
+            raise ValueError(f"--level quick cannot be combined with named studies ({', '.join(names)})")
         found = studies(names, STUDIES if context.obj is None else context.obj)
     return tuple(study for study in found if study.quick or level == "full")
 
 
 def check_folder(folder: Path) -> None:
-    """Raise ``ValueError`` if no file can be made in ``folder``, which is made itself: check all else before."""
+    """Make ``folder``; raise ``ValueError`` if it is not writable. Make this the last check of a command."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        raise ValueError(f"can't write into the folder {str(folder)!r}: {error.strerror}") from None
+        raise ValueError(f"cannot write to the folder {str(folder)!r}: {error.strerror}") from None

@@ -1,4 +1,4 @@
-"""``friction-discs plan``: the motions that studies ask for as files, for engines that nobody else can start."""
+"""``friction-discs plan``: the motions of studies as files, for engines that only their owner can run."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from compare.cli.report import Level
 
 Names = Annotated[
     list[str] | None,
-    typer.Argument(metavar="STUDY", help="Studies to plan; all without any.", show_default=False),
+    typer.Argument(metavar="STUDY", help="Studies to plan; all by default.", show_default=False),
 ]
 Kinds = Annotated[
     list[str] | None,
     typer.Option(
         "--kind",
         metavar="KIND",
-        help="What your engine simulates: block, pin, points or ring; several times for several.",
+        help="Kind of system that your engine simulates: block, pin, points or ring; repeat for more kinds.",
         show_default="pin",
     ),
 ]
@@ -34,11 +34,11 @@ def plan(
     output: Folder = Path("plan"),
     jobs: Jobs = None,
 ) -> int:
-    """Write the motions that studies ask for into a folder, each as a file, for an engine that answers with files.
+    """Write the motions of studies as files for another engine.
 
-    Put NAME.csv beside each NAME.json, as simulate --output writes it: a line for each time with the time and the
-    state. Then judge them with report --engine files:DIR. What is missing or cut short is not scored. Claims whose
-    motions depend on the answers are left out.
+    They are for an engine that this project cannot run. Add NAME.csv to each NAME.json in the format of simulate
+    --output: one line per time, with the time and the state. Then judge the answers with report --engine files:DIR.
+    Missing and incomplete answers are not scored. Claims whose motions depend on earlier answers are left out.
 
     \b
     Examples:
@@ -57,7 +57,7 @@ def plan(
 
     for study in studies:
         if names and study.only:
-            say(f"{study.name} is about {' and '.join(study.only)} only: nothing is planned", FINE)
+            say(f"{study.name} applies only to {' and '.join(study.only)}; skipped", FINE)
     studies = tuple(study for study in studies if not study.only)
     found: dict[str, Planned | Failure] = {}
     with Workers(jobs or cores()) as workers, measurements() as progress:
@@ -70,16 +70,19 @@ def plan(
     motions = dict.fromkeys(line for one in plans.values() for line in one.motions)
     for name, failure in found.items():
         if isinstance(failure, Failure):
-            say(f"{name} can't be planned: {failure}", SOMETHING_DIFFERS)
+            say(f"cannot plan {name}: {failure}", SOMETHING_DIFFERS)
     if not motions and len(plans) < len(found):
         return SOMETHING_DIFFERS
     if not motions:
-        raise BadInputError("no study of these asks for motions that do not depend on the answers")
+        raise BadInputError(
+            "no motions to plan: they are of another --kind, or they depend on earlier answers"
+        )
     write_plan(output, kinds, motions)
     with printing():
         for name, one in plans.items():
-            print(f"{name}: {len(one.motions)} motions for {one.claims} claims, {one.adaptive} left out")
-        print(
-            f"{len(motions)} motions ({output}); judge them with friction-discs report --engine files:{output}"
-        )
+            print(
+                f"{name}: {len(one.motions)} motions for {one.claims} claims, {one.adaptive} claims left out"
+            )
+        command = f"friction-discs report --engine files:{output}"
+        print(f"{len(motions)} motions in {output}; judge the answers with {command}")
     return FINE if len(plans) == len(found) else SOMETHING_DIFFERS

@@ -42,19 +42,19 @@ if TYPE_CHECKING:
 
 
 MOST_LISTED = 10
-"""Measurements that a sentence names."""
+"""Largest number of measurements that a message lists."""
 
 Names = Annotated[
     list[str] | None,
-    typer.Argument(metavar="STUDY", help="Studies to run; all without any.", show_default=False),
+    typer.Argument(metavar="STUDY", help="Studies to run; all by default.", show_default=False),
 ]
 Engines = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME",
-        help="Engine to measure, several times for several; all without any. "
-        "MODULE:FUNCTION takes a simulate() of your own, exec:COMMAND a program of any language, files:DIR "
-        "answers to what plan has asked for, and fmu:FILE a model for co-simulation.",
+        help="Engine to measure; repeat for more engines (default: all). Your own engine is MODULE:FUNCTION "
+        "(a Python function), exec:COMMAND (a program in any language), files:DIR (answers to the motions of plan) "
+        "or fmu:FILE (a co-simulation FMU).",
         show_default=False,
     ),
 ]
@@ -62,7 +62,7 @@ Level = Annotated[
     str,
     typer.Option(
         metavar="LEVEL",
-        help="quick takes only studies of seconds, with something of every kind of claim; full takes all.",
+        help="quick (studies that take seconds, with every kind of claim) or full (all studies).",
         parser=chosen_from("level", ("quick", "full")),
     ),
 ]
@@ -72,7 +72,7 @@ Limit = Annotated[
     typer.Option(
         "--study-limit",
         metavar="SECONDS",
-        help="Time after which a study of an engine is given up; without it, never.",
+        help="Time limit in s for one study of one engine; no limit by default.",
         parser=positive("study-limit", "s"),
         show_default=False,
     ),
@@ -84,7 +84,7 @@ LeastConclusive = Annotated[
     typer.Option(
         "--min-conclusive",
         metavar="N",
-        help="How many claims have to agree; the theory's own algebra does not count.",
+        help="Least number of claims that must agree; the theory's own algebra does not count.",
         parser=whole("min-conclusive", 0, 1_000_000),
     ),
 ]
@@ -94,7 +94,7 @@ OneClaim = Annotated[
     str | None,
     typer.Option(
         metavar="ID",
-        help="Measure this one claim, as the report calls it, and print its numbers.",
+        help="Measure only this claim, for example fig06/rests, and print its numbers.",
         show_default=False,
     ),
 ]
@@ -112,15 +112,16 @@ def report(
     jobs: Jobs = None,
     resume: Resume = False,
 ) -> int:
-    """Measure the claims of the studies and write index.html, results.json, junit.xml and the figures.
+    """Measure the claims of studies and write a report.
 
-    The exit status is 0 when nothing differs, 1 when a claim differs or an engine failed, 2 on bad input, 3 when too
-    few claims agree, 4 when an engine that --engine names has no verdict or gives no reason for one that is missing,
-    and 130 after Ctrl-C: the report then holds what was finished, and --resume does the rest.
-    Files of data that an engine of your own reads are not looked at by that: when they change, measure anew.
+    The report consists of index.html, results.json, junit.xml and figures. A full report goes into the folder report,
+    a partial one (some studies or engines, one claim, the quick level) into report-part. Choose another folder with
+    --output.
 
-    The whole report goes into the folder report. A part of it (some studies or engines, one claim, the quick level)
-    goes into the folder report-part and leaves the whole report as it is. --output names another folder.
+    The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
+    if too few claims agree. It is 4 if an engine named with --engine has no verdict, or omits a claim without a
+    reason. It is 130 after Ctrl-C; the report then contains the finished measurements, and --resume completes it.
+    --resume does not notice changes to data files of your own engine; then run the command without it.
 
     \b
     Examples:
@@ -132,7 +133,7 @@ def report(
     from compare.run.runner import loaded
     from compare.run.workers import Workers
 
-    studies = _asked(context, names or [], claim, level, resume)
+    studies = _requested_studies(context, names or [], claim, level, resume)
     output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
     with refused(), Workers() as workers:
         chosen = loaded(engine or [], workers)
@@ -165,33 +166,31 @@ def report(
 
 
 def store_of(output: Path) -> Path:
-    """Return the folder beside the report's in which --resume finds what was measured: no reader needs it."""
+    """Return the folder of measurements for ``--resume``, outside the report because readers do not need it."""
     return output.resolve().with_name(f"{output.resolve().name}.data")
 
 
-def _asked(
+def _requested_studies(
     context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
 ) -> tuple[Study, ...]:
-    """Return the studies to measure, or the one that makes a claim; refuse what doesn't go with it."""
+    """Return the studies to measure; for ``--claim``, its study. Reject options that conflict with it."""
     studies = studies_of(context, names, level)
     if claim is None:
         return studies
     with refused():
         if names or level != "full" or resume:
-            raise ValueError(
-                f"--claim {claim} chooses what is measured: leave out studies, --level and --resume"
-            )
+            raise ValueError("--claim cannot be combined with named studies, --level or --resume")
         return (with_claim(studies, claim),)
 
 
 def _folder(context: typer.Context, output: Path, part: bool) -> Path:
-    """Return the folder that the user named, or by default "report-part" for a part, which keeps the whole report."""
+    """Return the folder; "report-part" is the default of a partial report, so the full one is kept."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
 
 def _write(result: Run, output: Path) -> Matrix:
-    """Write the report, without an interruption: that takes seconds, and then nothing is half written."""
+    """Write the report; Ctrl-C is ignored for these seconds, so no file is incomplete."""
     from compare.report.write import write_report
     from compare.run.workers import interrupts_ignored
 
@@ -200,7 +199,6 @@ def _write(result: Run, output: Path) -> Matrix:
 
 
 def _print_numbers(matrix: Matrix) -> None:
-    """Print the numbers that decide each claim."""
     from compare.report.numbers import account
 
     for claim in matrix.claims:
@@ -208,7 +206,6 @@ def _print_numbers(matrix: Matrix) -> None:
 
 
 def _is_suspect(matrix: Matrix, engine: str) -> bool:
-    """Return whether any claim of an engine differs or has no result."""
     from compare.report.matrix import State
 
     found = matrix.count(engine)
@@ -216,7 +213,6 @@ def _is_suspect(matrix: Matrix, engine: str) -> bool:
 
 
 def _print_diagnoses(suspects: Iterable[Engine]) -> None:
-    """Print what is behind the claims of engines that differ, in a few sentences."""
     from compare.diagnosis.run import IN_SHORT, in_short
     from compare.run.workers import Workers
 
@@ -228,13 +224,14 @@ def _print_diagnoses(suspects: Iterable[Engine]) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status of a report; print what is missing, also for the engines that --engine ``named``."""
+    """Return the exit status; print what is missing. ``named`` are the engines from ``--engine``."""
     from compare.report.matrix import State
 
     if result.interrupted:
         missing = _listed([f"{study} {column}" for study, column in result.missing]) or "figures"
         return say(
-            f"Interrupted; missing: {missing}. The same command with --resume completes it.", INTERRUPTED
+            f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.",
+            INTERRUPTED,
         )
     wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
     if wrong:
@@ -243,7 +240,9 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
         return say(unexplained, NOTHING_MEASURED)
     conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
     if conclusive < least_conclusive:
-        return say(f"{conclusive} verdicts are conclusive: {least_conclusive} are asked for", NOTHING_SHOWN)
+        return say(
+            f"{conclusive} claims agree, but --min-conclusive requires {least_conclusive}", NOTHING_SHOWN
+        )
     return FINE
 
 
@@ -261,11 +260,10 @@ def _unexplained(result: Run, matrix: Matrix, named: Collection[str]) -> Iterato
             if not isinstance(found, Findings) or found.not_simulated or study.only:
                 continue
             if missing := study.sentences().keys() - {claim.sentence for claim in found.claims}:
-                yield f"{study.name} {name}: not measured, and no reason given: {_listed(sorted(missing))}"
+                yield f"{study.name} {name}: claims not measured, without a reason: {_listed(sorted(missing))}"
 
 
 def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
-    """Print a line for all that is no agreement, and the totals."""
     from compare.report.matrix import State
     from compare.report.page import summary
 
@@ -279,7 +277,7 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 lines.append(f"{line}: {cell.reason}")
             elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
                 lines.append(f"{line}: {row.sentence}")
-    for line in dict.fromkeys(lines):  # an engine gives the same reason for all claims of a study
+    for line in dict.fromkeys(lines):  # an engine gives one reason for all claims of a study
         print(line)
     for what, failure in _failures(result).items():
         print(f"{what}: {failure}")
@@ -292,7 +290,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _failures(result: Run) -> dict[str, Failure]:
-    """Return what failed besides the measurements, by a name that can be printed."""
+    """Return failed drawings and errata, by a description to print."""
     from compare.run.workers import Failure
 
     work: dict[str, object] = {
@@ -305,13 +303,13 @@ def _failures(result: Run) -> dict[str, Failure]:
     return {name: value for name, value in work.items() if isinstance(value, Failure)}
 
 
-# --- One claim of a study, to measure it by itself.
+# --- A single claim of a study.
 
 
 def with_claim(studies: Sequence[Study], identity: str) -> Study:
-    """Return the study that makes the claim ``identity``, "fig06/rests", with no other claim and no figures.
+    """Return the study of the claim ``identity``, for example "fig06/rests", without its other claims and figures.
 
-    Raises ``ValueError`` for a claim that no study declares.
+    Raises ``ValueError`` if no study declares the claim.
     """
     found = {
         declared.identity(study.name, case): (study, declared, case)

@@ -1,4 +1,4 @@
-"""``friction-discs simulate pin | disc``: one motion as a file."""
+"""``friction-discs simulate pin | disc``: simulates a motion and writes it to a file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, finite, positive, taking, whole
+from compare.cli.options import Settings, Tolerance, changed, finite, positive, whole, with_options
 from compare.output.text_files import check_writable, replacing
 
 if TYPE_CHECKING:
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from reference_model.trajectory import Trajectory
 
 MOST_SAMPLES = 10_000_000
-"""More would fill the memory of a machine."""
+"""Limit of ``--samples``; more would exhaust the memory."""
 
 simulate = typer.Typer(rich_markup_mode=None)
 
-EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine that simulates.")]
+EngineName = Annotated[str, typer.Option("--engine", metavar="NAME", help="Engine to use.")]
 PinState = Annotated[
     tuple[float, float, float, float],
     typer.Option(
@@ -39,7 +39,7 @@ DiscState = Annotated[
         parser=finite("start"),
     ),
 ]
-Until = Annotated[float, typer.Option(metavar="T", help="Last time in s.", parser=positive("until", "s"))]
+Until = Annotated[float, typer.Option(metavar="T", help="Final time in s.", parser=positive("until", "s"))]
 Samples = Annotated[
     int,
     typer.Option(
@@ -48,15 +48,13 @@ Samples = Annotated[
 ]
 File = Annotated[
     Path | None,
-    typer.Option(
-        metavar="FILE", help="File to write, .csv or .json.", show_default="csv on the standard output"
-    ),
+    typer.Option(metavar="FILE", help="Output file, .csv or .json.", show_default="CSV on standard output"),
 ]
 
 
 @dataclass(frozen=True)
 class Request:
-    """What both systems take from the command line."""
+    """Options that both systems share."""
 
     engine: EngineName = "reference"
     settings: Settings = None
@@ -78,12 +76,14 @@ def simulate_system() -> None:
 
 
 @simulate.command("pin", cls=Command)
-@taking(Request)
+@with_options(Request)
 def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
-    """Simulate a pin and write its motion; what is not set is the second case of Fig. 5.
+    """Simulate a pin and write its motion.
+
+    The defaults are the second case of Fig. 5.
 
     \b
-    Parameters, with their values in Fig. 5:
+    Parameters in SI units, with their defaults:
       mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
       hardening=0 stop_gap=0 stop_stiffness=0
     \b
@@ -98,12 +98,14 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
 
 
 @simulate.command("disc", cls=Command)
-@taking(Request)
+@with_options(Request)
 def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) -> None:
-    """Simulate a friction disc and write its motion; what is not set is Fig. 11 with X0 = 0.
+    """Simulate a friction disc and write its motion.
+
+    The defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters, with their values in Fig. 11; contact_points=none is the continuous ring:
+    Parameters in SI units, with their defaults; contact_points=none is the continuous ring:
       mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
       contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
       hardening=0 stop_gap=0 stop_stiffness=0
@@ -119,7 +121,6 @@ def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) 
 
 
 def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
-    """Simulate ``paper`` with its changes and write the motion to a file or standard output."""
     import numpy as np
 
     from compare.cli.trajectory_files import write_csv, writer
@@ -141,7 +142,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             if output is not None:
                 _check_file(output)
         trajectory = workers.ask(
-            _told, chosen, system, state, times, request.tolerance, write is not write_csv
+            _simulated, chosen, system, state, times, request.tolerance, write is not write_csv
         )
     if isinstance(trajectory, Failure):
         raise EngineFailedError(f"engine {chosen.name!r} failed: {trajectory}")
@@ -156,10 +157,10 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
         raise BadInputError(_unwritable(output, error)) from None
 
 
-def _told(
+def _simulated(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
-    """Return the motion as numbers, with its phases if they are asked for: the engine may be asked again for them."""
+    """Return the motion as arrays; include its phases on request, because they may need another simulation."""
     from reference_model.trajectory import Trajectory
 
     found = engine.simulate(system, state, times, tolerance=tolerance)
@@ -167,11 +168,11 @@ def _told(
 
 
 def _unwritable(path: Path, error: OSError) -> str:
-    return f"can't write the file {str(path)!r}: {error.strerror}"
+    return f"cannot write the file {str(path)!r}: {error.strerror}"
 
 
 def _check_file(path: Path) -> None:
-    """Raise ``ValueError`` if ``path`` can't be written; leave what is there as it is."""
+    """Raise ``ValueError`` if ``path`` cannot be written; do not change an existing file."""
     try:
         check_writable(path)
     except OSError as error:

@@ -14,14 +14,14 @@ from reference_model.trajectory import Trajectory
 
 
 def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:
-    """Return the function for the ending of ``path``; raise ``ValueError`` if there is none."""
+    """Return the function that writes the format of ``path``; raise ``ValueError`` for an unknown suffix."""
     if path.suffix not in WRITERS:
-        raise ValueError(f"can't tell the format of {path.name!r}: it must end in {' or '.join(WRITERS)}")
+        raise ValueError(f"unknown format of {path.name!r}: the file name must end in {' or '.join(WRITERS)}")
     return WRITERS[path.suffix]
 
 
 def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
-    """Write a line of column names with units, then a line for each time; numbers in full."""
+    """Write column names with units, then one line per time, in full precision."""
     header = [("t", "s"), *COLUMNS[type(trajectory.system)]]
     stream.write(",".join(f"{name} [{unit}]" for name, unit in header) + "\n")
     for time, state in zip(trajectory.times, trajectory.states, strict=True):
@@ -29,7 +29,7 @@ def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
 
 
 def write_json(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
-    """Write the motion with all that is known about it: parameters, phases, and how it was computed."""
+    """Write the motion with its parameters, its phases and the details of its solution."""
     columns = COLUMNS[type(trajectory.system)]
     content = {
         "version": version_of("friction-discs"),

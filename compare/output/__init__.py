@@ -1,1 +1,1 @@
-"""What is written for people: how figures look, and files that are whole at every moment."""
+"""Output for people: the style of figures, text from outside, and files that are never incomplete."""

@@ -1,6 +1,6 @@
-r"""How every figure looks: sizes, type, and a fixed colour, line and marker for each engine.
+r"""Style of all figures: sizes, fonts, and a fixed colour, line and marker for each engine.
 
-A study's ``draw`` needs nothing else::
+Example of a study's ``draw``::
 
     from compare.output.figures import curve, new_figure, points
 
@@ -14,10 +14,10 @@ A study's ``draw`` needs nothing else::
         left.legend()
         return {"fig03-radius": figure}
 
-Formulas are thin and black and lie on top of the engines' curves; an engine is a broad line (``curve``) or
-hollow marks (``points``), so that coinciding results remain visible. ``draw`` is called and its figures are
-saved inside of ``paper_style()``; nothing of pyplot's global state is touched. Import matplotlib itself only
-inside of functions: the command line must start without it.
+Formulas are thin black lines on top of the engines' curves. Engines are broad lines (``curve``) or hollow marks
+(``points``), so coinciding results remain visible. ``draw`` is called, and its figures are saved, within
+``paper_style()``; pyplot's global state is not used. Import matplotlib only inside functions, because the command
+line must start without it.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ PURPLE = "#a6559d"
 SKY = "#5ab4e5"
 GREY = "#7f7f7f"
 PALETTE = (BLUE, ORANGE, GREEN, PURPLE, SKY, GREY)
-"""After Okabe and Ito, darkened or lightened so that neighbours differ in grey as well."""
+"""Palette of Okabe and Ito, darkened or lightened so neighbours also differ in grey."""
 
 PANEL_WIDTH = 4.4
 PANEL_HEIGHT = 3.3
@@ -105,7 +105,7 @@ _OTHERS = (
 
 @contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply the settings of ``PAPER`` to all that is drawn and saved inside."""
+    """Apply the settings of ``PAPER`` to figures drawn and saved inside."""
     import matplotlib
 
     with matplotlib.rc_context(PAPER):
@@ -122,7 +122,7 @@ def new_figure(
 ) -> tuple[Figure, tuple[Axes, ...]]:
     """Return a figure and its axes, row by row in a flat tuple.
 
-    ``width`` and ``height`` are in inches and default to a comfortable panel; ``subplots`` goes to
+    ``width`` and ``height`` are in inches; the defaults fit the number of panels. ``subplots`` are arguments of
     ``Figure.subplots`` (``sharex=True``, ``width_ratios=...``, ``subplot_kw=...``).
     """
     import matplotlib.figure
@@ -136,12 +136,12 @@ def new_figure(
 
 
 def engine_style(engine: str) -> EngineStyle:
-    """Return the fixed style of an engine or of "theory"; an engine of the user's own has one by its name."""
+    """Return the fixed style of an engine or of "theory"; the style of other engines depends on their name."""
     return _STYLES.get(engine) or _OTHERS[zlib.crc32(engine.encode()) % len(_OTHERS)]
 
 
 def curve(engine: str, label: str | None = None, **changes: Any) -> dict[str, Any]:
-    """Return the arguments of ``Axes.plot`` that draw a line of ``engine``."""
+    """Return the arguments of ``Axes.plot`` for a line of ``engine``."""
     style = engine_style(engine)
     return {
         "color": style.colour,
@@ -153,7 +153,7 @@ def curve(engine: str, label: str | None = None, **changes: Any) -> dict[str, An
 
 
 def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, Any]:
-    """Return the arguments of ``Axes.plot`` that draw hollow marks of ``engine`` without a line."""
+    """Return the arguments of ``Axes.plot`` for hollow marks of ``engine`` without a line."""
     style = engine_style(engine)
     return {
         "color": style.colour,
@@ -167,9 +167,9 @@ def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, A
 
 
 def beside(panel: Axes, place: float) -> Any:
-    """Return the transform of marks that stand ``place`` marks to the right of where they belong.
+    """Return the transform that shifts marks by ``place`` mark widths to the right of their true position.
 
-    So marks that would lie on each other are all seen; a caption has to say so.
+    It keeps coinciding marks visible; mention it in the caption.
     """
     from matplotlib.transforms import offset_copy
 
@@ -184,7 +184,7 @@ def engines_in(data: Iterable[str]) -> tuple[str, ...]:
 
 
 def axis(symbol: str, unit: str = "") -> str:
-    r"""Return the label of an axis: ``axis(r"\mu N", "N")``; without a unit the number is dimensionless."""
+    r"""Return the label of an axis, for example ``axis(r"\mu N", "N")``; omit the unit of dimensionless numbers."""
     return f"${symbol}$ in {unit}" if unit else f"${symbol}$"
 
 
@@ -201,8 +201,8 @@ def as_svg(figure: Figure) -> bytes:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     svg = io.BytesIO()
-    canvas: Any = FigureCanvasSVG(figure)  # which has no types
-    with paper_style():  # ``savefig`` draws everything once more, only for the layout
-        figure.set_dpi(PAPER["savefig.dpi"])  # of what is no line
+    canvas: Any = FigureCanvasSVG(figure)  # untyped
+    with paper_style():  # faster than ``savefig``, which draws the figure once more for its layout
+        figure.set_dpi(PAPER["savefig.dpi"])  # for rasterised parts
         canvas.print_svg(svg, metadata={"Date": None})
     return svg.getvalue()

@@ -1,4 +1,4 @@
-"""Text that comes from outside: from engines, their programs and models, exceptions, files and the command line."""
+"""Text from outside the project: engines, programs, models, exceptions, files and the command line."""
 
 from __future__ import annotations
 
@@ -14,43 +14,43 @@ MOST = 2000
 LEFT_OUT = " [...] "
 
 NOT_ASCII = re.compile(r"[^\n\t -~]")
-"""Characters that may not be printable."""
+"""Characters that may be unprintable."""
 
 FORMULA = tuple("=+-@＝＋－＠")
-"""First characters of a formula in a spreadsheet."""
+"""First characters of spreadsheet formulas."""
 
 
 def printable(text: object, most: int = MOST) -> str:
-    r"""Return ``text`` so that a file can encode it, a terminal can show it and XML can contain it.
+    r"""Return ``text`` in a form that files, terminals and XML accept, with at most ``most`` characters.
 
-    Characters that do not print, such as control characters and lone surrogates, are escaped as ``repr`` does:
-    "\x1b". Line breaks and tabs stay. A second call changes nothing.
+    Unprintable characters, such as control characters and lone surrogates, are escaped as by ``repr``: "\x1b".
+    Line breaks and tabs are kept. The function is idempotent.
     """
     try:
         text = str(text)
-    except Exception as error:  # the class of an exception may be the engine's
+    except Exception as error:  # an engine may define the class of an exception
         text = f"{type(text).__name__}, whose text raises {type(error).__name__}"
     return _shortened(NOT_ASCII.sub(_escaped, _shortened(text, most)), most)
 
 
 def one_line(text: object) -> str:
-    """Return ``printable`` text on one line, which a spreadsheet does not take for a formula: a name, a version."""
+    """Return a name or version as ``printable`` text on one line that is not a spreadsheet formula."""
     line = " ".join(printable(text).split())
     return f"'{line}" if line.startswith(FORMULA) else line
 
 
 def one_of(kind: str, name: str, names: Iterable[str]) -> str:
-    """Return ``name`` if it is among ``names``; raise ``ValueError`` that suggests the nearest otherwise."""
+    """Return ``name`` if it is among ``names``; else raise ``ValueError`` with a suggestion."""
     names = list(names)
     if name in names:
         return name
     nearest = difflib.get_close_matches(name, names, n=1, cutoff=0.4)
-    hint = f"did you mean {nearest[0]!r}?" if nearest else f"known are {', '.join(names)}"
+    hint = f"did you mean {nearest[0]!r}?" if nearest else f"choose from {', '.join(names)}"
     raise ValueError(f"unknown {kind} {name!r}: {hint}")
 
 
 def all_printable(content: Any) -> Any:
-    """Return JSON values with every text and every name made ``printable``."""
+    """Return JSON values with all texts and names ``printable``."""
     if isinstance(content, dict):
         return {printable(name): all_printable(value) for name, value in content.items()}
     if isinstance(content, list):
@@ -73,7 +73,7 @@ def _shortened(text: str, most: int) -> str:
 
 
 def cause_of_end(code: int) -> str:
-    """Return how a process with this exit code ended: by its status, or by a signal if the code is negative."""
+    """Return the cause of a process's end: its exit status, or a signal if the code is negative."""
     if code >= 0:
         return f"exit status {code}"
     return next((one.name for one in signal.Signals if one == -code), f"signal {-code}")  # some have no name

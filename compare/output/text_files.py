@@ -1,4 +1,4 @@
-"""Files that are whole at every moment: written beside, and put in place when nothing can go wrong any more."""
+"""Files that are never incomplete: written under a temporary name and then renamed."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import IO, Any
 
 PART = ".part"
-"""What the name of a file that is being written ends in."""
+"""Suffix of a file that is being written."""
 
 
 @contextmanager
 def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
-    """Yield a stream for the new contents of a file, which keeps the old ones if anything is raised inside.
+    """Yield a stream for the new contents of a file; an exception inside leaves the old contents.
 
-    What is no ordinary file, a pipe or a device, is written to as it is.
+    Pipes and devices are written directly.
     """
     path = _target(path)
     text: dict[str, Any] = {} if "b" in mode else {"encoding": "utf-8", "newline": "\n"}
@@ -38,13 +38,13 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file that is either the old or the new one, whole, at every moment."""
+    """Write a file atomically: readers see either the old or the new contents."""
     with replacing(path) as stream:
         stream.write(text)
 
 
 def check_writable(path: Path) -> None:
-    """Raise ``OSError`` if a file can't be written; leave what is there as it is."""
+    """Raise ``OSError`` if a file cannot be written; do not change an existing file."""
     path = _target(path)
     if path.is_file() or path.is_dir():
         with open(path, "ab"):
@@ -57,5 +57,5 @@ def check_writable(path: Path) -> None:
 
 
 def _target(path: Path) -> Path:
-    """Return what a link leads to: it stays, and its target is replaced."""
+    """Return the target of a link, so the link stays and its target is replaced."""
     return Path(os.path.realpath(path))

@@ -1,1 +1,1 @@
-"""The report: what it looks like (``style``, ``animation``) and how it is written (``write``)."""
+"""The report: its matrix of verdicts, its page, and its files for programs."""

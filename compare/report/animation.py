@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = 64
-"""Size of a frame's palette; lines and labels need no more, and the file stays small."""
+"""Number of colours of a frame, enough for lines and labels in a small file."""
 
 
 def gif(
@@ -26,14 +26,13 @@ def gif(
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
 
-    ``update(i)`` changes the artists of ``figure`` for frame i; the layout is fixed at the first frame so
-    that nothing jumps. Where it changes ``moving`` only, these are drawn in their order upon all the rest, which is
-    drawn once.
+    ``update(i)`` changes the artists of ``figure`` for frame i. The layout of the first frame is kept. If ``update``
+    changes only the artists ``moving``, pass them; the others are then drawn once, below them.
     """
     import PIL.Image
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    canvas: Any = FigureCanvasAgg(figure)  # which has no types
+    canvas: Any = FigureCanvasAgg(figure)  # untyped
     figure.set_dpi(dpi)
     update(0)
     canvas.draw()
@@ -53,7 +52,7 @@ def gif(
             artist.draw(canvas.get_renderer())
         pixels = bytes(canvas.buffer_rgba())
         pictures.append(PIL.Image.frombytes("RGBA", canvas.get_width_height(), pixels).convert("RGB"))
-    palette = _palette(pictures)  # one for all frames: no flicker
+    palette = _palette(pictures)  # one for all frames, to avoid flicker
     frames_out = [picture.quantize(palette=palette, dither=PIL.Image.Dither.NONE) for picture in pictures]
     _keep_background(frames_out, pictures[0])
     stream = io.BytesIO()
@@ -70,7 +69,7 @@ def gif(
 
 
 def still(content: bytes) -> bytes:
-    """Return the first picture of an animation as PNG, for those who want nothing to move."""
+    """Return the first frame of an animation as PNG, for readers who prefer no motion."""
     import PIL.Image
 
     stream = io.BytesIO()
@@ -80,7 +79,7 @@ def still(content: bytes) -> bytes:
 
 
 def _palette(pictures: list[PIL.Image.Image]) -> PIL.Image.Image:
-    """Return a picture whose palette serves some frames from beginning to end."""
+    """Return a picture whose palette fits a sample of all frames."""
     import PIL.Image
 
     some = pictures[:: max(len(pictures) // 4, 1)]
@@ -92,7 +91,7 @@ def _palette(pictures: list[PIL.Image.Image]) -> PIL.Image.Image:
 
 
 def _keep_background(frames: list[PIL.Image.Image], original: PIL.Image.Image) -> None:
-    """Give the colour of the corner back its exact value, which quantising shifts: white would look grey."""
+    """Restore the exact colour of the corner, because quantising would turn white into grey."""
     index = frames[0].getpixel((0, 0))
     exact = original.getpixel((0, 0))
     for frame in frames:

@@ -1,4 +1,4 @@
-"""What the first screen says of each engine: a grade and a sentence, of claims and nothing else."""
+"""The first screen of the report: a grade and a sentence for each engine, derived from its claims only."""
 
 from __future__ import annotations
 
@@ -14,17 +14,18 @@ from compare.report.numbers import error_text
 from compare.run.runner import Run
 
 OTHER_LAW = 10.0
-"""What another law of friction would change of a recorded motion, over the resolution of its claim."""
+"""Change of a recorded motion due to another friction law, over the resolution of its claim."""
 
 ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
-"""Grades beside those of ``compare.claims.claim.Grade``: agrees with a larger error; differs; nothing agrees."""
+"""Grades beyond ``compare.claims.claim.Grade``: agreement with a larger error; a claim differs; nothing agrees."""
 
 
 @dataclass(frozen=True)
 class Glance:
-    """One engine: ``cells`` are those of the recorded motions at its best setting, None where it simulates none.
+    """Summary of one engine.
 
-    ``where`` is the link to the place in the page that tells more.
+    ``cells`` are the recorded motions at its best setting, None for a motion that it does not simulate. ``where``
+    links to the details.
     """
 
     engine: str
@@ -36,7 +37,7 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines of this run, then those that were recorded, each at its best setting."""
+    """Return the engines of this run, then the recorded engines, each at its best setting."""
     recorded = matrix.recorded[0] if matrix.recorded else None
     found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
     if recorded is not None:
@@ -51,7 +52,7 @@ def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
 
 
 _RANKS = [grade.value for grade in GRADES] + [ROUGH, OPEN, DIFFERS]
-"""Grades, the best first."""
+"""Grades, best first."""
 
 
 def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
@@ -61,7 +62,6 @@ def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
 
 
 def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:
-    """Return what is said of an engine of this run."""
     counts = matrix.count(engine)
     grades = matrix.grades(engine)
     if counts[State.DIFFERS] or counts[State.FAILED]:
@@ -77,12 +77,12 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
     gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
     rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
     settings = recorded.by_engine.get(engine, []) if recorded is not None else []
-    if settings and grade != DIFFERS:  # by the same motions as the others
+    if settings and grade != DIFFERS:  # compare all engines by the same motions
         grade = _grade(settings[0])
     errors = _errors(settings[0]) if settings else ""
     parts = [agreeing, *rest, *([errors] if errors else [])]
     cells = recorded.cells(settings[0]) if recorded is not None and settings else ()
-    where = f"?engine={quote(engine)}#studies"  # its claims
+    where = f"?engine={quote(engine)}#studies"
     return Glance(engine, run.versions.get(engine, ""), grade, f"{'; '.join(parts)}.", where, cells)
 
 
@@ -94,7 +94,7 @@ def _verb(state: State, count: int) -> str:
 
 
 def _best(settings: Sequence[Recorded]) -> Recorded:
-    """Return the setting with the fewest claims that differ or are open, and of these the one with most claims."""
+    """Return the setting with the fewest claims that do not agree; of several, the one with the most that do."""
 
     def badness(setting: Recorded) -> tuple[int, int, float]:
         agree = sum(claim.verdict is Verdict.AGREES for claim in setting.claims)
@@ -104,17 +104,17 @@ def _best(settings: Sequence[Recorded]) -> Recorded:
 
 
 def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recorded]) -> Glance:
-    """Return what is said of a recorded engine: of its own friction's best setting, and of those that differ."""
+    """Return the summary of a recorded engine: its best setting, and the settings that differ."""
     cells = recorded.cells(best)
     names = cases(recorded)
     parts = [f"{best.setting}: {_errors(best)}" if best.setting else _errors(best)]
-    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to tell")):
+    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to decide")):
         listed = [name for name, cell in zip(names, cells, strict=True) if cell and cell.state is state]
         parts += [f"{word}: {', '.join(listed)}"] if listed else []
     lacking = [name for name, cell in zip(names, cells, strict=True) if cell is None]
-    parts += [f"cannot: {', '.join(lacking)}"] if lacking else []
+    parts += [f"not simulated: {', '.join(lacking)}"] if lacking else []
     wrong = [one.setting for one in settings if one is not best and _grade(one) == DIFFERS]
-    parts += [f"another law by {', '.join(wrong)}"] if wrong else []
+    parts += [f"another friction law with {', '.join(wrong)}"] if wrong else []
     return Glance(
         best.engine,
         best.version,
@@ -126,7 +126,7 @@ def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recor
 
 
 def _errors(setting: Recorded) -> str:
-    """Return the largest errors that agree, while it slips and where it sticks and lets go."""
+    """Return the largest errors of agreeing motions, separately for slipping and for stick and release."""
     words = []
     for part, name in (("slip", "slipping"), ("stick", "in stick and release")):
         claims = [
@@ -141,7 +141,7 @@ def _errors(setting: Recorded) -> str:
 
 
 def _share(setting: Recorded) -> float:
-    """Return the largest error over what another law of friction would change, of those that agree."""
+    """Return the largest error of agreeing motions, relative to the change due to another friction law."""
     return max(
         (
             float(max(claim.difference.max(), claim.budget.total.max()))
@@ -154,7 +154,7 @@ def _share(setting: Recorded) -> float:
 
 
 def _grade(setting: Recorded) -> str:
-    """Return the grade of a setting: how small its error is beside what another law of friction would change."""
+    """Return the grade of a setting: its error relative to the change due to another friction law."""
     verdicts = {claim.verdict for claim in setting.claims}
     if Verdict.DIFFERS in verdicts:
         return DIFFERS
@@ -164,19 +164,19 @@ def _grade(setting: Recorded) -> str:
     return next((grade.value for grade, largest in GRADES.items() if share <= largest), ROUGH)
 
 
-# --- ``badge.svg``: how many claims agree, for somebody's README.
+# --- ``badge.svg``: the number of agreeing claims, for a README.
 
 LABEL = "friction-discs"
 
 GREEN, BROWN, RED = "#1d5c38", "#7a5200", "#9c1c1c"
-"""As in the page: white letters stand out from each of them by 6.9:1 at least."""
+"""Colours of the page; the contrast of white letters is at least 6.9:1."""
 
 WIDTH, MARGIN = 6.6, 12.0
-"""Of a letter, and of both sides together, in pixels."""
+"""Width of a letter, and both margins together, in pixels."""
 
 
 def badge(matrix: Matrix) -> str:
-    """Return an SVG that says how many verdicts agree, and in its colour whether any differs or is open."""
+    """Return an SVG with the number of agreeing verdicts; its colour shows whether any differs or is inconclusive."""
     counts = matrix.totals
     words = f"{counts[State.AGREES]} of {sum(counts[state] for state in (*VERDICTS, State.FAILED))} agree"
     bad = counts[State.DIFFERS] + counts[State.FAILED]

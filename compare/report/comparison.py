@@ -52,7 +52,7 @@ class Change:
         return self.kind in BAD and not self.known
 
     def __str__(self) -> str:
-        """Return a line."""
+        """Return the line that ``diff`` prints."""
         return f"{self.kind.value}{' (known)' * self.known}: {self.claim} {self.engine}: {self.words}"
 
 
@@ -101,13 +101,13 @@ def _of_runs(old: Results, new: Results) -> Iterator[Change]:
         state = unit["state"]
         was = before.get((study, engine), {"state": "not there"})["state"]
         if state == State.FAILED.value and was != state:
-            yield Change(Kind.WORSE, study, engine, f"was {was}, failed: {unit['reason']}")
+            yield Change(Kind.WORSE, study, engine, f"{was} before, failed now: {unit['reason']}")
         elif was == State.FAILED.value and state != was:
-            yield Change(Kind.BETTER, study, engine, f"failed, is {state}")
+            yield Change(Kind.BETTER, study, engine, f"failed before, {state} now")
         elif was == "not there":
             yield Change(Kind.NEW, study, engine, state)
     for study, engine in before.keys() - after.keys():
-        yield Change(Kind.GONE, study, engine, "is no part of the new report")
+        yield Change(Kind.GONE, study, engine, "missing in the new report")
 
 
 def _units(results: Results) -> dict[Key, dict[str, Any]]:
@@ -140,7 +140,6 @@ def _of_claims(old: Results, new: Results) -> Iterator[Change]:
 
 
 def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int], dict[str, Any]]:
-    """Return claims by study, identity, engine and number of the measurement."""
     return {
         (claim["id"].partition("/")[0], claim["id"], claim["engine"], claim["measurement"]): claim
         for claim in claims
@@ -150,7 +149,7 @@ def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int],
 def _moved(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
     """Describe the number that moved farthest beyond the sum of both error bars; "" if none did."""
     if old["shape"] != new["shape"] or old["places"] != new["places"]:
-        return "its numbers are others: they can't be compared one by one"
+        return "the claim consists of different numbers, so they cannot be compared"
     allowed = _errors(old) + _errors(new)
     worst, words = 1.0, ""
     for name in ("measured", "predicted"):
@@ -165,7 +164,7 @@ def _moved(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
             place = f", {new['places'][i][0]}" if new["places"][i][0] else ""
             words = (
                 f"{name} {value_text(before[i], allowed[i])} before, {value_text(after[i], allowed[i])} now{unit}: "
-                f"by {error_text(way[i])}{unit}, allowed {error_text(allowed[i])}{place}"
+                f"changed by {error_text(way[i])}{unit}, allowed {error_text(allowed[i])}{place}"
             )
     return words
 
@@ -198,10 +197,10 @@ def read_baseline(path: Path) -> frozenset[Key]:
         if (content["format"], content["version"]) == (FORMAT, VERSION):
             return frozenset((str(one["claim"]), str(one["engine"])) for one in content["known"])
     except OSError as error:
-        raise ValueError(f"can't read {str(path)!r}: {error.strerror}") from None
+        raise ValueError(f"cannot read {str(path)!r}: {error.strerror}") from None
     except (ValueError, KeyError, TypeError):
         pass
-    raise ValueError(f"{str(path)!r} is no baseline: diff --write-baseline writes one")
+    raise ValueError(f"{str(path)!r} is not a baseline; write one with diff --write-baseline")
 
 
 def write_baseline(path: Path, failures: Mapping[Key, str]) -> None:

@@ -12,9 +12,9 @@ from compare.run.workers import Failure
 
 
 def junit(run: Run, matrix: Matrix) -> bytes:
-    """Return the document: "differs" is a failure, failed an error, all that has no verdict skipped.
+    """Return the XML: "differs" is a failure, "failed" an error; claims without a verdict are skipped.
 
-    Recorded engines are left out: a verdict on them is no test of this project.
+    Recorded engines are left out, because their verdicts do not test this project.
     """
     root = ET.Element("testsuites", name="friction-discs")
     for study in matrix.studies:
@@ -60,7 +60,7 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
 
 
 def _numbers(claim: Claim) -> dict[str, str]:
-    """Return the numbers of the element that decides, in full, and its unit."""
+    """Return the numbers of the deciding element in full precision, and its unit."""
     element = worst(claim)
     numbers = {
         "predicted": element.predicted,
@@ -73,7 +73,7 @@ def _numbers(claim: Claim) -> dict[str, str]:
 
 
 def _share_time(suite: ET.Element, run: Run, study: str) -> None:
-    """Share the time that a study took of an engine among its cases: no claim was timed by itself."""
+    """Divide the time of a study equally among its cases, because claims are not timed separately."""
     cases: dict[str, list[ET.Element]] = {}
     for case in suite.iter("testcase"):
         cases.setdefault(case.get("classname", ""), []).append(case)

@@ -29,7 +29,7 @@ class State(Enum):
 
     @property
     def symbol(self) -> str:
-        """A mark that is told apart without colour."""
+        """Mark that is recognisable without colour."""
         return _SYMBOLS[self.value]
 
 
@@ -43,7 +43,7 @@ _SYMBOLS = {
 }
 
 GRADE_SYMBOLS = {Grade.EXACT: "✔", Grade.FINE: "✓", Grade.COARSE: "≈"}
-"""Marks of agreement by grade; agreement only within the resolution of a claim, without a grade, has "✓" too."""
+"""Marks of agreement by grade; agreement within the resolution of a claim but without a grade also has "✓"."""
 
 VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
 
@@ -98,7 +98,7 @@ class Cell:
 
     @property
     def symbol(self) -> str:
-        """A mark that is told apart without colour."""
+        """Mark that is recognisable without colour."""
         return GRADE_SYMBOLS[self.grade] if self.grade is not None else self.state.symbol
 
     @property
@@ -147,23 +147,23 @@ class RecordedMatrix:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        """The claims of all cases, as the first one, an engine of ours, makes them."""
+        """The claims of the first setting, which is an engine of this project and has them all."""
         return self.settings[0].claims
 
     def cells(self, setting: Recorded) -> tuple[Cell | None, ...]:
-        """Return the cells of a row, in the order of ``claims``; None for what the engine does not simulate."""
+        """Return the cells of a row in the order of ``claims``; None if the engine does not simulate it."""
         found = {claim.sentence: _cell([claim]) for claim in setting.claims}
         return tuple(found.get(claim.sentence) for claim in self.claims)
 
     @property
     def totals(self) -> Counter[State]:
-        """How many cells are in each state."""
+        """Number of cells in each state."""
         return Counter(cell.state for setting in self.settings for cell in self.cells(setting) if cell)
 
 
 @dataclass(frozen=True)
 class Matrix:
-    """The rows of some studies; ``columns`` are the engines, after "theory" if a study has claims of it.
+    """The rows of some studies; ``columns`` are the engines, after "theory" if it has claims.
 
     ``recorded`` is separate because it contains earlier results of foreign engines, not verdicts on this run.
     """
@@ -197,7 +197,7 @@ class Matrix:
 
     @property
     def totals(self) -> Counter[State]:
-        """How many cells are in each state."""
+        """Number of cells in each state."""
         return Counter(cell.state for cell in self.cells)
 
     def grades(self, column: str) -> Counter[Grade]:
@@ -206,11 +206,11 @@ class Matrix:
         return Counter({grade: found[grade] for grade in GRADES if found[grade]})
 
     def reasons(self, state: State) -> Counter[str]:
-        """Return the reasons of all cells in ``state``, and how many cells give each."""
+        """Return the reasons of all cells in ``state``, with the number of cells for each."""
         return Counter(cell.reason for cell in self.cells if cell.state is state)
 
     def of_evidence(self, evidence: Evidence, column: str = "") -> Counter[State]:
-        """Return how many verdicts of a kind of evidence, in one column or in all, are in each state."""
+        """Return the number of verdicts in each state with this kind of evidence, in one column or in all."""
         cells = self.column(column) if column else self.cells
         return Counter(cell.state for cell in cells if cell.evidence == evidence)
 
@@ -261,7 +261,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
                 cells[column] = gaps[column]
         identity = _identity(study, next(iter(found.values()))[0], rows)
         rows.append(Row(study, identity, sentence, equation, cells))
-    rows = [_weighed(row, rows, study) for row in rows]
+    rows = [_with_evidence(row, rows, study) for row in rows]
     # keep gaps that no row shows because no column made a claim
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
@@ -272,7 +272,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
 
 
 def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
-    """Return the identity of a claim, else a name made of its sentence that differs from all of ``rows``."""
+    """Return the identity of a claim, or a name derived from its sentence that is not used in ``rows``."""
     if claim.identity:
         return claim.identity
     name = f"{study.name}/{slug(claim.sentence)}"
@@ -280,12 +280,12 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
     return f"{name}~{same + 1}" if same else name
 
 
-def _weighed(row: Row, rows: list[Row], study: Study) -> Row:
-    """Return ``row`` with the kind of evidence of each verdict, which may follow from another one of ``rows``."""
-    return replace(row, cells={column: _weighed_cell(row, column, rows, study) for column in row.cells})
+def _with_evidence(row: Row, rows: list[Row], study: Study) -> Row:
+    """Return ``row`` with the kind of evidence of each verdict; another of ``rows`` may imply a verdict."""
+    return replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
 
 
-def _weighed_cell(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
+def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
     cell = row.cells[column]
     if not cell.claims:
         return cell
@@ -322,7 +322,7 @@ def _agrees(cell: Cell | None) -> bool:
 
 
 def _gap(run: Run, study: Study, column: str) -> Cell | None:
-    """Return the cell in place of claims that ``column`` lacks, None if none are missing."""
+    """Return the cell that replaces missing claims of ``column``; None if none are missing."""
     outcome = run.outcomes.get((study.name, column))
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)

@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: as many digits as mean something, powers of ten with superscripts."""
+"""Numbers for readers: significant digits only, powers of ten with superscripts."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from compare.claims.claim import Claim, Verdict
 MINUS = "\N{MINUS SIGN}"
 
 MOST_DIGITS = 12
-"""Of a result, however small its error."""
+"""Largest number of digits of a result."""
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 
 def with_digits(value: float, digits: int) -> str:
-    """Return ``value`` with so many significant digits: "0.0436", "−1.2×10⁻¹⁰", "0", "NaN", "∞"."""
+    """Return ``value`` with this number of significant digits: "0.0436", "−1.2×10⁻¹⁰", "0", "NaN", "∞"."""
     if math.isnan(value):
         return "NaN"
     if math.isinf(value):
@@ -36,7 +36,7 @@ def with_digits(value: float, digits: int) -> str:
 
 
 def value_text(value: float, uncertainty: float, most: int = MOST_DIGITS) -> str:
-    """Return a result with its digits down to the first of ``uncertainty``: 4 (2 in the noise) to ``most``."""
+    """Return a result to the first digit of ``uncertainty``: at least 4 digits (2 if smaller), at most ``most``."""
     if not (math.isfinite(value) and math.isfinite(uncertainty)) or value == 0.0:
         return with_digits(value, 4)
     if uncertainty <= 0.0:
@@ -46,26 +46,26 @@ def value_text(value: float, uncertainty: float, most: int = MOST_DIGITS) -> str
 
 
 def error_text(value: float, digits: int = 2) -> str:
-    """Return an error or a difference: two digits say enough."""
+    """Return an error or a difference, usually with two digits."""
     return with_digits(value, digits)
 
 
 def trimmed(value: float) -> str:
-    """Return a given number (a parameter) without digits that it does not have: "0.09", "1", "1×10⁻⁹"."""
+    """Return an exact number, such as a parameter, without trailing zeros: "0.09", "1", "1×10⁻⁹"."""
     if not math.isfinite(value) or value == 0.0:
         return with_digits(value, 1)
     digits = next((n for n in range(1, 13) if float(f"{value:.{n - 1}e}") == value), 12)
     return with_digits(value, digits)
 
 
-# --- The element of a claim that decides its verdict, and the numbers that stand for it wherever that is shown.
+# --- The element of a claim that decides its verdict.
 
 SPACE = "\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
 class Largest:
-    """The largest difference in one unit, of the element ``index`` with that ``name``."""
+    """The largest difference in one unit, with the index and the name of its element."""
 
     index: int
     name: str
@@ -75,9 +75,9 @@ class Largest:
 
 @dataclass(frozen=True)
 class Worst:
-    """The numbers of one element, ``index`` (from 0) of ``count``, in ``unit``, and each unit's largest difference.
+    """The deciding element of a claim, ``index`` (from 0) of ``count``, and the largest difference in each unit.
 
-    ``name`` says in words which element it is, "" where there is only one.
+    ``name`` describes the element, "" if the claim has only one.
     """
 
     index: int
@@ -98,7 +98,7 @@ class Worst:
 
 
 def worst(claim: Claim) -> Worst:
-    """Return the element that is nearest to failing, or, where nothing was shown, the least certain one."""
+    """Return the element nearest to failing; for an inconclusive claim, the element with the largest error bar."""
     numerical = np.broadcast_to(claim.budget.numerical, claim.predicted.shape)
     i = int(np.argmax(numerical)) if claim.verdict is Verdict.INCONCLUSIVE else claim.worst
     return Worst(
@@ -116,7 +116,6 @@ def worst(claim: Claim) -> Worst:
 
 
 def _largest(claim: Claim) -> tuple[Largest, ...]:
-    """Return the largest difference of each unit: metres and radians are not compared."""
     units = claim.units
     found = []
     for unit in dict.fromkeys(units):
@@ -128,14 +127,13 @@ def _largest(claim: Claim) -> tuple[Largest, ...]:
 
 
 def _name(claim: Claim, index: int) -> str:
-    """Return which element it is in words, by its number where nothing names it."""
     if claim.predicted.size == 1:
         return ""
     return claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:
-    """Return the one of several claims with the same verdict that decides it, as ``worst`` does of elements."""
+    """Return the claim nearest to failing, or the least certain one, of ``claims`` with the same verdict."""
 
     def weight(claim: Claim) -> float:
         element = worst(claim)
@@ -147,9 +145,9 @@ def deciding(claims: Sequence[Claim]) -> Claim:
 
 
 def in_short(claim: Claim) -> str:
-    """Return what stands beside a verdict: the error that is allowed, "± 2×10⁻⁹ m", or that it is off, "by 3 m".
+    """Return the number next to a verdict: the error bar, "± 2×10⁻⁹ m", or the excessive difference, "by 3 m".
 
-    Of answers, "7 of 8"; nothing where an exact number is met exactly.
+    For yes-no answers it is "7 of 8"; for agreement without an error bar, "".
     """
     element = worst(claim)
     if claim.answers:
@@ -161,15 +159,15 @@ def in_short(claim: Claim) -> str:
 
 
 def answers_text(count: float) -> str:
-    """Return a number of answers, which is whole: "3", "1,000,000"."""
+    """Return a number of answers as an integer: "3", "1,000,000"."""
     return f"{round(count):,}"
 
 
 def account(claim: Claim) -> str:
-    """Return the numbers of the element that decides."""
+    """Return the numbers of the deciding element in one line."""
     element = worst(claim)
     if claim.answers:
-        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to tell"
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to decide"
     unit = f" {element.unit}" if element.unit else ""
     largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
     return (

@@ -1,4 +1,4 @@
-"""``index.html``: one page with all texts and numbers, and pictures in files beside it."""
+"""``index.html``: one page with all texts and numbers; pictures are separate files."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class Picture:
 
     @property
     def still(self) -> str:
-        """The path of what does not move."""
+        """Path of the figure, or of the first frame of the animation."""
         return str(PurePosixPath(self.path).with_suffix(".png")) if self.moves else self.path
 
 
 @dataclass(frozen=True)
 class Exceptional:
-    """A line under the totals, with the place in the page where it is explained."""
+    """A line below the totals; ``target`` is the anchor of its explanation."""
 
     state: State
     text: str
@@ -51,11 +51,11 @@ class Exceptional:
 
 
 HERO = "drivetrain-picture"
-"""The figure that shows on the first screen what all this is about, where it was drawn."""
+"""Figure on the first screen, if it was drawn."""
 
 
 def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
-    """Return the HTML of the report; ``paths`` are those of the claims' tables, by identity."""
+    """Return the HTML of the report; ``paths`` are the claims' tables by identity."""
     hero_study, hero = _hero(run)
     return (
         environment()
@@ -73,7 +73,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             paths=paths,
             glances=glances(run, matrix),
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
-            off=_off,
+            deviation=_largest_difference,
             hero=hero,
             hero_study=hero_study,
             filters=_filters(matrix),
@@ -97,7 +97,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
 
 
 def environment() -> Environment:
-    """Return what renders the templates."""
+    """Return the environment that renders the templates."""
     result = Environment(
         loader=PackageLoader("compare.report"),
         autoescape=True,
@@ -112,21 +112,25 @@ def environment() -> Environment:
 
 
 def summary(matrix: Matrix) -> str:
-    """Return the totals in words, what is independent evidence first, and the gaps.
+    """Return the totals in words: agreement by kind of evidence, then the other states.
 
-    "41 agree on independent evidence, besides 7 by self-check, 3 of algebra and 5 implied; 1 differs, ...".
+    Example: "41 agree on independent evidence, plus 7 by self-check, 3 by algebra and 5 by implication; 1 differs".
     """
     agree = {evidence: matrix.of_evidence(evidence)[State.AGREES] for evidence in EVIDENCE}
-    besides = [f"{agree[evidence]} {name}" for evidence, name in BESIDES.items() if agree[evidence]]
+    other = [f"{agree[evidence]} {name}" for evidence, name in OTHER_EVIDENCE.items() if agree[evidence]]
     words = f"{_agree(agree['independent'])} on independent evidence"
-    if besides:
-        listed = " and ".join([", ".join(besides[:-1]), besides[-1]] if len(besides) > 1 else besides)
-        words += f", besides {listed}"
+    if other:
+        listed = " and ".join([", ".join(other[:-1]), other[-1]] if len(other) > 1 else other)
+        words += f", plus {listed}"
     return f"{words}; {_others_in_words(matrix.totals)}"
 
 
-BESIDES: dict[Evidence, str] = {"self-check": "by self-check", "algebra": "of algebra", "implied": "implied"}
-"""How verdicts that are no independent evidence are counted."""
+OTHER_EVIDENCE: dict[Evidence, str] = {
+    "self-check": "by self-check",
+    "algebra": "by algebra",
+    "implied": "by implication",
+}
+"""Words for verdicts without independent evidence."""
 
 
 def _in_words(totals: Counter[State]) -> str:
@@ -148,11 +152,11 @@ def _others_in_words(totals: Counter[State]) -> str:
 
 
 def _exceptions(matrix: Matrix) -> list[Exceptional]:
-    """Return what a reader must not overlook: claims that differ or show nothing, engines that failed."""
+    """Return the claims that differ or are inconclusive, and the engines that failed, worst first."""
     found: dict[tuple[State, str, str], list[str]] = {}
     for row in matrix.rows:
         for column, cell in row.cells.items():
-            if cell.state is State.FAILED:  # all claims of the study at once
+            if cell.state is State.FAILED:  # with all claims of the study
                 text, target = f"{row.study.title}: {cell.reason}", row.study.name
             elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
                 text, target = row.sentence, row.identity
@@ -174,7 +178,7 @@ def _particular(row: Row, claim: Claim) -> str:
 
 
 def _common(row: Row) -> dict[str, Any]:
-    """Return what the claims of a row share, ready to print: parameters, and sources and notes by engine."""
+    """Return the shared parameters of a row's claims, and their sources and notes by engine, as texts."""
     return {
         "parameters": _parameters(_shared_parameters(row.claims)),
         "sources": _by_engine(row, "source"),
@@ -196,7 +200,7 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def _by_engine(row: Row, attribute: str) -> list[str]:
-    """Return the distinct texts, each with its engines before it unless all say the same."""
+    """Return the distinct texts, each after the names of its engines if there are several."""
     texts: dict[str, list[str]] = {}
     for claim in row.claims:
         text = getattr(claim, attribute)
@@ -219,7 +223,7 @@ def _parameter(value: Any) -> str:
 
 
 def _is_answered(study: Study, own: Matrix) -> bool:
-    """Tell whether the study has a finding, all of its claims agree and all numbers of the finding were measured."""
+    """Return whether a study has a finding, all its claims agree, and all numbers in the finding were measured."""
     return (
         bool(study.prose.finding)
         and own.agrees
@@ -228,7 +232,7 @@ def _is_answered(study: Study, own: Matrix) -> bool:
 
 
 def _quoting(own: Matrix, text: str) -> Markup:
-    """Return a text of a study with its quotes from ``own`` rows, each with its error and a link to its claim."""
+    """Return a text with its numbers quoted from the rows ``own``, each with its error and a link to its claim."""
     found = Markup()
     for literal, words in quotes.parts(text):
         found += _with_code(literal)
@@ -246,7 +250,6 @@ def _quoting(own: Matrix, text: str) -> Markup:
 
 
 def _with_code(text: str) -> Markup:
-    """Return a text with what stands between two backticks as code."""
     parts = (
         Markup("<code>{}</code>" if i % 2 else "{}").format(part) for i, part in enumerate(text.split("`"))
     )
@@ -254,7 +257,7 @@ def _with_code(text: str) -> Markup:
 
 
 def _origin(quote: quotes.Quote) -> str:
-    """Return who measured a quoted number, and its error."""
+    """Return the error of a quoted number, its engine and its claim."""
     error = f"± {error_text(quote.error)}, " if quote.nature == "measured" else ""
     return f"{error}{quote.claim.engine}: {quote.claim.sentence}"
 
@@ -268,7 +271,7 @@ def _pictures(run: Run, study: Study) -> list[Picture]:
         Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
         for name in drawing.animations
     ]
-    # in the order of the captions where there is one
+    # in the order of the captions; pictures without a caption come last
     order = list(study.figures)
     return sorted(
         figures + animations,
@@ -277,7 +280,7 @@ def _pictures(run: Run, study: Study) -> list[Picture]:
 
 
 def _hero(run: Run) -> tuple[Study | None, Picture | None]:
-    """Return the picture of the first screen and the study that it is from; None for none."""
+    """Return the picture of the first screen and its study; None if it was not drawn."""
     for study in run.studies:
         for picture in _pictures(run, study):
             if picture.name == HERO:
@@ -285,13 +288,12 @@ def _hero(run: Run) -> tuple[Study | None, Picture | None]:
     return None, None
 
 
-def _off(cell: Cell) -> str:
-    """Return how far a recorded motion is off."""
+def _largest_difference(cell: Cell) -> str:
     return error_text(max(float(claim.difference.max()) for claim in cell.claims), 1)
 
 
 def _filters(matrix: Matrix) -> dict[str, list[str]]:
-    """Return what can be chosen of the claims: by engine, verdict, kind of evidence, study and equation."""
+    """Return the options of the filters: engines, verdicts, kinds of evidence, studies and equations."""
     return {
         "engine": list(matrix.columns),
         "verdict": [state.value for state in State if matrix.totals[state]],
@@ -316,22 +318,21 @@ def _claim_commands(row: Row) -> list[str]:
 
 
 def command(what: str, engine: str) -> str:
-    """Return the command line that measures a study, or a claim, again with one engine."""
+    """Return the command that repeats the measurement of a study, or of a claim, with one engine."""
     return f"friction-discs report {what}" + ("" if engine == THEORY else f" --engine {shlex.quote(engine)}")
 
 
 def _number(value: float) -> Markup:
-    """Return an error with two digits; the exact number goes along."""
+    """Return an error with two digits, and its exact value as data."""
     return _data(value, error_text(value))
 
 
 def _value(value: float, uncertainty: float) -> Markup:
-    """Return a result with the digits that mean something; the exact number goes along."""
+    """Return a result with its significant digits, and its exact value as data."""
     return _data(value, value_text(value, uncertainty))
 
 
 def _answers(value: float) -> Markup:
-    """Return a number of answers."""
     return _data(value, answers_text(value))
 
 

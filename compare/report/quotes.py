@@ -1,18 +1,18 @@
-"""Numbers that texts quote from claims, so that no text says what was not measured.
+"""Numbers that texts quote from claims, so every number in a text was measured.
 
-In the words of a study a quote is a name in braces, "a pair grows at {rate of growth, 3 digits} 1/s". One of the
-study's claims gives that name to an element, or to all of them (``Claim.named``). After commas stands what is wanted:
+A quote in a study's text is a name in braces, as in "a pair grows at {rate of growth, 3 digits} 1/s". A claim of the
+study gives this name to one of its elements or to all of them (``Claim.named``). Options follow after commas:
 
 =============  ======================================================================================================
-(nothing)      the measured number, with the digits that the claim's error allows, from the first engine that has it
-``exudyn``     from this engine
+(none)         the measured number from the first engine that has it, with the digits that its error allows
+``exudyn``     the number from this engine
 ``error``      the largest error bar
-``difference`` the largest difference from what was predicted
-``relative``   the error, or difference, over the largest predicted number
-``3 digits``   at most so many
-``mm``         in another unit: ``%`` of a share, ``mm`` of m, ``rpm`` of rad/s, ``turns`` of rad
-``% from 0.5`` how far it is from a given number, with its sign
-``±``          with the error bar behind it
+``difference`` the largest difference from the prediction
+``relative``   the error or difference, over the largest predicted number
+``3 digits``   at most this number of digits
+``mm``         another unit: ``%`` for a share, ``mm`` for m, ``rpm`` for rad/s, ``turns`` for rad
+``% from 0.5`` the signed deviation from a given number, in per cent
+``±``          the number followed by its error bar
 =============  ======================================================================================================
 """
 
@@ -30,17 +30,17 @@ from compare.claims.claim import Claim
 from compare.report.numbers import MOST_DIGITS, error_text, value_text
 
 Nature = Literal["count", "measured", "error"]
-"""Of a quoted number: a count is exact, what is measured has an error, and an error is known to a power of ten."""
+"""Nature of a quoted number: a count is exact, a measured number has an error, an error holds to a power of ten."""
 
 MISSING = "(not measured)"
 
 UNITS = {"%": 100.0, "mm": 1e3, "rpm": 30.0 / math.pi, "turns": 0.5 / math.pi}
-"""Factors to units that texts have and claims have not."""
+"""Factors from units of claims to units of texts."""
 
 
 @dataclass(frozen=True)
 class Quote:
-    """A number as it stands in a text, its exact value and error, and the claim that it is from."""
+    """A number as printed in a text, its exact value and error, and its claim."""
 
     text: str
     value: float
@@ -51,8 +51,6 @@ class Quote:
 
 @dataclass(frozen=True)
 class _Reference:
-    """What a quote asks for."""
-
     name: str
     engine: str = ""
     part: str = "measured"
@@ -86,7 +84,7 @@ class _Reference:
 
 
 def quote(claims: Iterable[Claim], words: str) -> Quote | None:
-    """Return what ``words`` ask for, see above, from the first of ``claims`` that has it; None if none has."""
+    """Return the number that ``words`` name from the first of ``claims`` that has it; None if none has it."""
     asked = _Reference.of(words)
     for claim in claims:
         if asked.name in claim.named and asked.engine in ("", claim.engine):
@@ -103,7 +101,7 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
     if asked.part == "measured":
         if place is None:
             raise ValueError(
-                f"{asked.name!r} names all numbers of a claim: ask for their 'error' or 'difference'"
+                f"{asked.name!r} names all numbers of a claim; quote their 'error' or 'difference'"
             )
         value = asked.factor * (float(claim.measured.flat[place]) - asked.origin)
         sign = "+" if asked.origin and value > 0.0 else ""
@@ -118,13 +116,13 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
 
 
 def parts(text: str) -> Iterator[tuple[str, str | None]]:
-    """Yield what stands before each quote of ``text`` and the quote's words; in the end what follows, and None."""
+    """Yield pairs of the text before each quote and the words of the quote, then the remaining text and None."""
     for literal, name, options, _ in Formatter().parse(text):
         yield literal, f"{name}:{options}" if options else name
 
 
 def filled(text: str, claims: Iterable[Claim]) -> str:
-    """Return ``text`` with its quotes from ``claims`` in place."""
+    """Return ``text`` with its quotes replaced by numbers of ``claims``."""
     claims = tuple(claims)
     found = []
     for literal, words in parts(text):

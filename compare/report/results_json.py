@@ -1,7 +1,7 @@
 """``results.json``: the report for programs, described by ``results.schema.json``.
 
-It has the verdict of each claim and engine with the numbers that decide it. All other numbers are in tables beside
-it; ``read_results`` puts both together.
+The file contains the verdict of each claim and engine with the numbers of the deciding element. All numbers are in
+separate tables, which ``read_results`` adds.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ from reference_model.systems import FloatArray
 
 # --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
 #
-# Where an engine makes a claim several times, ``measurement`` counts them from 1. Numbers come back to the last bit;
-# "nan" and "inf" are what they are called. Large tables are compressed (xz), which pandas and R read as they are.
+# ``measurement`` counts repeated claims of an engine from 1. Numbers are written in full precision, and as "nan" or
+# "inf". Large tables are compressed (xz); pandas and R read them directly.
 
 FOLDER = "arrays"
 
@@ -51,19 +51,19 @@ COLUMNS = (
     "numerical_error",
     "size",
 )
-"""``element`` counts from 0, ``place`` says in words which it is, ``size`` is empty where a claim has none."""
+"""Columns of a table; ``element`` counts from 0, ``place`` describes it, ``size`` is empty if the claim has none."""
 
 LARGE = 32_768
-"""Bytes from which a table is compressed."""
+"""Size in bytes above which a table is compressed."""
 
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
-    """Return the path in the report's folder and the content of each claim's file, by the claim's identity."""
+    """Return the path in the report and the content of each claim's table, by identity."""
     return {row.identity: table(row) for row in matrix.rows if row.claims}
 
 
 def table(row: Row) -> tuple[str, bytes]:
-    """Return the path of a claim's file in the report's folder, and what is in it."""
+    """Return the path in the report and the content of a claim's table."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -76,7 +76,7 @@ def table(row: Row) -> tuple[str, bytes]:
 
 
 def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
-    """Yield the columns from ``element`` on of each element."""
+    """Yield the columns of each element, starting with ``element``."""
     shape = claim.predicted.shape
     numbers = [
         repeat("")
@@ -88,10 +88,10 @@ def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
 
 
 def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
-    """Return ``results.json`` of the report in ``folder`` with the arrays of each claim in it.
+    """Return the results of the report in ``folder`` with the arrays of each claim.
 
-    They are as in ``compare.claims.as_json.claim_as_json``; ``places`` has the name and the unit of each element.
-    Raises ``OSError`` or ``ValueError`` for a file that is not there, or is no such table.
+    The arrays have the format of ``compare.claims.as_json.claim_as_json``; ``places`` contains the name and the unit
+    of each element. Raises ``OSError`` or ``ValueError`` if a table is missing or invalid.
     """
     studies = []
     for study in results["studies"]:
@@ -109,7 +109,7 @@ def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str]]:
-    """Return names of the last axis, which say the units where they are mixed."""
+    """Return the names along the last axis if units are mixed, else []."""
     if "," not in claim["unit"]:
         return []
     return [[]] * (len(claim["shape"]) - 1) + [[row["place"] for row in rows[: claim["shape"][-1]]]]
@@ -128,7 +128,8 @@ def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
 def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, Any]:
     if len(rows) != int(np.prod(claim["shape"], dtype=int)):
         raise ValueError(
-            f"{claim['arrays']} has {len(rows)} numbers of {claim['engine']}: is it of this report?"
+            f"{claim['arrays']} contains {len(rows)} numbers of {claim['engine']}, but results.json expects "
+            f"{int(np.prod(claim['shape'], dtype=int))}; they may be from different reports"
         )
 
     def column(name: str) -> FloatArray:
@@ -149,7 +150,7 @@ def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, A
 # --- The report as one file.
 
 FORMAT, VERSION = "friction-discs results", 1
-"""What the file says of itself; the version rises when a reader of the old one would be misled."""
+"""Name and version of the format; the version rises with incompatible changes."""
 
 FILE = "results.json"
 
@@ -162,39 +163,39 @@ def schema() -> dict[str, Any]:
 
 
 def read_results(path: Path) -> dict[str, Any]:
-    """Return a report's results with the arrays of each claim, from ``results.json`` or the folder that it is in.
+    """Return a report's results with the arrays of each claim, from ``results.json`` or its folder.
 
     Raises
     ------
     ValueError
-        For a file that is not there or is no such file, of another version too.
+        If the file is missing, is not a report or has another version.
 
     """
     file = path / FILE if path.is_dir() else path
     try:
         content = all_printable(json.loads(file.read_text(encoding="utf-8")))
     except OSError as error:
-        raise ValueError(f"can't read {str(file)!r}: {error.strerror}") from None
+        raise ValueError(f"cannot read {str(file)!r}: {error.strerror}") from None
     except ValueError:
         content = None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise ValueError(f"{str(file)!r} is no results.json of a report")
+        raise ValueError(f"{str(file)!r} is not the results.json of a report")
     if content["version"] != VERSION:
         raise ValueError(
-            f"{str(file)!r} has version {content['version']}: this program reads version {VERSION}"
+            f"{str(file)!r} has version {content['version']}, but this program reads version {VERSION}"
         )
     try:
         return with_arrays(content, file.parent)
     except OSError as error:
         raise ValueError(
-            f"can't read {str(error.filename)!r}, a table of {str(file)!r}: {error.strerror}"
+            f"cannot read {str(error.filename)!r}, a table of {str(file)!r}: {error.strerror}"
         ) from None
 
 
 def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of ``results.json``; numbers that JSON doesn't know are "nan", "inf", "-inf".
+    """Return the content of ``results.json``; numbers that JSON lacks are "nan", "inf" and "-inf".
 
-    ``paths`` are those of the claims' tables, by identity.
+    ``paths`` are the claims' tables by identity.
     """
     return {
         "format": FORMAT,
@@ -254,7 +255,7 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
 
 
 def _verdict(claim: Claim, cell: Cell, measurement: int, identity: str, path: str) -> dict[str, Any]:
-    """Return a claim with its kind of evidence in this report, and where its numbers are."""
+    """Return a claim with its kind of evidence in this report and the path of its numbers."""
     said = _without_arrays(claim)
     more = {
         "measurement": measurement,
@@ -277,7 +278,7 @@ def _without_arrays(claim: Claim) -> dict[str, Any]:
 
 
 def _deciding(claim: Claim) -> dict[str, Any]:
-    """Return the numbers of the element that decides, and the largest difference in each unit."""
+    """Return the numbers of the deciding element, and the largest difference in each unit."""
     element = worst(claim)
     return {
         "decided_by": as_json(
@@ -315,7 +316,7 @@ def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
 
 
 def erratum_id(erratum: Erratum) -> str:
-    """Return what an erratum is called for good, as "erratum-13"."""
+    """Return the permanent identity of an erratum, such as "erratum-13"."""
     return f"erratum-{slug(erratum.equation)}"
 
 

@@ -1,4 +1,4 @@
-"""Writes a report: the page, the files for programs, and figures and arrays as files of their own."""
+"""Writes the files of a report: page, results for programs, figures and arrays."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from compare.run.runner import Run
 from compare.run.store import Drawing
 
 LINES = 4
-"""How deep lines are nested in ``results.json``: each claim has one."""
+"""Number of nesting levels of ``results.json`` with one line per value; each claim gets one line."""
 
 
 def write_report(run: Run, output: Path) -> Matrix:
-    """Write the report of a run, complete or not, into the folder ``output`` and return its matrix."""
+    """Write the report of a complete or interrupted run to the folder ``output`` and return its matrix."""
     verdicts, stamp = matrix(run), platform_stamp()
     output.mkdir(parents=True, exist_ok=True)
     for drawing in run.drawings.values():
@@ -40,14 +40,13 @@ def write_report(run: Run, output: Path) -> Matrix:
 
 
 def _pictures(drawing: Drawing) -> dict[str, bytes]:
-    """Return figures and animations by their paths in the report's folder."""
     figures = {f"figures/{name}.svg": content for name, content in drawing.figures.items()}
     moving = {f"figures/{name}.gif": content for name, content in drawing.animations.items()}
     return figures | moving | {f"figures/{name}.png": still(gif) for name, gif in drawing.animations.items()}
 
 
 def _lines(content: Any, depth: int) -> str:
-    """Return JSON with a line for each value down to ``depth``."""
+    """Return JSON with one line per value down to ``depth``."""
     if depth == 0 or not content or not isinstance(content, dict | list):
         return json.dumps(content, ensure_ascii=False, allow_nan=False)
     if isinstance(content, list):

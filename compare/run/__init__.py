@@ -1,1 +1,1 @@
-"""Measuring: studies and engines in processes of their own, findings kept for a resumption."""
+"""Measurement of studies in separate processes, with findings stored for a resumption."""

@@ -91,7 +91,6 @@ def _pieces(study: Study) -> Iterator[tuple[str, ...]]:
 
 
 def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], only: tuple[str, ...]) -> int:
-    """Return the number of claims measured with the answers of ``recorder``."""
     return len(study.measure(Engine("plan", recorder, kinds, phases=False), only=only).claims)
 
 

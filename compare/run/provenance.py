@@ -1,4 +1,4 @@
-"""Where results come from: commit, versions and machine, and one digest of all that they depend on."""
+"""Provenance of results: commit, versions and machine, and one digest of all that they depend on."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ from typing import Any
 from compare.engines import ByName, Engine
 from compare.engines.outside.program import code_below
 
-# --- From which commit, versions and machine a report is.
+# --- Commit, versions and machine of a report.
 
 ROOT = Path(__file__).resolve().parents[2]
-"""Where the packages are."""
+"""Folder of the packages."""
 
 LIBRARIES = ("numpy", "scipy", "exudyn", "numba")
 
 
 def platform_stamp() -> dict[str, str]:
-    """Return versions, operating system, number of cores and date, ready to print; no name of a machine or folder."""
+    """Return versions, operating system, number of cores and date as texts, without names of machines or folders."""
     return {
         "friction-discs": version_of("friction-discs"),
-        "commit": commit() or "not known",
+        "commit": commit() or "unknown",
         "Python": platform.python_version(),
         **{name: version_of(name) for name in LIBRARIES},
         "user settings of Exudyn": exudyn_user_settings(),
@@ -47,17 +47,17 @@ def platform_stamp() -> dict[str, str]:
 
 
 ENGINES = {"reference": "friction-discs", "plain": "friction-discs", "exudyn": "exudyn"}
-"""Distributions that bring this project's engines, or those whose code they share."""
+"""Distributions that contain the code of this project's engines."""
 
 
 def engine_version(name: str, kin: str, own: str) -> str:
-    """Return an engine's version, its ``own`` or that of the distribution it is from; "" where none is known."""
+    """Return ``own``, or the version of the engine's distribution; "" if unknown."""
     source = ENGINES.get(kin or name)
     return own or (version_of(source) if source else "")
 
 
 def commit() -> str:
-    """Return the commit of this project's code, with "-dirty" where files differ from it; "" where none is known."""
+    """Return the commit of the code, with "-dirty" if files differ from it; "" if unknown."""
     if (ROOT / ".git").exists():
         try:
             found = subprocess.run(
@@ -76,7 +76,7 @@ def commit() -> str:
 
 
 def processor() -> str:
-    """Return what the processor calls itself, else its kind."""
+    """Return the model name of the processor, or else its architecture."""
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("model name"):
@@ -85,7 +85,7 @@ def processor() -> str:
 
 
 def version_of(name: str) -> str:
-    """Return the installed version, "none" where it isn't installed."""
+    """Return the installed version, or "none"."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -93,24 +93,24 @@ def version_of(name: str) -> str:
 
 
 def exudyn_user_settings() -> str:
-    """Return "off", or "on" where Exudyn was imported before a study and has found a user's own settings."""
+    """Return "on" if Exudyn has already been imported and applied a user's own settings, else "off"."""
     found = sys.modules.get("exudyn.misc.overrideSettings")
     return "on" if found is not None and found.Applied() else "off"
 
 
-# --- The files of an engine's code. Modules are found, not imported: foreign code runs only in a process of its own.
+# --- Files of an engine's code. Modules are located but not imported: foreign code runs only in separate processes.
 
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
-"""This project's own."""
+"""Packages of this project."""
 
 SITES = {"site-packages", "dist-packages"}
-"""Folders of installed packages, which do not belong to each other."""
+"""Folders of installed packages, which are independent of each other."""
 
 
 def files_of(function: Callable[..., Any]) -> list[Path] | None:
     """Return the files of an engine's function and of the modules next to it, sorted.
 
-    Empty for this project's functions and those of Python itself; None if there are no files to be found.
+    The list is empty for functions of this project and of Python itself, and None if no files are found.
     """
     if (files := getattr(function, "files", None)) is not None:
         return sorted(files) or None
@@ -132,21 +132,21 @@ def files_of(function: Callable[..., Any]) -> list[Path] | None:
 
 
 def _found(package: str, folder: str) -> ModuleSpec | None:
-    """Return where a module or package without dots is; ``folder`` comes last, as where it is imported."""
+    """Return the location of a top-level module; ``folder`` is searched last, as in its import."""
     before = sys.path.copy()
     sys.path.extend([folder] if folder else [])
     try:
         return importlib.util.find_spec(package)
-    except ValueError:  # a module of this process that came from no file
+    except ValueError:  # a module that was not loaded from a file
         return None
     finally:
         sys.path[:] = before
 
 
-# --- One digest of what results depend on: sources, the engine's own files, versions of libraries, kind of machine.
+# --- Digest of all that results depend on: sources, the engine's own files, versions of libraries, type of machine.
 
 SOURCES = {".py", ".c", ".h", ".json", ".csv"}
-"""Endings of the project's code, and of the data that it reads: records of other engines, published numbers."""
+"""Suffixes of the project's code and of its data: records of other engines and published numbers."""
 
 DRAWING_LIBRARIES = ("matplotlib", "pillow")
 
@@ -159,9 +159,9 @@ def stamp(*more: str) -> str:
 
 
 def engine_stamp(engine: Engine | None) -> str | None:
-    """Return :func:`stamp` with what the answers of an engine depend on, None if its files cannot be read.
+    """Return :func:`stamp` with all that an engine's answers depend on; None if its files cannot be read.
 
-    An engine from elsewhere may use any installed package, so the versions of all packages count.
+    A foreign engine may use any installed package, so the versions of all packages count.
     """
     if engine is None:
         return stamp()
@@ -183,12 +183,11 @@ def engine_stamp(engine: Engine | None) -> str | None:
 
 @cache
 def _sources(root: Path) -> str:
-    """Return the digest of the packages below ``root``; a process has the code that it was started with."""
+    """Return the digest of the packages below ``root``, cached because a process keeps the code it started with."""
     paths = (path for name in PACKAGES for path in (root / name).rglob("*") if path.suffix in SOURCES)
     return _digest((path.relative_to(root).as_posix(), path) for path in sorted(paths))
 
 
 def _digest(files: Iterable[tuple[str, Path]]) -> str:
-    """Return the SHA-256 of names and contents of files."""
     contents = [(name, hashlib.sha256(path.read_bytes()).hexdigest()) for name, path in files]
     return hashlib.sha256(repr(contents).encode()).hexdigest()

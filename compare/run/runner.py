@@ -34,7 +34,7 @@ class Run:
     studies, engines : tuple
         Requested studies, and names of the requested engines without "theory".
     contact_only : tuple of str
-        Names of the engines that take part only in studies in which the contact decides.
+        Names of the engines that take part only in studies of the contact (``Study.contact``).
     about : tuple of str
         Descriptions of the engines.
     errata : tuple of Erratum
@@ -239,12 +239,11 @@ def measured(study: Study, engine: Engine | str | None, only: Collection[str] = 
     elif study.has_theory:
         findings = study.measure_theory(only=only)
     if not isinstance(findings, Findings):
-        raise TypeError(f"the study returned {type(findings).__name__}: it must be Findings")
+        raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
     return replace(findings, not_simulated=printable(findings.not_simulated))
 
 
 def _identities(study: Study) -> set[str]:
-    """Return the names of the claims that a study declares."""
     return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}
 
 
@@ -267,7 +266,7 @@ def _loaded(name: str, workers: Workers) -> Engine:
     if isinstance(found, str):
         raise ValueError(found)
     if isinstance(found, Failure):
-        raise ValueError(f"engine {name!r} can't be loaded: {found}")
+        raise ValueError(f"cannot load engine {name!r}: {found}")
     engine: Engine = found
     return engine
 

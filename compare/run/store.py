@@ -22,11 +22,10 @@ from compare.run.provenance import stamp
 
 # --- Findings on disk: claims as compressed JSON, arrays as NPZ, valid for the version of the code that made them.
 #
-# Libraries that keep results of functions (joblib, diskcache) pickle them: that is neither legible nor safe
-# to pass on.
+# joblib and diskcache would pickle results, which is neither readable nor safe to share.
 
 LONGEST = 100
-"""Letters of a file's name that say what is in it: the name of a program may be longer than a file's may be."""
+"""Largest number of readable characters of a file name; a program's name may exceed the limit of the file system."""
 
 
 @dataclass(frozen=True)
@@ -36,14 +35,14 @@ class Store:
     Parameters
     ----------
     folder : Path
-        Made when the first findings are kept.
+        Folder, made with the first findings.
 
     """
 
     folder: Path
 
     def keep(self, study: str, engine: str, stamp: str | None, findings: Findings, seconds: float) -> None:
-        """Write the findings; a file that is there is complete. Without a stamp they are never found again."""
+        """Write the findings; existing files are always complete. Findings without a stamp are never found again."""
         self.folder.mkdir(parents=True, exist_ok=True)
         path = self._path(study, engine)
         with replacing(path.with_suffix(".npz"), "wb") as stream:
@@ -63,9 +62,9 @@ class Store:
     def find(
         self, study: str, engine: str, stamp: str | None, identities: Collection[str] = ()
     ) -> tuple[Findings, float] | None:
-        """Return findings and their seconds if they are there, legible, and of this stamp.
+        """Return the findings and their duration in s; None if they are missing, damaged or have another stamp.
 
-        A claim of theirs must have one of the ``identities`` or none, since files of the report have its name.
+        Claims must have one of the ``identities`` or none, because they become file names of the report.
         """
         path = self._path(study, engine)
         try:
@@ -88,13 +87,13 @@ class Store:
         return self._path(study, engine).with_suffix(".json.xz")
 
     def _path(self, study: str, engine: str) -> Path:
-        # Names differ by the digest alone, also on file systems that ignore case; the words are for people.
+        # The digest makes names unique, even on file systems that ignore case; the words are for people.
         words = re.sub(r"[^\w-]", "_", f"{study}--{engine}", flags=re.ASCII)[:LONGEST]
         digest = hashlib.sha256(repr((study, engine)).encode()).hexdigest()[:16]
         return self.folder / f"{words}--{digest}"
 
 
-# --- What is drawn of a study, and kept: equal data, drawn by equal code, are equal files.
+# --- Drawings of studies on disk; equal data drawn by equal code give equal files.
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
 
 
 def drawing_stamp(data: Mapping[str, Data]) -> str:
-    """Return what a drawing depends on: each number of the data, the code and the libraries."""
+    """Return the digest of all that a drawing depends on: data, code and libraries."""
     digest = hashlib.sha256()
     for engine, arrays in data.items():
         for name, values in arrays.items():
@@ -131,14 +130,14 @@ class DrawingStore:
     Parameters
     ----------
     folder : Path
-        Made when the first drawing is kept.
+        Folder, made with the first drawing.
 
     """
 
     folder: Path
 
     def keep(self, study: str, stamp: str, drawing: Drawing) -> None:
-        """Write the drawing; a file that is there is complete."""
+        """Write the drawing; an existing file is always complete."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(self._path(study), "wb") as stream, ZipFile(stream, "w", ZIP_DEFLATED) as archive:
             archive.comment = _comment(stamp, len(drawing.figures) + len(drawing.animations))
@@ -147,7 +146,7 @@ class DrawingStore:
                     archive.writestr(f"{kind}/{name}", content)
 
     def find(self, study: str, stamp: str, names: Collection[str]) -> Drawing | None:
-        """Return the drawing if it is there, legible, of this stamp, and has no other figures than ``names``."""
+        """Return the drawing; None if it is missing, damaged, has another stamp or figures not in ``names``."""
         found: dict[str, dict[str, bytes]] = {"figures": {}, "animations": {}}
         try:
             with ZipFile(self._path(study)) as archive:
@@ -156,7 +155,7 @@ class DrawingStore:
                     return None
                 for path in paths:
                     kind, _, name = path.partition("/")
-                    if name not in names:  # it may lead out of the report's folder
+                    if name not in names:  # it may point outside the report
                         return None
                     found[kind][name] = archive.read(path)
         except Exception:  # any error of the libraries in a damaged file: draw the figures again
@@ -168,5 +167,5 @@ class DrawingStore:
 
 
 def _comment(stamp: str, files: int) -> bytes:
-    """Return the archive's comment. A damaged table of contents may list fewer files than were written."""
+    """Return the archive's comment, with the number of files because a damaged table of contents may list fewer."""
     return f"{stamp} {files}".encode()

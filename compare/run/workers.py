@@ -149,7 +149,7 @@ class Workers:
             try:
                 message = pickle.dumps((work.function, work.arguments))
             except Exception as error:  # whatever an object's own pickling raises
-                reason = f"it cannot be sent to another process ({error}): use functions of a module"
+                reason = f"cannot be sent to another process ({error}); use functions of a module"
                 yield Done(work.key, Failure(reason), 0.0)
                 continue
             if worker and worker.owner not in ("", work.owner):
@@ -213,13 +213,13 @@ class _Worker:
         key, self.key = self.key, None
         try:
             value = pickle.loads(self.connection.recv_bytes())
-            self._errors.hand_on()
+            self._errors.forward()
         except Exception:  # the engine has ended the process, or used its connection
             code = self._exit_code()
             cause = "it closed its connection" if code is None else cause_of_end(code)
-            said = self._errors.hand_on().strip().splitlines()
+            said = self._errors.forward().strip().splitlines()
             self.end()
-            reason = ": ".join([f"its process came to a sudden end ({cause})", *said[-1:]])
+            reason = ": ".join([f"its process ended unexpectedly ({cause})", *said[-1:]])
             value = Failure(reason)
         return Done(key, value, time.monotonic() - self.started)
 
@@ -249,7 +249,7 @@ class _Errors:
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115
-        self._handed_on = 0
+        self._forwarded = 0
 
     @contextmanager
     def written(self) -> Iterator[None]:
@@ -270,17 +270,17 @@ class _Errors:
 
     def close(self) -> None:
         """Forward the remaining text and close the file."""
-        self.hand_on()
+        self.forward()
         self._file.close()
 
-    def hand_on(self) -> str:
+    def forward(self) -> str:
         """Write new text to the standard error of this process, and return it."""
         size = os.fstat(self._file.fileno()).st_size
-        if size == self._handed_on:
+        if size == self._forwarded:
             return ""
         # Both processes share the file position, so reading must not move it.
-        new = os.pread(self._file.fileno(), size - self._handed_on, self._handed_on)
-        self._handed_on += len(new)
+        new = os.pread(self._file.fileno(), size - self._forwarded, self._forwarded)
+        self._forwarded += len(new)
         text = printable(new.decode(errors="replace"), MOST_ERRORS)
         if text and sys.stderr is not None:
             sys.stderr.write(text)
@@ -307,7 +307,7 @@ def _serve(connection: Connection) -> None:
             try:
                 answer = pickle.dumps(value)
             except Exception as error:
-                answer = pickle.dumps(Failure(f"its result cannot be sent back: {error}"))
+                answer = pickle.dumps(Failure(f"cannot send its result back: {error}"))
             connection.send_bytes(answer)
     except EOFError:
         pass
@@ -343,7 +343,7 @@ def failure(error: BaseException) -> Failure:
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
     if lacks_memory(error):
-        reason = f"there is not enough memory ({reason})"
+        reason = f"not enough memory ({reason})"
     frames = traceback.extract_tb(error.__traceback__)
     # file names only, because a report must not reveal the folders of its machine
     where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)

@@ -1,6 +1,6 @@
-"""Groups of arrays in Zarr version 3, written by xarray: whole, or region by region by whoever has computed one.
+"""Groups of arrays in Zarr version 3, which xarray writes at once or region by region.
 
-Every piece has the checksum of the codec crc32c, so reading one that is cut or garbled raises an error.
+Every piece has a crc32c checksum, so reading a truncated or corrupted piece raises an error.
 """
 
 from __future__ import annotations
@@ -18,27 +18,26 @@ import zarr
 from numpy.typing import NDArray
 from zarr.codecs import BloscCodec, Crc32cCodec
 
-from compare.sweep.files import Files, StoreError, told
+from compare.sweep.files import Files, StoreError, store_errors
 from compare.sweep.plan import Numbers
 from compare.sweep.quantities import RESULTS
 
 DESCRIPTION = "zarr.json"
-"""Name of the file that describes a group or an array."""
+"""File name of the description of a group or an array."""
 
 FORMAT: dict[str, Any] = {"zarr_format": 3, "consolidated": False}
-"""No copy of the metadata goes stale when a group grows."""
+"""Arguments for Zarr; consolidated metadata would become outdated when a group grows."""
 
 CODECS = (BloscCodec(cname="lz4"), Crc32cCodec())
 
 TYPES = {"float64", "uint8", "int64", "string"}
 CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
-"""The data types and chains of codecs that sweeps write."""
+"""Data types and chains of codecs that sweeps write."""
 
 MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
-"""What an array contains where nothing is written, by its type.
+"""Fill values by type.
 
-No result is like this: Zarr may leave out a piece in which nothing differs from it, and a piece that is not there
-counts as missing.
+No result has such a value: Zarr may omit a piece that contains nothing else, and an omitted piece counts as missing.
 """
 
 CHECKSUM = "checksum"
@@ -56,16 +55,16 @@ class Large(NamedTuple):
 
 @dataclass(frozen=True)
 class Group:
-    """A group of a store, wherever it is opened.
+    """A group of a store, which any process may open.
 
     Parameters
     ----------
     files : Files
-        Of the store.
+        Files of the store.
     description : str
-        Checksum of the store's description: the files at the same place of another machine may be others.
+        Checksum of the store's description, because another machine may have another store at the same path.
     name : str
-        Its name in the store.
+        Name in the store.
 
     """
 
@@ -78,7 +77,7 @@ class Group:
         return {"group": self.name, "storage_options": self.files.options, **FORMAT}
 
     def create(self, arrays: Mapping[str, Large]) -> None:
-        """Describe arrays in a new group, without any piece."""
+        """Create a group with empty arrays."""
         group = zarr.create_group(
             self.files.url, path=self.name, zarr_format=3, storage_options=self.files.options
         )
@@ -97,42 +96,42 @@ class Group:
     def add(self, dataset: xr.Dataset) -> None:
         """Write all variables of a dataset into the group."""
         texts = [name for name, values in dataset.variables.items() if values.dtype.kind == "U"]
-        # of any length: numpy's texts have no data type in the standard
+        # strings of any length, because Zarr 3 has no standard data type for NumPy's fixed-length strings
         dataset = dataset.assign({name: dataset[name].astype(object) for name in texts})
         encoding = {name: {"compressors": CODECS} for name in dataset.variables}
         dataset.to_zarr(self.files.url, mode="a", encoding=encoding, write_empty_chunks=True, **self._place)
 
     def write(self, values: Mapping[str, NDArray[Any]], region: Mapping[str, slice]) -> None:
-        """Write a region of arrays whose first dimensions are those of ``region``, in this order.
+        """Write a region of arrays; their first dimensions are the keys of ``region`` in this order.
 
-        Raises :class:`StoreError` if it cannot be written, or if this is another store.
+        Raises :class:`StoreError` if it cannot be written, or if this is a different store.
         """
-        with told(self.files.url):
+        with store_errors(self.files.url):
             if description_of(self.files) != self.description:
                 raise StoreError(
-                    f"a worker does not find the sweep in {self.files.url!r}: --output must be a folder that all "
-                    "share, or an object store"
+                    f"a worker cannot find the sweep in {self.files.url!r}; --output must be a shared folder or an "
+                    "object store"
                 )
             dimensions = (*region, "component")
             written = xr.Dataset({name: (dimensions[: one.ndim], one) for name, one in values.items()})
             written.to_zarr(self.files.url, mode="r+", region=region, **self._place)
 
     def array(self, name: str) -> Any:
-        """Return an array, of which nothing is read yet."""
+        """Return an array without reading its values."""
         return _opened(self, name)
 
     def dataset(self) -> xr.Dataset:
-        """Return all arrays with their labels, of which nothing is read yet."""
+        """Return all arrays with their labels without reading their values."""
         found: xr.Dataset = xr.open_zarr(self.files.url, chunks=None, **self._place)
         return found
 
     def seal(self) -> None:
-        """Write the checksum of all descriptions, without which a group does not count."""
+        """Write the checksum of all descriptions, which makes the group valid."""
         digest = checksum({name: digest_of(content) for name, content in self._described().items()})
         self.files.write({f"{self.name}/{DESCRIPTION}": group_content({CHECKSUM: digest})})
 
     def has_seal(self) -> bool:
-        """Return whether the group has any seal; a garbled description may have had one."""
+        """Return whether the group has a seal; a corrupted description counts as one."""
         content = self.files.read(f"{self.name}/{DESCRIPTION}")
         try:
             return content is not None and json.loads(content)["attributes"] != {}
@@ -140,14 +139,14 @@ class Group:
             return True
 
     def is_sealed(self) -> bool:
-        """Return whether the descriptions are those that were sealed, and of arrays as sweeps write them."""
+        """Return whether the descriptions match the seal and describe arrays that sweeps write."""
         described = self._described()
         digest = checksum({name: digest_of(content) for name, content in described.items()})
         sealed = self.files.read(f"{self.name}/{DESCRIPTION}") == group_content({CHECKSUM: digest})
         return sealed and all(map(is_ours, described.values()))
 
     def is_whole(self, names: Sequence[str] = ()) -> bool:
-        """Return whether every piece of arrays, of all unless there are ``names``, is there and can be read."""
+        """Return whether all pieces of the arrays ``names`` (default: of all arrays) are present and readable."""
         arrays = {name: self.array(name) for name in names or self._described()}
         return all(
             array.nchunks_initialized == array.nchunks
@@ -159,17 +158,16 @@ class Group:
         )
 
     def can_read(self, name: str, where: slice) -> bool:
-        """Return whether a part of an array can be read, with the right checksums."""
+        """Return whether a part of an array can be read and has the right checksums."""
         try:
             self.array(name)[where]
         except MemoryError:
             raise
-        except Exception:  # whatever is raised by a file that may have any contents
+        except Exception:  # a damaged file may raise anything
             return False
         return True
 
     def _described(self) -> dict[str, bytes]:
-        """Return the descriptions of all arrays by their names."""
         files = {name: f"{self.name}/{name}/{DESCRIPTION}" for name in self.files.inside(self.name)}
         found = {name: self.files.read(file) for name, file in files.items()}
         return {name: content for name, content in found.items() if content is not None}
@@ -178,7 +176,7 @@ class Group:
 @lru_cache(maxsize=64)
 def _opened(group: Group, name: str) -> Any:
     files = group.files
-    with told(files.url, "read from"):
+    with store_errors(files.url, "read from"):
         place = f"{group.name}/{name}"
         return zarr.open_array(files.url, path=place, mode="r", zarr_format=3, storage_options=files.options)
 
@@ -186,7 +184,7 @@ def _opened(group: Group, name: str) -> Any:
 def is_ours(description: bytes) -> bool:
     """Return whether an array has a data type and codecs that sweeps write.
 
-    Others, such as the filter "pickle", may run code of whoever wrote the array.
+    Other codecs, such as "pickle", could run foreign code.
     """
     try:
         found = json.loads(description)
@@ -198,7 +196,7 @@ def is_ours(description: bytes) -> bool:
 
 
 def group_content(attributes: Mapping[str, Any]) -> bytes:
-    """Return the description of a group."""
+    """Return the description of a group as the contents of its file."""
     content = {"zarr_format": 3, "node_type": "group", "attributes": attributes}
     return json.dumps(content, sort_keys=True).encode()
 
@@ -218,14 +216,14 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-# --- The trajectories of a round in the store: arrays whose regions are written by whoever simulates a chunk.
+# --- Trajectories of a round in the store; the worker that simulates a chunk writes its regions.
 #
-# Two who write the same chunk write the same bits.
+# Two workers that write the same chunk write the same bits.
 
 
 @dataclass(frozen=True)
 class Chunks:
-    """The chunks of a round, of ``count`` trajectories: ``size`` of them in each but the last."""
+    """The chunks of a round of ``count`` trajectories, ``size`` in each except the last."""
 
     group: Group
     count: int
@@ -235,19 +233,19 @@ class Chunks:
         return -(-self.count // self.size)
 
     def where(self, chunk: int) -> slice:
-        """Return the places of the trajectories of a chunk."""
+        """Return the indices of a chunk's trajectories in the round."""
         return slice(chunk * self.size, min((chunk + 1) * self.size, self.count))
 
     def read(self, name: str, where: int | slice) -> NDArray[Any]:
-        """Return results of trajectories in the order of the round."""
+        """Return a result of trajectories of the round."""
         return np.asarray(self.group.array(name)[where])
 
     def write(self, chunk: int, results: Mapping[str, NDArray[Any]]) -> None:
-        """Write a chunk; raise ``StoreError`` where that can't be."""
+        """Write the results of a chunk; raise ``StoreError`` if this fails."""
         self.group.write(results, {"trajectory": self.where(chunk)})
 
     def there(self) -> list[int]:
-        """Return the chunks of which all files are there."""
+        """Return the chunks with a complete set of files."""
         files = set(self.group.files.names(self.group.name))
         keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}  # one for each dimension
         return [
@@ -257,22 +255,22 @@ class Chunks:
         ]
 
     def is_whole(self, chunk: int) -> bool:
-        """Return whether all results of a chunk can be read."""
+        """Return whether all results of a chunk are readable."""
         return all(self.group.can_read(name, self.where(chunk)) for name in RESULTS)
 
 
 class Round:
-    """The trajectories ``numbers`` of a round; ``done`` says of each chunk whether it is there and whole."""
+    """The trajectories ``numbers`` of a round; ``done`` marks its complete, readable chunks."""
 
     def __init__(self, chunks: Chunks, numbers: Numbers) -> None:
         self.chunks, self.numbers = chunks, numbers
         self.done: NDArray[np.bool_] = np.zeros(len(chunks), dtype=bool)
 
     def numbers_of(self, chunk: int) -> Numbers:
-        """Return the numbers of the trajectories of a chunk."""
+        """Return the numbers of a chunk's trajectories."""
         return self.numbers[self.chunks.where(chunk)]
 
     @property
     def ends(self) -> Any:
-        """What the trajectories end as, an array that reads itself once its values are wanted."""
+        """Ends of the trajectories, as an array that is read on demand."""
         return self.chunks.group.array("end")

@@ -1,4 +1,4 @@
-"""Uncertain quantities: a name, and how its values are distributed."""
+"""Uncertain quantities and their distributions."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from compare.sweep.quantities import parameters, units
 from reference_model.systems import FloatArray, System, finite_number
 
 LEAST_UNIFORM = 2.0**-54
-"""Takes the place of 0 among random numbers in [0, 1), where a normal distribution has no finite value."""
+"""Replacement for 0 among random numbers in [0, 1), because the normal quantile of 0 is infinite."""
 
 
 class _Kind(NamedTuple):
-    """The names of a distribution's numbers, what they must fulfil, and what makes it of ``scipy.stats``."""
+    """Names and conditions of a distribution's numbers, and the function that makes it with ``scipy.stats``."""
 
     arguments: tuple[str, ...]
     allowed: str
@@ -65,13 +65,13 @@ KINDS = {
 
 
 def in_words() -> str:
-    """Return how all distributions are written."""
+    """Return the syntax of all distributions."""
     return ", ".join(f"{name}({', '.join(kind.arguments)})" for name, kind in KINDS.items())
 
 
 @dataclass(frozen=True)
 class Uncertain:
-    """A parameter or a component of the state at time 0 that is distributed.
+    """An uncertain parameter or component of the initial state.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ class Uncertain:
     kind : str
         One of ``KINDS``.
     numbers : tuple of float
-        The distribution's numbers in its order, in the quantity's SI unit.
+        Numbers of the distribution in the order of its arguments, in the quantity's SI unit.
 
     Raises
     ------
     ValueError
-        If there is no such distribution.
+        For an unknown distribution, or numbers that it does not allow.
 
     """
 
@@ -94,23 +94,23 @@ class Uncertain:
     numbers: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Refuse what is no distribution."""
+        """Raise ``ValueError`` for an invalid distribution."""
         kind = KINDS[one_of("distribution", self.kind, KINDS)]
         if len(self.numbers) != len(kind.arguments) or not kind.possible(*self.numbers):
-            raise ValueError(f"{self}: it takes ({', '.join(kind.arguments)}) with {kind.allowed}")
+            raise ValueError(f"{self}: {self.kind} takes ({', '.join(kind.arguments)}) with {kind.allowed}")
 
     def __str__(self) -> str:
         return f"{self.name}={self.kind}({', '.join(f'{number:g}' for number in self.numbers)})"
 
     @classmethod
     def parse(cls, text: str, system: System) -> Uncertain:
-        """Return what "NAME=KIND(NUMBER, ...)" says; raise ``ValueError`` for anything else.
+        """Return the quantity of a text "NAME=KIND(NUMBER, ...)".
 
-        Also if some of the values would be impossible for ``system``.
+        Raises ``ValueError`` for another text, or if the distribution includes values that ``system`` does not allow.
         """
         found = re.fullmatch(r"\s*(\w+)\s*=\s*(\w+)\s*\(([^()]*)\)\s*", text)
         if not found:
-            raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION, which is one of {in_words()}")
+            raise ValueError(f"--vary {text!r}: write it as NAME=DISTRIBUTION with one of {in_words()}")
         name = one_of("parameter or component", found[1], units(system))
         numbers = tuple(finite_number(name, number) for number in found[3].split(","))
         uncertain = cls(name, found[2], numbers)
@@ -118,12 +118,12 @@ class Uncertain:
         return uncertain
 
     def check(self, system: System) -> None:
-        """Raise ``ValueError`` if ``system`` can't have all the values that the distribution allows."""
+        """Raise ``ValueError`` if the distribution includes values that ``system`` does not allow."""
         if self.name not in parameters(system):
             return
         largest = float(np.max(np.abs(self.values(np.array([0.0, 1.0 - LEAST_UNIFORM * 2.0])))))
         for end in self.distribution.support():
-            # the sign of what has no end counts, and the largest size that is drawn
+            # replace an infinite end by the largest value that can be drawn
             value = float(end) if math.isfinite(end) else math.copysign(largest, end)
             changes: dict[str, Any] = {self.name: value}
             try:
@@ -131,28 +131,28 @@ class Uncertain:
             except ValueError as error:
                 allowed = str(error).rpartition(": ")[2]
                 raise ValueError(
-                    f"{self}: it allows {self.name} = {end:g}, and {allowed}; "
-                    "truncnorm(mean, deviation, low, high) cuts a normal distribution off"
+                    f"{self} includes {self.name} = {end:g}, but {allowed}; "
+                    "use truncnorm(mean, deviation, low, high) to limit a normal distribution"
                 ) from None
 
     @cached_property
     def distribution(self) -> Any:
-        """The distribution of SciPy."""
-        from scipy import stats  # takes long, and most sweeps do without
+        """The distribution as an object of SciPy."""
+        from scipy import stats  # slow import that most sweeps do not need
 
         return KINDS[self.kind].frozen(stats, *self.numbers)
 
     def values(self, uniform: FloatArray) -> FloatArray:
-        """Return the values for numbers in [0, 1), where the distribution's integral reaches them."""
+        """Return the quantiles of ``uniform``, numbers in [0, 1)."""
         return np.asarray(self.distribution.ppf(np.maximum(uniform, LEAST_UNIFORM)), dtype=float)
 
 
 def uniform_rows(seed: int, first: int, count: int, width: int) -> FloatArray:
     """Return rows ``first`` to ``first + count`` of a table of random numbers in [0, 1), shape (count, width).
 
-    The generator counts (Philox), so that any part of the table can be made alone.
+    The generator is counter-based (Philox), so any part of the table can be computed separately.
     """
-    blocks = -(-width // 4)  # four numbers at every count
+    blocks = -(-width // 4)  # Philox yields four numbers per count
     generator = np.random.Philox(key=seed)
     generator.advance(first * blocks)
     rows: FloatArray = np.random.Generator(generator).random((count, 4 * blocks))

@@ -1,4 +1,4 @@
-"""Pictures of sweeps, from their stores."""
+"""Figures of sweeps, drawn from their stores."""
 
 from __future__ import annotations
 
@@ -39,27 +39,31 @@ COLOURS = {
 }
 
 MOST_PIXELS = 2000
-"""Along each axis of an image; of more points every second, third, ... is shown."""
+"""Largest number of pixels along each axis of an image; for more points, every second or third is shown."""
 
 MOST_DOTS = 20_000
-"""Of random starts that are drawn."""
+"""Largest number of random starts in a figure."""
 
 MOST_DRAWS = 1 << 20
-"""Independent draws from which the distribution of a radius is taken: any first ones are a sample of all."""
+"""Largest number of draws in the distribution of a radius; the first draws are a random sample."""
 
 BINS = 60
+
+ORDERS = {"first": "first-order index", "total": "total index"}
 
 CURVE_DASHES: tuple[Any, ...] = ("-", "--", ":", "-.", (0.0, (6.0, 1.5, 1.0, 1.5)))
 
 
 def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
-    """Draw the results of a finished sweep into ``folder``, as SVG and PNG; return where they are.
+    """Draw the results of a finished sweep into ``folder`` as SVG and PNG; return their paths.
 
     Raises ``ValueError`` if the sweep is not finished.
     """
     result = store.get(RESULT)
     if result is None:
-        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+        raise ValueError(
+            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
+        )
     contents = {}
     with paper_style():
         drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))
@@ -71,7 +75,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
 
 
 def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
-    """Return the figures of a sweep by their names; ``theory`` is what formulas say of a map or a continuation."""
+    """Return the figures of a sweep by name; ``theory`` contains the formulas' results for maps and continuations."""
     if isinstance(plan, Basin):
         return {"basin": basin(plan, result)}
     if isinstance(plan, RandomBasin):
@@ -86,7 +90,7 @@ def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[s
 
 
 def basin(plan: Basin, result: xr.Dataset) -> Figure:
-    """Draw what every start ends as."""
+    """Draw the end of each start."""
     figure, (axes,) = new_figure(width=7.4, height=5.4)
     draw_ends(axes, plan, result["end"])
     label_plane(axes, plan)
@@ -103,7 +107,7 @@ def draw_ends(axes: Axes, plan: Basin | Map, ends: Any) -> None:
 
 
 def label_plane(axes: Axes, plan: Basin | RandomBasin | Map) -> None:
-    """Write what the axes are."""
+    """Label the axes of a plane and set their limits."""
     labels = [axis(symbol(one.name), units(plan.system)[one.name]) for one in (plan.x, plan.y)]
     axes.set(
         xlabel=labels[0], ylabel=labels[1], xlim=(plan.x.low, plan.x.high), ylim=(plan.y.low, plan.y.high)
@@ -111,7 +115,7 @@ def label_plane(axes: Axes, plan: Basin | RandomBasin | Map) -> None:
 
 
 def random_basin(plan: RandomBasin, result: xr.Dataset) -> Figure:
-    """Draw a dot for every start, in the colour of its end."""
+    """Draw a dot for each start in the colour of its end."""
     figure, (axes,) = new_figure(width=7.4, height=5.4)
     x, y, ends = (result[name][:MOST_DOTS].values for name in (plan.x.name, plan.y.name, "end"))
     for end in EndState:
@@ -125,7 +129,7 @@ def random_basin(plan: RandomBasin, result: xr.Dataset) -> Figure:
 
 
 def legend(figure: Figure, result: xr.Dataset) -> None:
-    """Name the ends that are there, with their shares where the result has such."""
+    """Draw a legend of the ends that occur, with their shares if the result contains them."""
     from matplotlib.patches import Patch
 
     handles = []
@@ -143,12 +147,12 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
 
 
 def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
-    """Draw ends, largest radius, modulation and slip power, a row for each start, with the curves of the formulas."""
+    """Draw ends, largest radius, modulation and slip power with the theory's curves, in a row for each start."""
     figure, panels = new_figure(ncols=4, nrows=len(plan.starts), width=18.0, height=4.4 * len(plan.starts))
     shown = (
         ("largest_radius", "largest radius in m"),
         ("modulation", "(largest − least)/(largest + least) radius"),
-        ("slip_power", "power of friction in W"),
+        ("slip_power", "friction power in W"),
     )
     rows = np.array(panels, dtype=object).reshape(len(plan.starts), 4)
     for i, row in enumerate(rows):
@@ -170,7 +174,7 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
 
 
 def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
-    """Draw what formulas say, a dash pattern for each meaning, with a light rim where the ground is dark."""
+    """Draw the theory's curves with a dash pattern for each meaning, and white outlines for dark backgrounds."""
     from matplotlib.patheffects import withStroke
 
     meanings = [str(meaning) for meaning in curves["curve"].values]
@@ -188,7 +192,7 @@ def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
 
 
 def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
-    """Draw the distribution of the largest radius by the ends, and the sensitivities."""
+    """Draw the distribution of the largest radius by end, and the sensitivities."""
     figure, (left, right) = new_figure(ncols=2, width=11.5, height=4.6)
     radii, ends = (result[name][:MOST_DRAWS].values for name in ("largest_radius", "end"))
     known = np.isfinite(radii)
@@ -202,8 +206,8 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
             edgecolor=BLACK,
             linewidth=0.3,
         )
-    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" of the first {MOST_DRAWS}"
-    left.set(xlabel="largest radius of the end state in m", ylabel=f"draws{which}")
+    which = "" if result.sizes["sample"] <= MOST_DRAWS else f" among the first {MOST_DRAWS}"
+    left.set(xlabel="largest radius of the end state in m", ylabel=f"number of draws{which}")
     places = np.arange(len(plan.varied))
     bars = (
         ("first", "largest_radius", BLUE),
@@ -214,19 +218,24 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     for i, (order, quantity, colour) in enumerate(bars):
         values = result[f"sobol_{order}"].sel(quantity=quantity).values
         errors = result[f"sobol_{order}_error"].sel(quantity=quantity).values
-        words = "largest radius" if quantity == "largest_radius" else "whirl or not"
+        words = "largest radius" if quantity == "largest_radius" else "whirl (yes or no)"
         right.bar(
-            places + 0.2 * (i - 1.5), values, 0.18, yerr=errors, color=colour, label=f"{words}, {order} order"
+            places + 0.2 * (i - 1.5),
+            values,
+            0.18,
+            yerr=errors,
+            color=colour,
+            label=f"{words}, {ORDERS[order]}",
         )
     right.set_xticks(places, [f"${symbol(uncertain.name)}$" for uncertain in plan.varied])
-    right.set(ylabel="Sobol's index")
+    right.set(ylabel="Sobol index")
     right.legend(fontsize=8.5)
     legend(figure, result)
     return figure
 
 
 def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
-    """Draw the shares of the motions, and their radii beside those that formulas and continuation give."""
+    """Draw the shares of the motions, and their radii together with those of formulas and continuation."""
     figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
     values = plan.x.values
     for j, end in enumerate(result["motion_end"].values):

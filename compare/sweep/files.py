@@ -1,4 +1,4 @@
-"""Files of a sweep by their names, in a folder or in an object store, by fsspec."""
+"""Files of a sweep in a folder or an object store, accessed with fsspec."""
 
 from __future__ import annotations
 
@@ -18,38 +18,38 @@ from compare.output.text_files import replacing
 OPTIONS: dict[str, dict[str, Any]] = {
     "file": {"auto_mkdir": True},
     "s3": {
-        # a listing that was kept would not have what others have written since
+        # a cached listing would lack files that other workers have written since
         "use_listings_cache": False,
-        # files are small: to ask for their size first, so as to fetch parts side by side, costs a second request
+        # files are small, so parallel parts would only cost a second request for the size
         "max_concurrency": 1,
-        # a server that is gone for half a minute loses nothing
+        # survive an outage of half a minute
         "config_kwargs": {"retries": {"mode": "standard", "max_attempts": 10}},
     },
 }
-"""Of the file systems of fsspec, by the protocol."""
+"""Options of fsspec's file systems by protocol."""
 
 
 class StoreError(RuntimeError):
-    """Files can't be written or reached; the message says where and why."""
+    """Files cannot be written or reached; the message gives the place and the reason."""
 
 
 @dataclass(frozen=True)
 class Files:
-    """The files below ``url``: a folder of this machine, or what fsspec opens, "s3://bucket/name" for instance.
+    """Files below ``url``, a local folder or an fsspec URL such as "s3://bucket/name".
 
-    Names are relative, with "/". It can be sent to another process, which sees the same files.
+    Names are relative, with "/". Instances can be sent to other processes.
     """
 
     url: str
 
     @classmethod
     def at(cls, place: str | Path) -> Files:
-        """Return the files at a place, of which a folder may be relative to the current one."""
+        """Return the files at a URL or in a folder, which may be relative to the current folder."""
         return cls(str(place) if is_remote(place) else os.path.abspath(place))
 
     @cached_property
     def options(self) -> dict[str, Any] | None:
-        """What Zarr and xarray need besides the URL."""
+        """Options for Zarr and xarray; None for a folder."""
         protocol = self.url.partition("://")[0]
         return OPTIONS.get(protocol, {}) if is_remote(self.url) else None
 
@@ -59,11 +59,12 @@ class Files:
 
         try:
             system, root = url_to_fs(self.url, **(OPTIONS["file"] if self.options is None else self.options))
-        except ImportError:
-            needed = "s3fs: pip install 'friction-discs[cluster]'" if self.url.startswith("s3:") else "more"
+        except ImportError as error:
+            s3 = "s3fs; install it with: pip install 'friction-discs[cluster]'"
+            needed = s3 if self.url.startswith("s3:") else f"a package that is not installed: {error}"
             raise StoreError(f"{self.url!r} needs {needed}") from None
-        except ValueError as error:  # of a protocol that it does not know
-            raise StoreError(f"{self.url!r}: {error}") from None
+        except ValueError as error:  # unknown protocol
+            raise StoreError(f"cannot open {self.url!r}: {error}; use a folder or s3://BUCKET/NAME") from None
         return system, root
 
     def below(self, name: str) -> str:
@@ -71,46 +72,46 @@ class Files:
         return f"{self.url}/{name}"
 
     def read(self, name: str) -> bytes | None:
-        """Return the contents of a file, None if it is not there."""
+        """Return the contents of a file, None if it does not exist."""
         system, root = self._system
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             try:
                 return bytes(system.cat_file(f"{root}/{name}"))
             except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
                 return None
 
     def write(self, contents: Mapping[str, bytes]) -> None:
-        """Write files, those that are there too."""
+        """Write files; overwrite existing ones."""
         system, root = self._system
-        with told(self.url):
+        with store_errors(self.url):
             system.pipe({f"{root}/{name}": content for name, content in contents.items()})
 
     def claim(self, name: str, content: bytes) -> None:
-        """Write a file that nobody else has written; raise ``FileExistsError`` otherwise."""
+        """Write a new file; raise ``FileExistsError`` if it exists."""
         system, root = self._system
         path = f"{root}/{name}"
-        with told(self.url):
+        with store_errors(self.url):
             system.makedirs(system._parent(path), exist_ok=True)
             try:
                 with system.open(path, "xb") as stream:
                     stream.write(content)
             except FileExistsError:
                 raise
-            except BaseException:  # half of it would stay in a folder
+            except BaseException:  # do not leave an incomplete file
                 system.rm(path)
                 raise
 
     def names(self, folder: str) -> list[str]:
         """Return the names of all files below a folder, sorted."""
         system, root = self._system
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             return sorted(path[len(root) + 1 :] for path in system.find(f"{root}/{folder}"))
 
     def inside(self, folder: str = "") -> list[str]:
-        """Return the names, relative to it, of what lies directly in a folder."""
+        """Return the names of the files and folders directly in a folder, relative to it."""
         system, root = self._system
         path = f"{root}/{folder}".rstrip("/")
-        with told(self.url, "read from"):
+        with store_errors(self.url, "read from"):
             try:
                 found = system.ls(path, detail=False)
             except (FileNotFoundError, NotADirectoryError):
@@ -118,48 +119,48 @@ class Files:
             return sorted({one.rstrip("/")[len(path) + 1 :] for one in found} - {""})
 
     def remove(self, folder: str) -> None:
-        """Remove a folder with all that is in it; it need not be there."""
+        """Remove a folder and its contents if it exists."""
         system, root = self._system
-        with told(self.url):
+        with store_errors(self.url):
             if system.exists(f"{root}/{folder}"):
                 system.rm(f"{root}/{folder}", recursive=True)
 
 
 def is_remote(place: str | Path) -> bool:
-    """Return whether a place is a URL, and no folder of this machine."""
+    """Return whether a place is a URL instead of a local folder."""
     return "://" in str(place)
 
 
 @contextmanager
-def told(url: str, action: str = "write to") -> Iterator[None]:
-    """Turn whatever a file system raises inside into a ``StoreError``; what is there already stays what it is."""
+def store_errors(url: str, action: str = "write to") -> Iterator[None]:
+    """Turn any exception of a file system into ``StoreError``, except ``FileExistsError`` and ``MemoryError``."""
     try:
         yield
     except (FileExistsError, MemoryError, StoreError):
         raise
-    except Exception as error:  # each file system has its own
+    except Exception as error:  # each file system has its own exceptions
         reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
-        raise StoreError(f"can't {action} {url!r}: {reason}") from error
+        raise StoreError(f"cannot {action} {url!r}: {reason}") from error
 
 
-# --- A small finished store as one file: a ZIP archive, which Zarr opens as it is.
+# --- A small finished store as one ZIP archive, which Zarr opens directly.
 
 PARTIAL = ".partial"
-"""Ending of a file that Zarr was writing when the process was killed."""
+"""Suffix of files that Zarr was writing when its process was killed."""
 
 
 def pack(folder: Path, archive: Path) -> None:
-    """Write all files of a store into an archive; an archive that is there is complete."""
-    with replacing(archive, "wb") as stream, ZipFile(stream, "w") as content:  # pieces are compressed already
+    """Write all files of a store to an archive, which is never incomplete."""
+    with replacing(archive, "wb") as stream, ZipFile(stream, "w") as content:  # pieces are already compressed
         for path in sorted(folder.rglob("*")):
             if path.is_file() and path.suffix != PARTIAL:
                 content.write(path, path.relative_to(folder).as_posix())
 
 
 def unpacked(archive: Path) -> tempfile.TemporaryDirectory[str]:
-    """Return a folder beside the archive with all that can be read of it, which is removed with this object.
+    """Return a temporary folder next to the archive with its readable files.
 
-    Raises ``ValueError`` if it is no archive.
+    Raises ``ValueError`` if the file is not an archive.
     """
     folder = tempfile.TemporaryDirectory(dir=archive.parent, prefix=f"{archive.stem}-")
     try:

@@ -1,7 +1,7 @@
-"""What is to be simulated: for the number of a trajectory its start and its parameters, wherever it is computed.
+"""Plans of sweeps: initial state and parameters of each trajectory by its number.
 
-A plan is data that can be sent to another process and written as JSON. Its trajectories have numbers from 0 on, and
-it says in which rounds they are to be simulated: all at once, or where the boundary of a basin turns out to be.
+A plan is data that can be sent to other processes and written as JSON. It numbers its trajectories from 0 and divides
+them into rounds: a single one, or, for a refined basin, one for each step of the refinement.
 """
 
 from __future__ import annotations
@@ -26,29 +26,29 @@ Numbers: TypeAlias = range | IntArray
 """Numbers of trajectories."""
 
 Rounds: TypeAlias = Generator[Numbers, Ends, Any]
-"""Yields the numbers of a round and takes what these trajectories ended as; of a grid it returns the whole of it."""
+"""Yields the numbers of a round and receives the ends of these trajectories; a refined basin returns its grid."""
 
 Trajectories: TypeAlias = tuple[FloatArray, dict[str, FloatArray]]
-"""Initial states of shape (n, 4 or 6) and the parameters that differ, each of shape (n,)."""
+"""Initial states of shape (n, 4 or 6) and the swept parameters, each of shape (n,)."""
 
 BASES = 2
-"""Independent samples from which the sensitivities are estimated."""
+"""Number of independent samples for the sensitivities."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Common:
-    """What all plans have.
+    """Fields that all plans share.
 
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        The parameters that are not swept.
+        Parameters that are not swept.
     duration : float
-        In s, of trajectories whose end is not certain before.
+        Longest duration of a trajectory, in s; it ends earlier once its end is certain.
     tolerance : float
-        Relative accuracy to aim at.
+        Requested relative accuracy.
     seed : int
-        Of all that is random.
+        Random seed.
 
     """
 
@@ -61,51 +61,51 @@ class Common:
 
 
 class Plan(Protocol):
-    """What a sweep needs to know of any plan."""
+    """Interface of a plan."""
 
     kind: ClassVar[str]
 
     @property
     def system(self) -> System:
-        """The parameters that are not swept."""
+        """Parameters that are not swept."""
         ...
 
     @property
     def duration(self) -> float:
-        """In s."""
+        """Longest duration of a trajectory, in s."""
         ...
 
     @property
     def tolerance(self) -> float:
-        """Relative accuracy to aim at."""
+        """Requested relative accuracy."""
         ...
 
     @property
     def seed(self) -> int:
-        """Of all that is random."""
+        """Random seed."""
         ...
 
     def rounds(self) -> Rounds:
-        """Yield which trajectories to simulate."""
+        """Yield the numbers of the trajectories of each round."""
         ...
 
     def trajectories(self, numbers: Numbers) -> Trajectories:
-        """Return starts and parameters of trajectories, the same whichever are asked for together."""
+        """Return initial states and parameters of trajectories; each depends only on its own number."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class Basin(Common):
-    """Starts on a grid in a plane of two components of the state; trajectory number y·(points of x) + x.
+    """Starts on a grid in a plane of two state components, numbered y·(points of x) + x.
 
     Parameters
     ----------
     start : tuple of float
-        The state at time 0; two of its components are replaced.
+        Initial state; the grid replaces two of its components.
     x, y : Axis
-        These components.
+        Axes of these components.
     coarse : int
-        Least number of points along each axis of the grid that refinement starts from.
+        Least number of points along each axis of the first grid.
 
     """
 
@@ -117,7 +117,7 @@ class Basin(Common):
     coarse: int
 
     def rounds(self) -> Rounds:
-        """Yield the coarse grid, and then what is at the boundary on finer and finer ones."""
+        """Yield the coarse grid, then the points near the boundary on finer grids."""
         return refined((self.y.points, self.x.points), self.coarse)
 
     def trajectories(self, numbers: Numbers) -> Trajectories:
@@ -129,12 +129,12 @@ class Basin(Common):
 
 @dataclass(frozen=True, kw_only=True)
 class RandomBasin(Common):
-    """Starts that are equally likely everywhere in a plane of two components of the state.
+    """Uniformly distributed starts in a plane of two state components.
 
     Parameters
     ----------
     start, x, y
-        As in :class:`Basin`; the axes' numbers of points have no meaning.
+        See :class:`Basin`; the axes' numbers of points are not used.
     samples : int
         Number of starts.
 
@@ -163,14 +163,14 @@ class RandomBasin(Common):
 
 @dataclass(frozen=True, kw_only=True)
 class Map(Common):
-    """A grid in a plane of two parameters; trajectory number (start·(points of y) + y)·(points of x) + x.
+    """A grid in a plane of two parameters, numbered (start·(points of y) + y)·(points of x) + x.
 
     Parameters
     ----------
     starts : tuple of tuple of float
-        States at time 0, each for all parameters.
+        Initial states, each combined with all parameters.
     x, y : Axis
-        The parameters.
+        Axes of the parameters.
 
     """
 
@@ -182,7 +182,7 @@ class Map(Common):
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Number of starts, of y and of x."""
+        """Number of starts, of points along y and of points along x."""
         return len(self.starts), self.y.points, self.x.points
 
     def rounds(self) -> Rounds:
@@ -198,17 +198,17 @@ class Map(Common):
 
 @dataclass(frozen=True, kw_only=True)
 class Uncertainty(Common):
-    """Random parameters and starts, in the arrangement from which Sobol's indices are estimated (Saltelli 2010).
+    """Random parameters and starts in the design for Sobol indices by Saltelli et al. (2010).
 
-    Row by row there are two independent draws A and B, and for each uncertain quantity a mixture that has this one
-    quantity from B and the others from A. The trajectory's number is row·(2 + quantities) + its place in the row.
+    Each row contains two independent draws A and B and, for each uncertain quantity, a mixture with this quantity
+    from B and the others from A. Trajectories are numbered row·(2 + quantities) + position in the row.
 
     Parameters
     ----------
     start : tuple of float
-        The state at time 0, where it is not uncertain.
+        Initial state, for components that are not uncertain.
     varied : tuple of Uncertain
-        What is uncertain.
+        Uncertain quantities.
     samples : int
         Number of rows.
 
@@ -235,7 +235,7 @@ class Uncertainty(Common):
         return _changed(self.system, self.start, values, len(numbers))
 
     def values(self, numbers: Numbers) -> dict[str, FloatArray]:
-        """Return the values of what is uncertain, each of shape (n,)."""
+        """Return the values of the uncertain quantities, each of shape (n,)."""
         row, place = np.divmod(np.asarray(numbers), self.row)
         uniform = _rows(self.seed, row, BASES * len(self.varied))
         result = {}
@@ -248,16 +248,16 @@ class Uncertainty(Common):
 
 @dataclass(frozen=True, kw_only=True)
 class Continuation(Common):
-    """Random starts, the same at each value of one parameter; trajectory number value·samples + start.
+    """Random starts, the same at each value of one parameter, numbered value·samples + start.
 
     Parameters
     ----------
     start : tuple of float
-        The state at time 0, where it is not random.
+        Initial state, for components that are not random.
     x : Axis
-        The parameter.
+        Axis of the parameter.
     varied : tuple of Uncertain
-        The components of the start that are random.
+        Random components of the initial state.
     samples : int
         Number of starts.
 
@@ -288,7 +288,7 @@ PLANS: dict[str, type[Any]] = {
 
 
 def count(plan: Plan) -> int:
-    """Return the number of trajectories; of a basin that is refined, the points of its finest grid."""
+    """Return the number of trajectories, or of the points of a basin's finest grid."""
     if isinstance(plan, Basin):
         return plan.x.points * plan.y.points
     return len(next(plan.rounds()))
@@ -300,14 +300,14 @@ def plan_as_json(plan: Plan) -> dict[str, Any]:
 
 
 def plan_from_json(content: Mapping[str, Any]) -> Plan:
-    """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if there is none."""
+    """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
     values = dict(content)
     plan: Plan = from_json(PLANS[values.pop("kind")], values)
     return plan
 
 
 def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:
-    """Return the given rows, which are near to each other, of a table of random numbers, shape (n, width)."""
+    """Return rows of a table of random numbers, shape (n, width); all rows in between are computed too."""
     first, last = int(np.min(rows)), int(np.max(rows))
     return uniform_rows(seed, first, last - first + 1, width)[rows - first]
 
@@ -315,7 +315,7 @@ def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:
 def _changed(
     system: System, start: Sequence[float], values: dict[str, FloatArray], count: int
 ) -> Trajectories:
-    """Return ``start`` for all with some components replaced, and the parameters among ``values``."""
+    """Return ``count`` copies of ``start`` with components from ``values``, and the parameters in ``values``."""
     states = np.tile(np.asarray(start, dtype=float), (count, 1))
     for place, name in enumerate(components(system)):
         if name in values:

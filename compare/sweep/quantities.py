@@ -1,4 +1,4 @@
-"""What a sweep varies and what it finds: names, units, symbols, and the axes of a plane."""
+"""Names, units and symbols of the quantities and results of a sweep, and the axes of its planes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from compare.engines import one_of
 from reference_model.systems import COLUMNS, FloatArray, System, finite_number
 
-# --- What a sweep varies and what it finds: names, units, symbols.
+# --- Names, units and symbols.
 
 _PARAMETERS = {
     "mass": ("m", "kg"),
@@ -37,7 +37,7 @@ _COMPONENTS = {
 
 
 class Result(NamedTuple):
-    """A number that is known of every trajectory: how it is stored, its unit, and what it is."""
+    """A result of each trajectory: data type, unit and meaning."""
 
     dtype: str
     unit: str
@@ -45,19 +45,19 @@ class Result(NamedTuple):
 
 
 RESULTS = {
-    "end": Result("u1", "", "what the trajectory ends as"),
-    "time": Result("f8", "s", "when the end was certain, or the duration"),
+    "end": Result("u1", "", "end of the trajectory"),
+    "time": Result("f8", "s", "time at which the end was certain, or the duration"),
     "states": Result("f8", "", "state at that time"),
     "least_radius": Result("f8", "m", "least distance from the axis in the end state"),
     "largest_radius": Result("f8", "m", "largest distance from the axis in the end state"),
     "slip_power": Result("f8", "W", "mean power of friction in the end state"),
     "steps": Result("i8", "", "steps of the integrator"),
 }
-"""As :class:`reference_model.ensemble.Ensemble` calls them."""
+"""Results of a trajectory, named as in :class:`reference_model.ensemble.Ensemble`."""
 
 
 def components(system: System) -> dict[str, str]:
-    """Return the components of the state at time 0 with their units."""
+    """Return the components of the initial state with their units."""
     return dict(COLUMNS[type(system)])
 
 
@@ -67,37 +67,37 @@ def parameters(system: System) -> dict[str, str]:
 
 
 def units(system: System) -> dict[str, str]:
-    """Return the units of all that can be swept."""
+    """Return the units of all quantities that can be swept."""
     return components(system) | parameters(system)
 
 
 def symbol(name: str) -> str:
-    """Return the paper's symbol, for a figure."""
+    """Return the paper's symbol, in LaTeX."""
     return _COMPONENTS[name] if name in _COMPONENTS else _PARAMETERS[name][0]
 
 
-# --- Axes of a plane: a name, a range, and how many values.
+# --- Axes.
 
 MOST_POINTS = 100_000
 
 
 @dataclass(frozen=True)
 class Axis:
-    """Values of a component of the state or of a parameter at equal distances.
+    """Equally spaced values of a component of the state or of a parameter.
 
     Parameters
     ----------
     name : str
-        The component or parameter.
+        Component or parameter.
     low, high : float
-        Its first and last value, in its SI unit; low < high.
+        First and last value, in its SI unit; low < high.
     points : int
         Number of values, from 2 to 100,000.
 
     Raises
     ------
     ValueError
-        If the range is empty or not finite, or for another number of points.
+        If the range is empty or not finite, or the number of points is not allowed.
 
     """
 
@@ -107,21 +107,21 @@ class Axis:
     points: int
 
     def __post_init__(self) -> None:
-        """Refuse what has no points."""
+        """Raise ``ValueError`` for an invalid range or number of points."""
         if not self.low < self.high:
             raise ValueError(
-                f"{self.name} from {self.low:g} to {self.high:g}: the range must begin below its end"
+                f"axis {self.name} from {self.low:g} to {self.high:g}: the lower end must be less than the upper end"
             )
         if not math.isfinite(self.high - self.low):
-            raise ValueError(f"{self.name} from {self.low:g} to {self.high:g}: the range must be finite")
+            raise ValueError(f"axis {self.name} from {self.low:g} to {self.high:g}: the range must be finite")
         if not 2 <= self.points <= MOST_POINTS:
-            raise ValueError(f"{self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
+            raise ValueError(f"axis {self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
 
     @classmethod
     def parse(cls, text: str, kind: str, names: Iterable[str]) -> Axis:
-        """Return the axis that "NAME=LOW:HIGH:POINTS" says; raise ``ValueError`` for anything else.
+        """Return the axis of a text "NAME=LOW:HIGH:POINTS"; raise ``ValueError`` for any other text.
 
-        ``names`` are those that are allowed, ``kind`` says what they are.
+        ``names`` are the allowed names; ``kind`` describes them in the message.
         """
         name, _, numbers = text.partition("=")
         parts = numbers.split(":")

@@ -1,10 +1,10 @@
-"""Refinement of a basin's boundary: of a fine grid only those points are simulated that lie near to it.
+"""Refinement of a basin's boundary: only points of a fine grid near the boundary are simulated.
 
-On a coarse grid every point is simulated. Cells whose corners do not all end as the same are halved, and their new
-points simulated; the new points of the other cells are taken to end as the corners do. Where that is wrong, the
-boundary goes on beyond the cells that were halved, and a cell with different corners has one that was not
-simulated: it is then, until there is no such cell. So in the end *every cell of the finest grid whose corners differ
-has corners that were all simulated*. What lies wholly between the points of the coarse grid stays unseen.
+All points of a coarse grid are simulated. A cell is mixed if its corners end differently. Mixed cells are halved and
+their new points simulated; new points of other cells are assumed to end like the corners. If this assumption is
+wrong, the boundary continues into a mixed cell with corners that were not simulated. They are simulated until no such
+cell remains, so *all corners of every mixed cell of the finest grid were simulated*. Structures that lie entirely
+between points of the coarse grid are not detected.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 Lines: TypeAlias = tuple[IntArray, IntArray]
-"""Places on the finest grid, along y and x, of the lines of a coarser one."""
+"""Positions of a coarser grid's lines on the finest grid, along y and x."""
 
 
 class Grid:
-    """The finest grid: what its points end as, and which of them were simulated, both of shape (y, x).
+    """The finest grid: ends of its points, and marks of simulated points, both of shape (y, x).
 
-    Points that were neither simulated nor lie on a grid that is in use have no meaning yet.
+    Ends of points on lines that are not yet in use are meaningless.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
@@ -35,16 +35,16 @@ class Grid:
         self.simulated: BoolArray = np.zeros(shape, dtype=bool)
 
     def found(self, numbers: IntArray, ends: Ends) -> None:
-        """Take what points ended as."""
+        """Store the ends of simulated points."""
         self.ends.flat[numbers], self.simulated.flat[numbers] = np.asarray(ends), True
 
     def lines(self, stride: int) -> Lines:
-        """Return the lines of the grid with every ``stride``-th point and the last one."""
+        """Return every ``stride``-th line of the grid, and the last one."""
         y, x = (np.union1d(np.arange(0, points, stride), points - 1) for points in self.ends.shape)
         return y, x
 
     def numbers(self, lines: Lines, chosen: BoolArray) -> IntArray:
-        """Return the numbers of the ``chosen`` points of a grid, shape (y, x)."""
+        """Return the numbers of the points ``chosen``, shape (y, x), on ``lines``."""
         y, x = np.nonzero(chosen)
         return np.ravel_multi_index((lines[0][y], lines[1][x]), self.ends.shape)
 
@@ -57,7 +57,7 @@ class Grid:
         return self.numbers(lines, corner & ~self.simulated[np.ix_(*lines)])
 
     def halved(self, lines: Lines, finer: Lines) -> IntArray:
-        """Return the new points of mixed cells; the others get the ends of the corners of their cells."""
+        """Return the new points of mixed cells; assign the ends of the corners to the new points of other cells."""
         coarse = self.ends[np.ix_(*lines)]
         cells = mixed(coarse)
         # A point on a line belongs to the cells on both sides of it.
@@ -73,19 +73,19 @@ class Grid:
 
 
 def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Grid]:
-    """Yield round by round which points to simulate, as y·(points of x) + x; take what they end as.
+    """Yield the points to simulate in each round, numbered y·(points of x) + x; receive their ends.
 
     Parameters
     ----------
     shape : tuple of int
-        Number of y and of x of the finest grid.
+        Number of points of the finest grid along y and x.
     coarse : int
         Least number of points along each axis of the first grid.
 
     Returns
     -------
     Grid
-        In the end.
+        The finished grid.
 
     """
     grid = Grid(shape)
@@ -105,7 +105,7 @@ def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Gr
 
 
 def first_stride(shape: tuple[int, int], coarse: int) -> int:
-    """Return the largest power of two that leaves at least ``coarse`` points along each axis, or 1."""
+    """Return the largest power of two with at least ``coarse`` points along each axis, or 1."""
     stride = 1
     while (min(shape) - 1) // (2 * stride) + 1 >= coarse:
         stride *= 2

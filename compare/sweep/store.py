@@ -1,13 +1,13 @@
-"""Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets, valid at every moment.
+"""Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets that is always valid.
 
-- ``round-0``, ``round-1``, ...: what was simulated, one Dataset a round, whose regions are written by those who
-  simulate them (:mod:`compare.sweep.arrays`).
-- ``check``, ``result``, ``curves``, ``branches``: written when all chunks are done.
+- ``round-0``, ``round-1``, ...: trajectories of each round; the workers that simulate them write their regions
+  (:mod:`compare.sweep.arrays`).
+- ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
-A group is there once it is sealed (:meth:`compare.sweep.arrays.Group.seal`). The attributes of the store
-contain the plan, the digest of the code that computed it and their checksum; whoever writes them first makes the
-store. Groups and chunks that are damaged are computed again, and ``SweepStore.broken`` lists them. A store of few
-trajectories in a folder of this machine becomes one file when the sweep is finished (:meth:`SweepStore.pack`).
+A group is valid once it is sealed (:meth:`compare.sweep.arrays.Group.seal`). The attributes of the store contain the
+plan, the digest of the code and their checksum; the first process to write them creates the store. Damaged groups and
+chunks are recomputed, and ``SweepStore.broken`` lists them. A finished store of few trajectories in a local folder
+becomes one file (:meth:`SweepStore.pack`).
 """
 
 from __future__ import annotations
@@ -36,40 +36,40 @@ from compare.sweep.arrays import (
     description_of,
     group_content,
 )
-from compare.sweep.files import Files, is_remote, pack, told, unpacked
+from compare.sweep.files import Files, is_remote, pack, store_errors, unpacked
 from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_json
 from compare.sweep.quantities import RESULTS, components
 
 SMALL = 1_000_000
-"""Trajectories from which on a finished store stays a folder."""
+"""Least number of trajectories of a finished store that remains a folder."""
 
 MOST_NAMED = 10
-"""Chunks that a sentence lists."""
+"""Largest number of chunks that a message lists."""
 
 ROUND = "round-{}"
 
 
 class SweepStore:
-    """A store that is open, of a plan.
+    """An open store.
 
     Parameters
     ----------
     files : Files
-        Of the store.
+        Files of the store.
     plan : Plan
-        What is computed.
+        Plan of the sweep.
     chunk : int
         Number of trajectories that are computed and written together.
     stamp : str
-        Of the code that computes them.
+        Digest of the code that computes them.
     place : str, optional
-        The URL that it is asked for by, if ``files`` are those of an unpacked archive.
+        Requested URL, if ``files`` belong to an unpacked archive.
 
     """
 
     def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str, place: str = "") -> None:
         self.files, self.plan, self.chunk, self.stamp = files, plan, chunk, stamp
-        self.broken: list[str] = []  # what is not as it was written, in words
+        self.broken: list[str] = []  # descriptions of damaged groups and chunks
         self._place = place or files.url
         self._whole: set[str] = set()
         self._description = description_of(files)
@@ -77,13 +77,13 @@ class SweepStore:
 
     @property
     def path(self) -> str:
-        """Where it is, in words."""
+        """Path or URL for messages."""
         archive = archive_of(self._place)
         return str(archive) if archive is not None and archive.exists() else self._place
 
     @classmethod
     def create(cls, path: str | Path, plan: Plan, chunk: int) -> SweepStore:
-        """Make a store where nothing is yet; ``FileExistsError`` where something is, or another was the first."""
+        """Create a store; raise ``FileExistsError`` if one exists or another process is first."""
         files = Files.at(path)
         if not is_free(files):
             raise FileExistsError(files.url)
@@ -101,10 +101,10 @@ class SweepStore:
 
     @classmethod
     def open(cls, path: str | Path) -> SweepStore:
-        """Open a store; raise ``ValueError`` if there is none of a sweep, or its description is broken."""
+        """Open a store; raise ``ValueError`` if it is not the store of a sweep, or its description is damaged."""
         files, folder = Files.at(path), None
         archive, place = archive_of(files.url), files.url
-        try:  # not by Zarr, which would look at all groups, and one of them may be broken
+        try:  # without Zarr, which would read all groups, and any of them may be damaged
             if archive is not None and archive.exists():
                 folder = unpacked(archive)
                 files = Files.at(folder.name)
@@ -119,22 +119,22 @@ class SweepStore:
         if not whole:
             if folder is not None:
                 folder.cleanup()
-            raise ValueError(f"{place!r} is no store of a sweep, or its description is broken")
+            raise ValueError(f"{place!r} is not the store of a sweep, or its description is damaged")
         store = cls(files, plan, chunk, stamp, place)
         store._unpacked = folder
         return store
 
     def pack(self) -> None:
-        """Make one file of a small store that is finished; :meth:`tidy` removes the folder."""
+        """Pack a small finished store into one file; :meth:`tidy` removes the folder."""
         archive = archive_of(self._place)
         if archive is None or count(self.plan) >= SMALL:
             return
         if not archive.exists() or self.broken:
-            with told(str(archive)):
+            with store_errors(str(archive)):
                 pack(Path(self.files.url), archive)
 
     def tidy(self) -> None:
-        """Remove the folders of a store that is one file by now; it can't be read any more then."""
+        """Remove the folders of a packed store; this object cannot be read afterwards."""
         archive = archive_of(self._place)
         if archive is not None and archive.exists():
             shutil.rmtree(self._place, ignore_errors=True)
@@ -142,7 +142,7 @@ class SweepStore:
             self._unpacked.cleanup()
 
     def round(self, i: int, numbers: Numbers) -> Round:
-        """Return round ``i`` of the trajectories ``numbers``, made if :meth:`look` does not find it."""
+        """Return round ``i`` of the trajectories ``numbers``; create it if :meth:`look` does not find it."""
         if found := self.look(i, numbers):
             return found
         group = self.begin(ROUND.format(i), self._template(len(numbers)))
@@ -150,40 +150,41 @@ class SweepStore:
         return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, None if it is not there or broken."""
+        """Return round ``i`` of the trajectories ``numbers``, None if it is missing or damaged."""
         group = self._group(ROUND.format(i))
         if not self._is_intact(group, f"the description of {group.name}", ["component"]):
             return None
         return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
-    def tell_broken(self, i: int, chunks: list[int], count: int) -> None:
-        """Note that of the ``count`` chunks of round ``i`` some are not as they were written."""
+    def note_damaged(self, i: int, chunks: list[int], count: int) -> None:
+        """Add damaged ``chunks`` of the ``count`` chunks of round ``i`` to ``broken``."""
         if chunks:
             shown = ", ".join(map(str, chunks[:MOST_NAMED]))
             more = f" and {len(chunks) - MOST_NAMED} more" if len(chunks) > MOST_NAMED else ""
-            self.broken.append(f"of {count} chunks of {ROUND.format(i)} these: {shown}{more}")
+            word = "chunk" if len(chunks) == 1 else "chunks"
+            self.broken.append(f"{ROUND.format(i)}: {word} {shown}{more} (of {count})")
 
     def put(self, name: str, dataset: xr.Dataset) -> None:
-        """Write a group, in place of an older one."""
+        """Write a group and replace an older one."""
         self.end(self.begin(name, {}), dataset)
 
     def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
-        """Begin a group, in place of an older one, with arrays that others write; :meth:`end` ends it."""
+        """Begin a group of arrays that workers write, and replace an older group; :meth:`end` completes it."""
         self.files.remove(name)
         group = self._group(name)
-        with told(self.files.url):
+        with store_errors(self.files.url):
             group.create(arrays)
         return group
 
     def end(self, group: Group, dataset: xr.Dataset) -> None:
-        """End a group with what else is to be in it."""
-        with told(self.files.url):
+        """Add a dataset to a group and seal it."""
+        with store_errors(self.files.url):
             group.add(dataset)
         group.seal()
         self._whole.add(group.name)
 
     def get(self, name: str) -> xr.Dataset | None:
-        """Return a group that was read once and is whole, or None if it is not there or broken."""
+        """Return an intact group, None if it is missing or damaged."""
         group = self._group(name)
         return group.dataset() if self._is_intact(group, name) else None
 
@@ -191,7 +192,6 @@ class SweepStore:
         return Group(self.files, self._description, name)
 
     def _template(self, count: int) -> dict[str, Large]:
-        """Return the arrays of a round of ``count`` trajectories."""
         arrays: dict[str, Large] = {}
         for name, result in RESULTS.items():
             more = (len(components(self.plan.system)),) if name == "states" else ()
@@ -201,9 +201,9 @@ class SweepStore:
         return arrays
 
     def _is_intact(self, group: Group, called: str, names: Sequence[str] = ()) -> bool:
-        """Return whether a group is as it was sealed, with all pieces of its arrays or of those with ``names``.
+        """Return whether a group matches its seal, with all pieces of the arrays ``names`` (default: of all).
 
-        Note it as broken otherwise, unless it was never sealed: then it is unfinished.
+        A damaged group is added to ``broken``; a group without a seal is unfinished, not damaged.
         """
         if group.name in self._whole:
             return True
@@ -217,18 +217,18 @@ class SweepStore:
 
 
 def archive_of(place: str) -> Path | None:
-    """Return the file that the store at a place becomes if it is small, None in an object store."""
+    """Return the file of a packed store, None in an object store."""
     return None if is_remote(place) else Path(f"{place}.zip")
 
 
 def is_free(files: Files) -> bool:
-    """Return whether nothing is there."""
+    """Return whether no store exists there."""
     archive = archive_of(files.url)
     return not files.inside() and (archive is None or not archive.exists())
 
 
 def flags(variable: str) -> dict[str, Any]:
-    """Return what the values of an end mean, after the CF conventions."""
+    """Return the meanings of the values of ``end`` as attributes of the CF conventions."""
     if variable != "end":
         return {}
     from reference_model.ensemble import EndState

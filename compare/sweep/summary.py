@@ -1,4 +1,4 @@
-"""Results of a sweep in words."""
+"""Results of a sweep as text."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 
 def summary(store: SweepStore) -> Iterator[str]:
-    """Yield the lines of what a finished sweep found."""
+    """Yield the lines of the results of a finished sweep."""
     result, check = _group(store, RESULT), _group(store, CHECK)
     total = result["end"].size
     if "simulated" in result:
@@ -48,12 +48,12 @@ def summary(store: SweepStore) -> Iterator[str]:
 
 
 def same_ends(store: SweepStore) -> bool:
-    """Return whether no trajectory of the random sample ended as something else with the plain reference."""
+    """Return whether no trajectory of the random sample ended differently with the plain reference."""
     return not np.any(_differing(_group(store, CHECK)))
 
 
 def undecided(store: SweepStore) -> float:
-    """Return the share of the trajectories that are undecided."""
+    """Return the share of undecided trajectories."""
     count = _group(store, RESULT)["count"].values
     return float(count[EndState.UNDECIDED] / np.sum(count))
 
@@ -67,9 +67,9 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
             for part, value in zip(QUANTILES, np.quantile(radii, QUANTILES), strict=True)
         )
         which = "draws" if result.sizes["sample"] <= MOST_DRAWS else f"first {MOST_DRAWS} draws"
-        yield f"largest radius below which a part of the {which} lies: {values}"
+        yield f"quantiles of the largest radius of the {which}: {values}"
     for quantity in result["quantity"].values:
-        words = "largest radius" if quantity == "largest_radius" else "whirl or not"
+        words = "largest radius" if quantity == "largest_radius" else "whirl (yes or no)"
         for name in result["uncertain"].values:
             at = {"quantity": quantity, "uncertain": name}
             first, total, first_error, total_error = (
@@ -78,15 +78,15 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
             )
             if np.isfinite(first):
                 yield (
-                    f"  {words} by {name}: first order {first:.3f} ± {first_error:.3f}, "
-                    f"total {total:.3f} ± {total_error:.3f}"
+                    f"  sensitivity of {words} to {name}: first-order index {first:.3f} ± {first_error:.3f}, "
+                    f"total index {total:.3f} ± {total_error:.3f}"
                 )
             else:
-                yield f"  {words} by {name}: does not vary"
+                yield f"  sensitivity of {words} to {name}: none, because it does not vary"
 
 
 def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
-    """Yield from where to where each motion goes, and what it is at both ends."""
+    """Yield the range of each branch, with radius and share at both ends."""
     name, unit = plan.x.name, units(plan.system)[plan.x.name]
     for j, end in enumerate(result["motion_end"].values):
         share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
@@ -100,15 +100,16 @@ def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
-    """Return how a random sample compares with the plain reference."""
+    """Return the line that compares a random sample with the plain reference."""
     velocities = COLUMNS[type(store.plan.system)].index(("vx", "m/s"))
     difference = check["difference"].values
     place = np.hypot(difference[:, 0], difference[:, 1])
     speed = np.hypot(difference[:, velocities], difference[:, velocities + 1])
     undecided = int(np.count_nonzero(check["plain_end"].values == EndState.UNDECIDED))
     return (
-        f"{len(place)} of them by the plain reference: {np.count_nonzero(_differing(check))} end differently, "
-        f"{undecided} undecided; states differ by up to {np.nanmax(place):.1e} m and {np.nanmax(speed):.1e} m/s"
+        f"check of {len(place)} trajectories by the plain reference: "
+        f"{np.count_nonzero(_differing(check))} end differently, {undecided} undecided; "
+        f"states differ by up to {np.nanmax(place):.1e} m and {np.nanmax(speed):.1e} m/s"
     )
 
 
@@ -121,5 +122,7 @@ def _differing(check: xr.Dataset) -> np.ndarray:
 def _group(store: SweepStore, name: str) -> xr.Dataset:
     group = store.get(name)
     if group is None:
-        raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+        raise ValueError(
+            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
+        )
     return group

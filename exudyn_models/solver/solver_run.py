@@ -74,7 +74,9 @@ class StepCount(trajectory.StepCount):
     def expect(self, start: float, steps: float) -> None:
         """Raise ``SimulationError`` if the expected ``steps`` from the time ``start`` on are too many."""
         if steps > trajectory.MOST_AHEAD:
-            raise SimulationError(self._sentence(f"more than {trajectory.MOST_AHEAD:,} steps ahead", start))
+            raise SimulationError(
+                self._sentence(f"more than {trajectory.MOST_AHEAD:,} further steps are needed", start)
+            )
 
     def count(self, t: float) -> str:
         """Count one more step, which ends at ``t``; return a message if there are or will be too many, else ""."""

@@ -157,8 +157,8 @@ class Run:
         """Count one more step, from ``since``; raise ``SimulationError`` if there are or will be too many."""
         if too_many := self._count.count(since):
             raise SimulationError(
-                f"{too_many} up to t = {self.seconds(since):g} s: the parameters are very stiff, or the motion is "
-                "very long; simulate it in parts, or with a larger tolerance"
+                f"stopped at t = {self.seconds(since):g} s because {too_many}: the parameters are very stiff, or the "
+                "motion is very long; simulate it in parts, or with a larger tolerance"
             )
 
     def pending(self, t: float) -> bool:

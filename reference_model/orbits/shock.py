@@ -89,10 +89,10 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
     if len(saddles) != 1:
-        raise ValueError(
-            f"{len(saddles)} saddle-type stick-slip orbits at these parameters: exactly one is needed to compute the "
-            "smallest shock"
+        found = (
+            f"{len(saddles)} saddle-type stick-slip orbits" if saddles else "no saddle-type stick-slip orbit"
         )
+        raise ValueError(f"{found} at these parameters, so the smallest shock cannot be computed")
     separatrix = Separatrix.of(saddles[0])
     angles = np.linspace(0.0, 2.0 * math.pi, DIRECTIONS, endpoint=False)
     low, high = _first_crossings(pin, rest, angles)
@@ -141,7 +141,7 @@ def by_bisection(shock: Shock) -> float:
 def _rest(pin: PinOnDisc) -> FloatArray:
     found = self_centred_equilibria(pin)
     if not found:
-        raise ValueError(f"no equilibrium to start from: {why_no_equilibrium(pin)}")
+        raise ValueError(why_no_equilibrium(pin))
     return np.array([found[0].x, found[0].y, 0.0, 0.0])
 
 

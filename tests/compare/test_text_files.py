@@ -80,7 +80,7 @@ FAILURES = [
     (
         OSError(errno.ENOSPC, "No space left on device"),
         2,
-        "can't write the file {path!r}: No space left on device\n",
+        "cannot write the file {path!r}: No space left on device\n",
     ),
 ]
 

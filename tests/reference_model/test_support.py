@@ -158,20 +158,20 @@ OF_A_DISC = {
 @pytest.mark.parametrize("formula", OF_A_PIN)
 def test_formula_of_the_pin_that_takes_a_linear_support_refuses_any_other(formula):
     OF_A_PIN[formula](LINEAR_PIN)
-    message = "hardening = 7 N/m³: this formula holds for a linear support only; set it to 0"
+    message = "hardening = 7 N/m³: it must be 0 here, because only linear supports are covered"
     assert refusal(OF_A_PIN[formula], HARD_PIN) == message
     assert (
         refusal(OF_A_PIN[formula], WITH_STOP)
-        == "stop_stiffness = 11 N/m: this formula holds for a linear support only; set it to 0"
+        == "stop_stiffness = 11 N/m: it must be 0 here, because only linear supports are covered"
     )
 
 
 @pytest.mark.parametrize("formula", OF_A_DISC)
 def test_formula_of_the_disc_that_takes_a_linear_support_refuses_any_other(formula):
     OF_A_DISC[formula](FIG11)
-    message = "hardening = 2 N/m³: this formula holds for a linear support only; set it to 0"
+    message = "hardening = 2 N/m³: it must be 0 here, because only linear supports are covered"
     assert refusal(OF_A_DISC[formula], replace(FIG11, hardening=2.0)) == message
-    message = "stop_stiffness = 5 N/m: this formula holds for a linear support only; set it to 0"
+    message = "stop_stiffness = 5 N/m: it must be 0 here, because only linear supports are covered"
     assert refusal(OF_A_DISC[formula], replace(FIG11, stop_stiffness=5.0)) == message
 
 

@@ -1,4 +1,4 @@
-"""``friction-discs sweep``: many trajectories."""
+"""``friction-discs sweep``: sweeps over initial states and parameters."""
 
 from compare.cli.command import Command
 from compare.cli.sweep.commands import sweep, sweep_shock

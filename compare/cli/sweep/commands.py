@@ -1,4 +1,4 @@
-"""``friction-discs sweep basin | map | uncertainty | figures``: what is simulated, as a plan."""
+"""Commands of ``friction-discs sweep``; each turns its options into a plan."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, Command, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, taking
+from compare.cli.options import Settings, Tolerance, changed, with_options
 from compare.cli.sweep.options import (
     COARSE,
     STARTS,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 MOST_POINTS = 100_000_000
-"""Of a plane."""
+"""Largest number of points of a grid."""
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -42,27 +42,31 @@ MAPS = {
     "pin": ("disc_speed=1.05:3:64", "friction_force=0.01:0.15:64"),
     "disc": ("disc_speed=1.05:1.95:64", "friction_force=0.005:0.06:64"),
 }
-"""Axes x and y unless others are asked for."""
+"""Default axes x and y."""
 
 ALONG = {"pin": "disc_speed=1.05:3:100", "disc": "disc_speed=1.05:1.95:100"}
 SCATTERED = {
     "pin": ("x=uniform(-0.3, 0.5)", "vx=uniform(-0.4, 0.4)"),
     "disc": ("x=uniform(-0.1, 0.1)", "vx=uniform(-0.1, 0.1)"),
 }
-"""Axis and random starts of a continuation unless others are asked for."""
+"""Default axis and random starts of a continuation."""
 
 sweep = typer.Typer(rich_markup_mode=None)
 
 
 @sweep.callback()
 def sweep_command() -> None:
-    """Simulate many trajectories: basins of attraction, maps, uncertain parameters, motions along a parameter.
+    """Simulate many trajectories.
 
-    What is not set is Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results go into a Zarr
-    store of labelled arrays, which xarray opens, chunk by chunk: after an interruption of any kind the same command
-    with --resume does the rest. The exit status is 0 when the plain reference finds the same ends in a sample, 1 when
-    it does not or the work was lost, 2 on bad input, 3 when more than half of the trajectories are undecided, and 130
-    after Ctrl-C.
+    Sweeps compute basins of attraction, maps over parameters, effects of uncertain parameters and motions along a
+    parameter.
+
+    The defaults are Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results are written chunk
+    by chunk into a Zarr store of labelled arrays, which xarray can open. After an interruption, repeat the command
+    with --resume.
+
+    The exit status is 0 if the plain reference confirms a sample of the ends, and 1 if it does not or the work was
+    lost. It is 2 for bad input, 3 if more than half of the trajectories are undecided, and 130 after Ctrl-C.
 
     \b
     Examples:
@@ -72,7 +76,7 @@ def sweep_command() -> None:
 
 
 @sweep.command("basin", cls=Command)
-@taking(Request, output="basin")
+@with_options(Request, output="basin")
 def sweep_basin(
     request: Request,
     start: Start = "",
@@ -81,12 +85,13 @@ def sweep_basin(
     coarse: Coarse = None,
     random: RandomStarts = None,
 ) -> int:
-    """Find what starts in a plane of two components of the state end as, and how large a share of them.
+    """Compute basins of attraction in a plane of initial states.
 
-    The grid is first a coarse one, and then refined where neighbouring points end differently.
+    The results are the end of each start and the share of each end. The command begins with a coarse grid and refines
+    it where neighbouring points end differently.
 
     \b
-    Axes, unless others are given:
+    Default axes:
       pin   --x x=-0.3:0.5:257 --y vx=-0.4:0.4:257
       disc  --x x=-0.1:0.1:65 --y vx=-0.1:0.1:65
     \b
@@ -106,7 +111,7 @@ def sweep_basin(
         _check_given_once({"--start": _names_of(start)}, "--x or --y", [axis.name for axis in axes])
         _check_states(common["system"], state, list(names), axes)
         if random is not None and coarse is not None:
-            raise ValueError("--coarse is of a grid: leave it out with --random")
+            raise ValueError("--coarse cannot be combined with --random")
     if random is None:
         return request.run(Basin(**common, start=state, x=axes[0], y=axes[1], coarse=coarse or COARSE))
     ranges = [Axis(axis.name, axis.low, axis.high, 2) for axis in axes]
@@ -114,12 +119,14 @@ def sweep_basin(
 
 
 @sweep.command("map", cls=Command)
-@taking(Request, output="map")
+@with_options(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
-    """Find what motions end as over a plane of two parameters, with the boundaries that formulas draw there.
+    """Map the ends of motions over a plane of two parameters.
+
+    The map also shows the theory's boundaries.
 
     \b
-    Axes, unless others are given:
+    Default axes:
       pin   --x disc_speed=1.05:3:64 --y friction_force=0.01:0.15:64
       disc  --x disc_speed=1.05:1.95:64 --y friction_force=0.005:0.06:64
     \b
@@ -143,12 +150,14 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
 
 
 @sweep.command("uncertainty", cls=Command)
-@taking(Request, output="uncertainty")
+@with_options(Request, output="uncertainty")
 def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, samples: Rows = 1024) -> int:
-    """Find how likely the whirl is, how large it is, and what that depends on, where parameters are uncertain.
+    """Compute the effects of uncertain parameters and starts.
+
+    The results are the probability of the whirl, the distribution of its radius, and the sensitivities of both.
 
     \b
-    Distributions, with numbers in SI units:
+    Distributions, in SI units:
       normal(mean, deviation)        truncnorm(mean, deviation, low, high)
       uniform(low, high)             triangular(low, mode, high)
       lognormal(median, deviation of the logarithm)
@@ -172,17 +181,17 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 
 
 @sweep.command("continuation", cls=Command)
-@taking(Request, output="continuation")
+@with_options(Request, output="continuation")
 def sweep_continuation(
     request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
 ) -> int:
-    """Find what random starts end as along one parameter, and which motions continue each other.
+    """Follow the ends of random starts along one parameter.
 
-    The starts are the same at each value. Beside the motions are those that formulas and continuation give, the
-    unstable ones too.
+    The starts are the same at each value, and the command connects their ends into branches. The figure also shows
+    the stable and unstable motions that formulas and continuation give.
 
     \b
-    Axis and starts, unless others are given:
+    Default axis and starts:
       pin   --x disc_speed=1.05:3:100 --vary "x=uniform(-0.3, 0.5)" --vary "vx=uniform(-0.4, 0.4)"
       disc  --x disc_speed=1.05:1.95:100 --vary "x=uniform(-0.1, 0.1)" --vary "vx=uniform(-0.1, 0.1)"
     \b
@@ -212,9 +221,9 @@ def sweep_continuation(
 
 @sweep.command("figures", cls=Command)
 def sweep_figures(
-    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="The --output of a finished sweep.")],
+    folder: Annotated[str, typer.Argument(metavar="DIR|URL", help="Folder or URL of a finished sweep.")],
 ) -> int:
-    """Draw the figures of a finished sweep once more and print its results.
+    """Redraw and print the results of a finished sweep.
 
     \b
     Example:
@@ -224,21 +233,19 @@ def sweep_figures(
 
 
 def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:
-    """Return the axes x and y; raise ``ValueError`` for what is none, or the same one twice."""
+    """Return the axes x and y; raise ``ValueError`` if one is invalid, or both vary the same quantity."""
     from compare.sweep.quantities import Axis
 
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]
     if axes[0].name == axes[1].name:
-        raise ValueError(f"{axes[0].name} is on both axes: they must be different")
-    if axes[0].points * axes[1].points > MOST_POINTS:
-        raise ValueError(
-            f"{axes[0].points} times {axes[1].points} points: there may be {MOST_POINTS} in a plane"
-        )
+        raise ValueError(f"{axes[0].name} is on both axes; --x and --y must be different quantities")
+    if (points := axes[0].points * axes[1].points) > MOST_POINTS:
+        raise ValueError(f"grid too large: {points:g} points, the limit is {MOST_POINTS:g}")
     return axes
 
 
 def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
-    """Return the state of "NAME=VALUE,..."; raise ``ValueError`` for what is none."""
+    """Return the default state with the changes "NAME=VALUE,..."; raise ``ValueError`` for an invalid text."""
     from compare.engines import one_of
     from reference_model.systems import finite_number
 
@@ -249,26 +256,25 @@ def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...
             raise ValueError(f"--start {text!r}: write it as NAME=VALUE,NAME=VALUE")
         name = one_of("component", name.strip(), names)
         if _names_of(text).count(name) > 1:
-            raise ValueError(f"--start {text!r}: {name} is there more than once")
+            raise ValueError(f"--start {text!r}: {name} is given more than once")
         state[name] = finite_number(name, value)
     return tuple(state.values())
 
 
 def _names_of(text: str) -> list[str]:
-    """Return the names in "NAME=VALUE,..."."""
     return [part.partition("=")[0].strip() for part in text.split(",")]
 
 
 def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequence[str]) -> None:
-    """Raise ``ValueError`` if an option gives a value to what has its values from elsewhere."""
+    """Raise ``ValueError`` if an option sets one of ``names``, which ``by`` varies."""
     for option, of_option in given.items():
         for name in of_option:
             if name in names:
-                raise ValueError(f"{option} {name}: it has its values from {by}, leave one of them out")
+                raise ValueError(f"{option} {name}: {by} already varies {name}; leave one of them out")
 
 
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
-    """Raise ``ValueError`` if a start in a plane can't be one."""
+    """Raise ``ValueError`` if an initial state at an end of an axis is invalid."""
     from reference_model.systems import checked_state
 
     for axis in axes:
@@ -279,23 +285,26 @@ def _check_states(system: System, state: Sequence[float], names: Sequence[str], 
 
 def _check_varied(names: Sequence[str]) -> None:
     if not names:
-        raise ValueError('nothing is uncertain: say what is, --vary "offset=normal(0.1, 0.005)" for instance')
+        raise ValueError(
+            'no uncertain quantity given; use --vary, for example --vary "offset=normal(0.1, 0.005)"'
+        )
     for name in names:
         if names.count(name) > 1:
-            raise ValueError(f"--vary {name}: it is there more than once")
+            raise ValueError(f"--vary {name} is given more than once; give it once")
 
 
-# --- ``friction-discs sweep shock``: the smallest shock that leads to the whirl.
+# --- Smallest shock that leads to the whirl.
 
 AGREEMENT = 1e-6
-"""Largest relative difference of both ways to find it."""
+"""Largest relative difference between the orbit's result and the bisection."""
 
 
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
-    """Find the smallest shock that throws a pin from its self-centred equilibrium into the whirl.
+    """Find the smallest shock that moves a pin to the whirl.
 
-    It is the point of the basin's boundary, the stable set of a stick–slip orbit, that is nearest in velocity. The
-    ends of motions on both sides of it check that by bisection.
+    The pin starts in its self-centred equilibrium. The boundary of the basin is the stable manifold of a stick–slip
+    orbit. The shock is the smallest change of velocity that reaches it. A bisection by simulated motions checks the
+    result.
 
     \b
     Example:
@@ -317,9 +326,9 @@ def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     difference = abs(checked / shock.speed - 1.0)
     with printing():
         print(
-            f"smallest shock that leads to the whirl: {shock.impulse:.9g} N s, a change of the velocity by "
+            f"smallest shock that leads to the whirl: {shock.impulse:.9g} N s, a velocity change of "
             f"{shock.speed:.9g} m/s, ({shock.vx:.6g}, {shock.vy:.6g}) m/s"
         )
         print(f"  direction: {math.degrees(shock.direction):.2f}° from the x-axis")
-        print(f"  by bisection of ends: {checked:.9g} m/s, relative difference {difference:.0e}")
+        print(f"  check by bisection: {checked:.9g} m/s, relative difference {difference:.0e}")
     return FINE if difference <= AGREEMENT else SOMETHING_DIFFERS

@@ -1,4 +1,4 @@
-"""Options of the sweeps, each declared once, and what all of them have in common."""
+"""Options of the sweeps."""
 
 from __future__ import annotations
 
@@ -21,34 +21,37 @@ COARSE = 65
 MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**31, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
-"""As of ``simulate``."""
+"""Default initial states, equal to those of ``simulate``."""
 
 UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
-"""In s. The modulated motions of Fig. 11 near its Hopf curve take as long to be told from whirls. Where single points
-of contact come to rest, which the plain reference has to follow, a longer time costs most and settles nothing."""
+"""Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls.
+For single contact points it is shorter: the plain reference simulates their rests slowly, and more time decides no
+further motion."""
 
 
 def rows(text: str) -> int:
-    """Return the number of rows that ``text`` says."""
+    """Return ``text`` as a number of rows, a power of 2."""
     from compare.sweep.compute.sensitivity import LEAST_SAMPLES
 
     with refused():
         number = count("samples", text, LEAST_SAMPLES, MOST_SAMPLES)
         if number & (number - 1):
             nearest = 1 << number.bit_length()
-            raise ValueError(f"samples = {number}: it must be a power of 2, {nearest} for instance")
+            raise ValueError(f"samples = {number}: it must be a power of 2, for example {nearest}")
     return number
 
 
 SystemName = Annotated[
     str,
-    typer.Argument(metavar="pin|disc", help="What is simulated.", parser=chosen_from("system", list(STARTS))),
+    typer.Argument(
+        metavar="pin|disc", help="System to simulate.", parser=chosen_from("system", list(STARTS))
+    ),
 ]
 Start = Annotated[
     str,
     typer.Option(
         metavar="NAME=VALUE,...",
-        help="Components of the state at time 0; the others are as for simulate.",
+        help="Components of the initial state in SI units; the others keep their defaults in simulate.",
         show_default=False,
     ),
 ]
@@ -57,19 +60,28 @@ Starts = Annotated[
     typer.Option(
         "--start",
         metavar="NAME=VALUE,...",
-        help="Components of the state at time 0; the others are as for simulate. Several times for several starts.",
+        help="Components of the initial state in SI units; the others keep their defaults in simulate. "
+        "Repeat for more initial states.",
         show_default=False,
     ),
 ]
 XAxis = Annotated[
-    str, typer.Option("--x", metavar="NAME=LOW:HIGH:POINTS", help="Across.", show_default=False)
+    str,
+    typer.Option(
+        "--x", metavar="NAME=LOW:HIGH:POINTS", help="Horizontal axis, in SI units.", show_default=False
+    ),
 ]
-YAxis = Annotated[str, typer.Option("--y", metavar="NAME=LOW:HIGH:POINTS", help="Up.", show_default=False)]
+YAxis = Annotated[
+    str,
+    typer.Option(
+        "--y", metavar="NAME=LOW:HIGH:POINTS", help="Vertical axis, in SI units.", show_default=False
+    ),
+]
 Coarse = Annotated[
     int | None,
     typer.Option(
         metavar="N",
-        help="Least points along each axis before the boundary is refined.",
+        help="Least number of points along each axis of the first grid.",
         parser=whole("coarse", 2, MOST_SAMPLES),
         show_default=str(COARSE),
     ),
@@ -78,7 +90,7 @@ RandomStarts = Annotated[
     int | None,
     typer.Option(
         metavar="N",
-        help="Take N random starts in place of the grid.",
+        help="Use N random initial states instead of a grid.",
         parser=whole("random", 1, MOST_SAMPLES),
         show_default=False,
     ),
@@ -87,7 +99,7 @@ Varied = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=DISTRIBUTION",
-        help="An uncertain parameter or component of the state at time 0, several times for several.",
+        help="Distribution of a parameter or a component of the initial state; repeat for more quantities.",
         show_default=False,
     ),
 ]
@@ -95,34 +107,34 @@ Rows = Annotated[
     int,
     typer.Option(
         metavar="N",
-        help="A power of 2; N·(2 + number of uncertain quantities) trajectories are simulated.",
+        help="Sample size, a power of 2; N·(2 + number of uncertain quantities) trajectories are simulated.",
         parser=rows,
     ),
 ]
 Values = Annotated[
     int,
     typer.Option(
-        metavar="N", help="Random starts at each value.", parser=whole("samples", 1, MOST_AT_A_VALUE)
+        metavar="N",
+        help="Number of random initial states at each value.",
+        parser=whole("samples", 1, MOST_AT_A_VALUE),
     ),
 ]
 Until = Annotated[
     float | None,
     typer.Option(
         metavar="T",
-        help="Longest time in s that an end is waited for. What is not certain until then is undecided; a longer "
-        "time settles most of that, and costs nothing where ends are certain before.",
+        help="Time limit of each trajectory in s. A trajectory whose end is not certain by then is undecided. A "
+        "longer limit decides most of these, and costs nothing for the others.",
         parser=positive("until", "s"),
-        show_default=f"{UNTIL:g}, of a disc on single points {UNTIL_ON_POINTS:g}",
+        show_default=f"{UNTIL:g}; {UNTIL_ON_POINTS:g} for a disc on single points",
     ),
 ]
-Seed = Annotated[
-    int, typer.Option(metavar="N", help="Of all that is random.", parser=whole("seed", 0, 2**63 - 1))
-]
+Seed = Annotated[int, typer.Option(metavar="N", help="Random seed.", parser=whole("seed", 0, 2**63 - 1))]
 Chunk = Annotated[
     int | None,
     typer.Option(
         metavar="N",
-        help="Trajectories that are computed and written together.",
+        help="Number of trajectories that are computed and written together.",
         parser=whole("chunk", 1, MOST_CHUNK),
         show_default=str(CHUNK),
     ),
@@ -131,7 +143,7 @@ Scheduler = Annotated[
     str | None,
     typer.Option(
         metavar="ADDRESS",
-        help="A Dask scheduler, tcp://HOST:PORT, whose workers compute.",
+        help="Address of a Dask scheduler, tcp://HOST:PORT, whose workers run the sweep.",
         show_default="the cores of this machine",
     ),
 ]
@@ -139,15 +151,15 @@ Output = Annotated[
     str,
     typer.Option(
         metavar="DIR|URL",
-        help="Folder for the results, shared by all machines that compute, or s3://BUCKET/NAME.",
+        help="Folder for the results, or s3://BUCKET/NAME; all workers must be able to write to it.",
     ),
 ]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on with the sweep that is there.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Continue the sweep in the output folder.")]
 
 
 @dataclass(frozen=True)
 class Request:
-    """What every sweep takes from the command line."""
+    """Options that all sweeps share."""
 
     system: SystemName
     settings: Settings = None
@@ -160,7 +172,7 @@ class Request:
     resume: Resume = False
 
     def common(self) -> dict[str, Any]:
-        """Return what all plans have; raise ``ValueError`` for what can't be."""
+        """Return the arguments that all plans share; raise ``ValueError`` for invalid options."""
         from compare.claims.parameters import FIG5, FIG11
         from reference_model.support import require_linear_support
 
@@ -176,9 +188,9 @@ class Request:
         }
 
     def set_names(self) -> list[str]:
-        """Return the names of the parameters that are set."""
+        """Return the names of parameters that ``--set`` changes."""
         return [setting.partition("=")[0].strip() for setting in self.settings or []]
 
     def run(self, plan: Plan) -> int:
-        """Run the sweep of ``plan``, or the rest of it."""
+        """Run or resume the sweep of ``plan`` and return the exit status."""
         return run_sweep(plan, self.chunk, self.scheduler, self.output, self.resume)

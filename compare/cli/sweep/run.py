@@ -1,4 +1,4 @@
-"""A sweep of the command line is run, or the rest of it, and its results are printed and drawn."""
+"""Runs, resumes, prints and draws the sweeps of the command line."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ if TYPE_CHECKING:
     from compare.sweep.store import SweepStore
 
 STORE = "sweep.zarr"
-"""Name of the store in its folder."""
+"""File name of the store."""
 
 CHUNK = 32768
-"""Trajectories in a chunk, unless another number is asked for."""
+"""Default number of trajectories per chunk."""
 
 MOST_UNDECIDED = 0.5
-"""Largest share of undecided trajectories of a sweep that ends with status 0."""
+"""Largest share of undecided trajectories for exit status 0."""
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
-    """Run a sweep, or the rest of it; print and draw its results."""
+    """Run or resume a sweep, print and draw its results, and return the exit status."""
     from compare.run.workers import lacks_memory
     from compare.sweep.compute.executors import ClusterError
     from compare.sweep.compute.run import run
@@ -50,9 +50,9 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
     files = Files.at(folder.below(STORE))
     try:
         with _executor(scheduler) as executor:
-            with _looking():
+            with _reporting_store_errors():
                 _check_writable(folder)
-                store = _there(files, plan, chunk, resume)
+                store = _existing_store(files, plan, chunk, resume)
             with trajectories() as progress:
                 if store is None:
                     store = SweepStore.create(files.url, plan, chunk or CHUNK)
@@ -61,31 +61,30 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
         return finish(store, folder)
     except FileExistsError:
         return say(
-            f"another command has just begun {files.url!r}: wait until it ends, or take another --output",
+            f"another command has just started {files.url!r}; wait until it ends, or choose another --output",
             BAD_INPUT,
         )
     except (ClusterError, OtherCodeError) as error:
-        return say(f"{error}. The same command with --resume goes on.", SOMETHING_DIFFERS)
+        return say(f"{error}. Repeat the command with --resume to continue.", SOMETHING_DIFFERS)
     except (OSError, MemoryError, StoreError) as error:
         if lacks_memory(error):
-            return say(
-                "there is not enough memory. The same command with --resume goes on.", SOMETHING_DIFFERS
-            )
+            return say("not enough memory. Repeat the command with --resume to continue.", SOMETHING_DIFFERS)
         return say(
-            f"{error}. What is written stays valid; the same command with --resume goes on.", BAD_INPUT
+            f"{error}. Results written so far remain valid; repeat the command with --resume to continue.",
+            BAD_INPUT,
         )
     except KeyboardInterrupt:
-        return say("Interrupted. The same command with --resume goes on.", INTERRUPTED)
+        return say("Interrupted. Repeat the command with --resume to continue.", INTERRUPTED)
     finally:
         if store is not None:
             store.tidy()
             if store.broken:
-                say(f"{store.path!r} was broken and is computed again: {'; '.join(store.broken)}", FINE)
+                say(f"recomputed damaged parts of {store.path!r}: {'; '.join(store.broken)}", FINE)
 
 
 @contextmanager
-def _looking() -> Iterator[None]:
-    """Turn what is wrong with a place, or with what is there, into ``BadInputError``."""
+def _reporting_store_errors() -> Iterator[None]:
+    """Turn errors of the folder or its store into ``BadInputError``."""
     from compare.sweep.files import StoreError
 
     with refused():
@@ -96,7 +95,7 @@ def _looking() -> Iterator[None]:
 
 
 def _check_writable(folder: Files) -> None:
-    """Raise ``ValueError`` or ``StoreError`` if no file can be written to the folder or URL."""
+    """Raise ``ValueError`` or ``StoreError`` if the folder or URL is not writable."""
     from compare.sweep.files import is_remote
 
     if is_remote(folder.url):
@@ -106,8 +105,8 @@ def _check_writable(folder: Files) -> None:
         check_folder(Path(folder.url))
 
 
-def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
-    """Return the store to go on with, if there is one; raise ``ValueError`` if it is not that of ``plan``."""
+def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
+    """Return the store to resume, or None; raise ``ValueError`` if it belongs to another plan."""
     from compare.sweep.store import SweepStore, is_free
 
     if is_free(files):
@@ -122,24 +121,25 @@ def _there(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepSt
 
 
 def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
-    """Raise ``ValueError`` if a store is not that of ``plan``, or must not be gone on with."""
+    """Raise ``ValueError`` if the store belongs to another plan or cannot be resumed."""
     from compare.run.provenance import stamp
 
     if store.plan != plan:
-        raise ValueError(f"{store.path!r} belongs to another sweep: take another --output")
+        raise ValueError(f"{store.path!r} contains a different sweep; choose another --output")
     if not resume:
         raise ValueError(
-            f"{store.path!r} is there already: --resume goes on with it, or take another --output"
+            f"{store.path!r} already exists; use --resume to continue it, or choose another --output"
         )
     if store.stamp != stamp():
-        raise ValueError(f"{store.path!r} was computed by other code or libraries: take another --output")
+        raise ValueError(
+            f"{store.path!r} was computed by a different version of the code or libraries; choose another --output"
+        )
     if chunk not in (None, store.chunk):
-        raise ValueError(f"chunk = {chunk}: {store.path!r} has chunks of {store.chunk}")
+        raise ValueError(f"chunk = {chunk}: {store.path!r} uses chunks of {store.chunk}; leave out --chunk")
 
 
 @contextmanager
 def _executor(scheduler: str | None) -> Iterator[Executor]:
-    """Yield what does the work."""
     from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 
     if scheduler is None:
@@ -150,13 +150,15 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
     except (ValueError, ClusterError) as error:
         raise BadInputError(str(error)) from None
     except ModuleNotFoundError:
-        raise BadInputError("--scheduler needs Dask: pip install 'friction-discs[cluster]'") from None
+        raise BadInputError(
+            "--scheduler needs Dask; install it with: pip install 'friction-discs[cluster]'"
+        ) from None
     with cluster:
         yield cluster
 
 
 def finish(store: SweepStore, folder: Files) -> int:
-    """Print and draw the results; return 1 if the plain reference differs, 3 if most is undecided, else 0."""
+    """Print and draw the results; return 1 if the plain reference differs, 3 if too many are undecided, else 0."""
     from compare.sweep.figures import write_figures
     from compare.sweep.summary import same_ends, summary, undecided
 
@@ -169,22 +171,22 @@ def finish(store: SweepStore, folder: Files) -> int:
         return SOMETHING_DIFFERS
     if undecided(store) > MOST_UNDECIDED:
         return say(
-            f"{100.0 * undecided(store):.0f} % are undecided: raise --until to follow them longer",
+            f"{100.0 * undecided(store):.0f} % of the trajectories are undecided; use a larger --until",
             NOTHING_SHOWN,
         )
     return FINE
 
 
 def redraw(place: str) -> int:
-    """Do as ``finish`` for a finished sweep; raise ``BadInputError`` for one that is not finished."""
+    """Call ``finish`` for a stored sweep; raise ``BadInputError`` if it is incomplete."""
     from compare.sweep.files import Files
     from compare.sweep.store import SweepStore
 
-    with _looking():
+    with _reporting_store_errors():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
     try:
-        with _looking():
+        with _reporting_store_errors():
             _check_finished(store)
             return finish(store, folder)
     finally:
@@ -198,6 +200,6 @@ def _check_finished(store: SweepStore) -> None:
         return
     if store.broken:
         raise ValueError(
-            f"{store.path!r} is broken ({'; '.join(store.broken)}): --resume computes that again"
+            f"{store.path!r} is damaged ({'; '.join(store.broken)}); repeat the sweep with --resume to recompute it"
         )
-    raise ValueError(f"the sweep in {store.path!r} is not finished: --resume goes on with it")
+    raise ValueError(f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it")

@@ -1,4 +1,4 @@
-// Search, filters with their state in the link, keys, and animations that play when asked. All is readable without.
+// Search, filters stored in the URL, keys, and animations that start on request. The page is readable without it.
 (() => {
   "use strict";
   document.documentElement.classList.add("scripted");
@@ -68,7 +68,7 @@
     try {
       history.replaceState(null, "", location.pathname + (state ? `?${state}` : "") + location.hash);
     } catch {
-      // a browser that keeps the address of files as it is
+      // some browsers do not allow this for local files
     }
     show();
   }

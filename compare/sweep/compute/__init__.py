@@ -1,1 +1,1 @@
-"""How a sweep is computed: chunks of work, those who execute them, what follows from it."""
+"""Computation of a sweep: chunks of work, executors and results."""

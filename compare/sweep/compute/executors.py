@@ -1,4 +1,4 @@
-"""Where the pieces of work are done: in this process, or on the workers of a Dask cluster."""
+"""Executors of tasks: this process, or the workers of a Dask cluster."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from urllib.parse import urlsplit
 from compare.run.provenance import stamp
 
 WAIT = 3.0
-"""In s, for a scheduler to be reached, to answer, and to have a worker."""
+"""Time limit in s for a scheduler to be reached, to answer, and to have a worker."""
 
 IN_FLIGHT = 3
-"""Tasks per thread of the cluster that are with it at one time: enough to keep it busy, and few to lose."""
+"""Submitted tasks per thread of the cluster: enough to keep it busy, and few to lose."""
 
-GLANCE = 1.0
-"""In s: how often the threads of the cluster are counted."""
+COUNT_INTERVAL = 1.0
+"""Interval in s between counts of the cluster's threads."""
 
 
 AT_ONCE = 2
-"""Tasks in this process, each on all cores."""
+"""Number of simultaneous tasks in this process, each on all cores."""
 
 
 class ClusterError(RuntimeError):
-    """The cluster can't be reached, or is lost; the message says which."""
+    """The cluster cannot be reached or was lost; the message says which."""
 
 
 class Task(NamedTuple):
-    """A call of a function of an importable module; ``compiled`` if it leaves the interpreter's lock to others."""
+    """A call of a function of an importable module; ``compiled`` if it releases the interpreter lock."""
 
     key: Hashable
     function: Callable[..., Any]
@@ -47,20 +47,20 @@ class Task(NamedTuple):
 
 
 class Executor(Protocol):
-    """Does tasks."""
+    """Interface of an executor."""
 
     @property
     def threads(self) -> int | None:
-        """How many threads a task may use, None for all cores."""
+        """Number of threads per task, None for all cores."""
         ...
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they come; take the tasks as they are needed."""
+        """Yield keys and results as they become available; ``tasks`` is consumed on demand."""
         ...
 
 
 class InProcess:
-    """The cores of this machine: while a result is taken, and where one task leaves cores idle, the next one runs."""
+    """The cores of this machine; the next task fills cores that a task leaves idle."""
 
     threads = None
 
@@ -69,7 +69,7 @@ class InProcess:
         running: deque[tuple[Hashable, Future[Any]]] = deque()
         with ThreadPoolExecutor(AT_ONCE) as pool:
             for task in tasks:
-                if not task.compiled:  # side by side two of them would only wait for each other
+                if not task.compiled:  # two of them would wait for each other's interpreter lock
                     yield task.key, task.function(*task.arguments)
                     continue
                 running.append((task.key, pool.submit(task.function, *task.arguments)))
@@ -81,36 +81,36 @@ class InProcess:
 
 
 class Cluster:
-    """The workers of a Dask scheduler, each task on one of their threads; use as a context manager.
+    """The workers of a Dask scheduler, each task on one thread; use it as a context manager.
 
     Parameters
     ----------
     address : str
-        Of the scheduler, "tcp://host:port".
+        Address of the scheduler, "tcp://host:port".
 
     Raises
     ------
     ValueError
-        For another address.
+        If the address is invalid.
     ClusterError
-        If there is no scheduler, or it has no workers, or not this package; if it is lost later.
+        If no scheduler answers, it has no workers or lacks this package, or it is lost later.
     ModuleNotFoundError
-        Without Dask.
+        If Dask is not installed.
 
     """
 
     threads = 1
 
     def __init__(self, address: str) -> None:
-        self._dask: Any = importlib.import_module("distributed")  # of the extra "cluster", and without types
+        self._dask: Any = importlib.import_module("distributed")  # from the extra "cluster", untyped
         for logger in ("distributed", "distributed.client", "tornado.application"):
-            logging.getLogger(logger).setLevel(logging.CRITICAL)  # the sentences are ours
+            logging.getLogger(logger).setLevel(logging.CRITICAL)  # ``ClusterError`` reports problems
         self._address = _checked_address(address)
         self._counted = -math.inf
         self._most = 1
         _reach(self._dask, self._address)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # other versions of libraries: those that matter are in the stamp
+            warnings.simplefilter("ignore")  # about versions of libraries; the stamp covers the relevant ones
             self._client = self._dask.Client(address, timeout=WAIT, set_as_default=False)
         try:
             self._client.wait_for_workers(1, timeout=WAIT)
@@ -118,13 +118,13 @@ class Cluster:
         except TimeoutError:
             self._client.close()
             raise ClusterError(
-                f"the scheduler at {address} has no workers: start some, dask worker {address}"
+                f"the scheduler at {address} has no workers; start one with: dask worker {address}"
             ) from None
         except (ImportError, RuntimeError, self._dask.KilledWorker):
             self._client.close()
             raise ClusterError(
-                f"the scheduler at {address} or its workers can't import friction-discs: "
-                "install the same version everywhere"
+                f"the scheduler at {address} or its workers cannot import friction-discs; "
+                "install the same version on all machines"
             ) from None
 
     def __enter__(self) -> Cluster:
@@ -133,11 +133,11 @@ class Cluster:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        with suppress(Exception):  # of a scheduler that is lost
+        with suppress(Exception):  # the scheduler may be lost
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they come; what a lost worker had is done by another."""
+        """Yield keys and results as they become available; tasks of a lost worker are repeated by another."""
         keys: dict[str, Hashable] = {}
         waiting = iter(tasks)
         running = self._dask.as_completed(with_results=True, loop=self._client.loop)
@@ -151,7 +151,7 @@ class Cluster:
         try:
             feed()
             for future, result in running:
-                if isinstance(result, BaseException):  # of a future that was cancelled
+                if isinstance(result, BaseException):  # the future was cancelled
                     raise result
                 yield keys.pop(future.key), result
                 feed()
@@ -162,16 +162,15 @@ class Cluster:
             raise
 
     def _room(self) -> int:
-        """Return how many tasks may be with the cluster."""
         now = time.monotonic()
-        if now >= self._counted + GLANCE:
+        if now >= self._counted + COUNT_INTERVAL:
             self._counted = now
             self._most = max(1, IN_FLIGHT * sum(self._client.nthreads().values()))
         return self._most
 
 
 def _reach(dask: Any, address: str) -> None:
-    """Raise an error unless a scheduler answers: Dask's client may try for long, or fall over what another says."""
+    """Raise ``ClusterError`` unless a scheduler answers; Dask's client may wait long, or fail on other answers."""
 
     async def kind() -> Any:
         async with dask.rpc(address) as server:
@@ -179,19 +178,18 @@ def _reach(dask: Any, address: str) -> None:
 
     try:
         answer = asyncio.run(asyncio.wait_for(kind(), WAIT))
-    except Exception:  # whatever it does with what is no scheduler's answer
+    except Exception:  # Dask may raise anything for the answer of another program
         answer = "nothing"
     if answer != "Scheduler":
-        raise ClusterError(f"no Dask scheduler answers at {address}: start one, dask scheduler")
+        raise ClusterError(f"no Dask scheduler answers at {address}; start one with: dask scheduler")
 
 
 def _checked_address(address: str) -> str:
-    """Return the address of a scheduler; raise ``ValueError`` for what is none."""
     try:
         parts = urlsplit(address)
         if parts.scheme and parts.hostname and parts.port:
             return address
-    except ValueError:  # of the port
+    except ValueError:  # invalid port
         pass
     raise ValueError(f"scheduler = {address!r}: write it as tcp://HOST:PORT")
 

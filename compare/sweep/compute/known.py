@@ -1,4 +1,4 @@
-"""What formulas and continuation know: motions along one parameter, and curves in the plane of a map."""
+"""Results of formulas and continuation: motions along one parameter, and curves in the plane of a map."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from reference_model.formulas.pin import largest_load_with_equilibrium
 from reference_model.steady.bifurcation_curves import Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-# --- The steady and periodic motions that formulas and continuation give along one parameter.
+# --- Steady and periodic motions along one parameter.
 
 SAMPLES = 64
-"""Of an orbit, on which its radii are looked for: between two the radius of one near to a circle differs by 1e-3."""
+"""Number of samples of an orbit for its radii; between two, the radius of a nearly circular orbit varies by 1e-3."""
 
 
 class Known(NamedTuple):
-    """A motion: what it is, least and largest radius in m, whether it is stable."""
+    """A motion: its kind, least and largest radius in m, and stability."""
 
     meaning: str
     least: float
@@ -33,21 +33,21 @@ class Known(NamedTuple):
 
 
 def known_branches(plan: Continuation) -> list[dict[int, Known]]:
-    """Return branches of motions, each by the places of the values of the axis."""
+    """Return branches of motions; each maps indices of the axis's values to motions."""
     return matched(list(_known(plan)), lambda one: one.meaning)
 
 
 def _known(plan: Continuation) -> Iterator[list[Known]]:
     """Yield the motions at each value.
 
-    A whirl with an offset is sought from that of the value before.
+    With an offset, the search for the whirl starts from the whirl of the previous value.
     """
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
         system = replace(plan.system, **change)
         here: list[Known] = []
-        with suppress(ValueError):  # of a disc on single points, of which no formula knows
+        with suppress(ValueError):  # no formula covers a disc on single points
             rests = self_centred_equilibria(system)
             here += [_circle("self-centred", math.hypot(one.x, one.y), one.stable) for one in rests]
         if system.offset == 0.0:
@@ -62,9 +62,9 @@ def _known(plan: Continuation) -> Iterator[list[Known]]:
 
 
 def _orbit(system: System, before: Orbit | None, tolerance: float) -> Orbit | None:
-    """Return the whirl by shooting from that of the value before, or else from the circle without offset."""
+    """Return the whirl by shooting from the previous one, or else from the circle without offset."""
     for guess in (before, None) if before is not None else (None,):
-        with suppress(ValueError, RuntimeError):  # there is none, or it is not found
+        with suppress(ValueError, RuntimeError):  # no whirl exists, or shooting fails
             return whirl_orbit(system, guess=guess, tolerance=tolerance, samples=SAMPLES)
     return None
 
@@ -73,23 +73,23 @@ def _circle(meaning: str, radius: float, stable: bool) -> Known:
     return Known(meaning, radius, radius, stable)
 
 
-# --- Where formulas say that the motions change, as curves in the plane of a map.
+# --- Boundaries between motions according to formulas, as curves in the plane of a map.
 #
-# They hold without offset, but for that of (5); a disc is taken on the continuous ring.
+# All except (5) hold without offset; a disc is treated as a continuous ring.
 
 NODES = 101
-"""Values of each parameter between which the zeros of a margin are interpolated."""
+"""Number of values of each parameter; the zeros of a margin are interpolated between them."""
 
 
 class Curve(NamedTuple):
-    """A curve: what happens there, and its points, shape (n, 2), in the units of the two parameters."""
+    """A boundary: its meaning, and its points, shape (n, 2), in the units of the two parameters."""
 
     meaning: str
     points: FloatArray
 
 
 class _Margin(NamedTuple):
-    """What changes its sign on a curve."""
+    """A function that changes its sign on a curve."""
 
     meaning: str
     of: Callable[[Any], float]
@@ -124,12 +124,12 @@ def curves(plan: Map) -> tuple[Curve, ...]:
 
 
 def _boundaries(plan: Map, disc: DiscOnDisc) -> Iterator[Curve]:
-    """Yield what :mod:`reference_model.steady.bifurcation_curves` knows; nothing where it does not know the plane."""
+    """Yield the curves of :mod:`reference_model.steady.bifurcation_curves`, if it supports the plane."""
     x, y = plan.x, plan.y
     centred = replace(disc, offset=0.0, contact_points=None)
     try:
         plane = ParameterPlane(centred, (x.name, y.name), (x.low, y.low), (x.high, y.high))
-    except ValueError:  # a parameter that it does not have, or a range beyond the existence of whirls
+    except ValueError:  # an unsupported parameter, or a range without whirls
         return
     for kind in get_args(Kind):
         for boundary in boundaries(plane, kind):
@@ -137,7 +137,6 @@ def _boundaries(plan: Map, disc: DiscOnDisc) -> Iterator[Curve]:
 
 
 def _zeros(plan: Map) -> Iterator[Curve]:
-    """Yield the curves on which the margins are zero."""
     from contourpy import contour_generator
 
     axes = [np.linspace(axis.low, axis.high, NODES) for axis in (plan.x, plan.y)]

@@ -1,4 +1,4 @@
-"""Which motions the ends of many starts are, and which of them continue each other from value to value."""
+"""Groups the ends of many starts into motions, and connects motions of successive values into branches."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 
 GAP = 0.05
-"""Relative gap in the largest radius between two motions that end as the same: single ones scatter by less."""
+"""Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
 
 JUMP = 0.3
-"""Relative difference of the radii, from what the two values before let expect, up to which a motion goes on."""
+"""Largest relative difference between the radii of a motion and those extrapolated from its branch."""
 
 
 class Motion(NamedTuple):
-    """What some of the starts end in: how, how many starts, and the median of their least and largest radius in m."""
+    """A motion that some of the starts end in: its kind, their number, medians of least and largest radius in m."""
 
     end: int
     starts: int
@@ -28,10 +28,9 @@ class Motion(NamedTuple):
 
 
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
-    """Return the motions in which starts end, each argument of shape (n,); the undecided are none.
+    """Return the motions in which starts end, without undecided ones; all arguments have shape (n,).
 
-    Motions that end as the same are told apart by a gap between their radii; but those of a pin that is stuck, which
-    may be stuck anywhere, are one.
+    A gap between radii separates motions of one kind. Stuck motions form one group, because a pin may stick anywhere.
     """
     found = []
     for end in EndState:
@@ -50,16 +49,16 @@ def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motio
 
 
 class Sized(Protocol):
-    """Something that has a least and a largest radius in m."""
+    """Interface of an object with a least and a largest radius in m."""
 
     @property
     def least(self) -> float:
-        """The least."""
+        """Least radius in m."""
         ...
 
     @property
     def largest(self) -> float:
-        """The largest."""
+        """Largest radius in m."""
         ...
 
 
@@ -67,11 +66,11 @@ One = TypeVar("One", bound=Sized)
 
 
 def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> list[dict[int, One]]:
-    """Return branches of motions, each with the motion at the places of the values where it is there.
+    """Return branches of motions; each maps indices of values to motions.
 
-    A branch goes on with that motion of its kind which is nearest to what the line through its last two lets expect;
-    the nearest pairs come first. What is farther than ``JUMP``, or has no branch to go on, begins a new one. Where a
-    branch has no motion it ends.
+    A branch continues with the motion of its kind that is nearest to a linear extrapolation of its last two; nearest
+    pairs are matched first. A motion farther than ``JUMP`` from all branches begins a new one. A branch ends at the
+    first value without a matching motion.
     """
     branches: list[dict[int, One]] = []
     for i, here in enumerate(found):
@@ -92,7 +91,7 @@ def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> 
 
 
 def _distance(branch: dict[int, One], i: int, motion: One) -> float:
-    """Return how far a motion is from what a branch lets expect at place ``i``, as a part of the radius."""
+    """Return the distance of a motion from the extrapolated branch at index ``i``, relative to the radius."""
     last = branch[i - 1]
     before = branch.get(i - 2, last)
     size = max(last.largest, motion.largest)

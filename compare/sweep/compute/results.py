@@ -1,4 +1,4 @@
-"""Results of a whole sweep as labelled arrays, written block by block wherever there is room."""
+"""Results of a sweep as labelled arrays; workers write them block by block."""
 
 from __future__ import annotations
 
@@ -23,18 +23,17 @@ from reference_model.ensemble import EndState
 from reference_model.systems import System
 
 SHOWN = ("end", "time", "least_radius", "largest_radius", "slip_power")
-"""What of a trajectory is labelled; its state stays with its round."""
+"""Labelled results of a trajectory; its state remains in its round."""
 
 BLOCK = 1 << 17
-"""Trajectories of a block, about: few enough to be nothing beside the libraries in memory."""
+"""Approximate number of trajectories per block; its memory is small compared with that of the libraries."""
 
 ENDS = [end.name.lower() for end in EndState]
 
 SENSITIVE = ("largest_radius", "whirl")
-"""Of what the sensitivities are given.
+"""Results with sensitivities.
 
-Where a trajectory is undecided its last radius takes the place of the largest one of its end; "whirl" is 1 where it
-ends as a whirl and 0 elsewhere.
+An undecided trajectory counts with its last radius. "whirl" is 1 if a trajectory ends as a whirl, else 0.
 """
 
 Variables = dict[str, tuple[Any, ...]]
@@ -42,7 +41,7 @@ Values = dict[str, NDArray[Any]]
 
 
 class Block(NamedTuple):
-    """Trajectories ``first`` to ``last`` of a plan, and where they stand in the labelled arrays."""
+    """Trajectories ``first`` to ``last`` of a plan, and their region of the labelled arrays."""
 
     first: int
     last: int
@@ -50,7 +49,7 @@ class Block(NamedTuple):
 
 
 class Part(NamedTuple):
-    """Trajectories of a block that were simulated in one round: their places there, and in the block."""
+    """Trajectories of a block from one round: their indices in the round and in the block."""
 
     chunks: Chunks
     where: slice
@@ -58,10 +57,10 @@ class Part(NamedTuple):
 
 
 class Labelled(NamedTuple):
-    """What is known of a block when it is written.
+    """Summary of a block.
 
-    How many trajectories ended as each of ``EndState``, shape (rows, ends), a row for each value of a continuation
-    and else a single one; what it adds to the sensitivities; the motions at each value.
+    ``counts`` are the trajectories of each ``EndState``, shape (rows, ends), with a row for each value of a
+    continuation, else a single row. ``moments`` contribute to sensitivities; ``motions`` are listed for each value.
     """
 
     counts: NDArray[np.int64]
@@ -70,7 +69,7 @@ class Labelled(NamedTuple):
 
 
 def blocks_of(plan: Plan) -> list[Block]:
-    """Return the blocks of a plan's trajectories, which no number of chunks or threads changes."""
+    """Return the blocks of a plan's trajectories; they do not depend on chunks or threads."""
     if isinstance(plan, RandomBasin):
         return [Block(i, j, (slice(i, j),)) for i, j in _ranges(plan.samples, BLOCK)]
     if isinstance(plan, Uncertainty):
@@ -100,14 +99,14 @@ def _ranges(count: int, size: int) -> list[tuple[int, int]]:
 
 
 def _rows(plan: Basin | Map | Continuation) -> int:
-    """Return how many rows of a plane, or values of a continuation, make a block."""
+    """Return the number of rows of a plane, or of values of a continuation, per block."""
     if isinstance(plan, Continuation):
         return max(1, min(plan.x.points, BLOCK // plan.samples))
     return max(1, min(plan.y.points, BLOCK // plan.x.points))
 
 
 def large_of(plan: Plan) -> dict[str, Large]:
-    """Return the labelled arrays that have a value for each trajectory."""
+    """Return the labelled arrays with one value per trajectory."""
     dimensions: tuple[str, ...]
     shape: tuple[int, ...]
     pieces: tuple[int, ...]
@@ -139,17 +138,17 @@ def large_of(plan: Plan) -> dict[str, Large]:
         found["modulation"] = large("f8", {"long_name": "(largest − least)/(largest + least) radius"})
     if isinstance(plan, Basin):
         meaning = {
-            "long_name": "1 where the trajectory was simulated; the others, 0, end as those around them"
+            "long_name": "1 if the trajectory was simulated, 0 if its end was inferred from its neighbours"
         }
         found["simulated"] = large("u1", meaning)
     return found
 
 
 def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
-    """Return the trajectories of a block among those of the rounds."""
+    """Return the parts of a block in the rounds."""
     parts = []
     for one in rounds:
-        if isinstance(one.numbers, range):  # all there are
+        if isinstance(one.numbers, range):  # the only round
             where = slice(block.first, block.last)
             parts.append(Part(one.chunks, where, slice(None)))
         else:
@@ -163,7 +162,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
 def label(
     group: Group, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
 ) -> Labelled:
-    """Write the labelled results of a block; ``grid``: what a basin came to there, ends and which are simulated."""
+    """Write the labelled results of a block; ``grid`` contains a basin's ends and marks of simulated points there."""
     found = {name: _found(name, block, parts) for name in SHOWN}
     sensitive, motions = None, list[list[Motion]]()
     numbers = range(block.first, block.last)
@@ -196,7 +195,7 @@ def label(
 
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
-    """Return a result of the trajectories of a block, shape (n,) or (n, components); NaN or 0 where there is none."""
+    """Return a result of a block's trajectories, shape (n,) or (n, components); NaN or 0 where none was simulated."""
     found = [(part.places, part.chunks.read(name, part.where)) for part in parts]
     more = found[0][1].shape[1:] if found else ()
     dtype = np.dtype(RESULTS[name].dtype)
@@ -207,17 +206,18 @@ def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
 
 
 def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArray[Any]:
-    """Return that of which sensitivities are given, shape (results, rows, 2 + quantities)."""
     last_radius = np.hypot(*states[:, :2].T)
     radius = np.where(found["end"] == EndState.UNDECIDED, last_radius, found["largest_radius"])
     return np.stack((radius, found["end"] == EndState.WHIRL)).reshape(len(SENSITIVE), -1, plan.row)
 
 
 def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Dataset:
-    """Return what is labelled of the whole sweep, from what is known of its blocks in their order."""
+    """Return the labelled results of the whole sweep from the ordered summaries of its blocks."""
     rows = np.concatenate([one.counts for one in found])
     counts = np.sum(rows, axis=0)
-    variables: Variables = {"count": (("end_state",), counts, {"long_name": "how many end like this"})}
+    variables: Variables = {
+        "count": (("end_state",), counts, {"long_name": "number of trajectories with this end"})
+    }
     coordinates: dict[str, Any] = {"end_state": ENDS}
     if isinstance(plan, Basin | Map):
         axes = (plan.y, plan.x)
@@ -246,7 +246,7 @@ def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Da
 
 
 def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables:
-    """Return the motions that continue each other, NaN where one is not there."""
+    """Return the branches of motions, NaN at values without a motion."""
     branches = matched(found, lambda motion: motion.end)
     ends = [next(iter(branch.values())).end for branch in branches]
     variables: Variables = {
@@ -267,7 +267,7 @@ def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables
 def _along(
     plan: Continuation, name: str, branches: Sequence[Mapping[int, Any]], fields: Sequence[str]
 ) -> Variables:
-    """Return fields of motions along the axis, each of shape (branches, values)."""
+    """Return fields of motions along the axis, shape (branches, values)."""
     variables: Variables = {}
     for field in fields:
         values = np.full((len(branches), plan.x.points), np.nan)
@@ -280,7 +280,7 @@ def _along(
 
 
 def branches_of(plan: Continuation) -> xr.Dataset:
-    """Return the motions that formulas and continuation give; ``known_stable`` is 1 where one is stable, else 0."""
+    """Return the motions from formulas and continuation; ``known_stable`` is 1 for stable ones, else 0."""
     found = known_branches(plan)
     meanings = [next(iter(branch.values())).meaning for branch in found]
     return xr.Dataset(
@@ -290,7 +290,7 @@ def branches_of(plan: Continuation) -> xr.Dataset:
 
 
 def curves_of(plan: Map) -> xr.Dataset:
-    """Return the curves that formulas draw in the plane of a map, point by point."""
+    """Return the theory's curves in the plane of a map, point by point."""
     found = curves(plan)
     points = np.concatenate([curve.points for curve in found]) if found else np.empty((0, 2))
     of_curve = np.repeat(np.arange(len(found)), [len(curve.points) for curve in found])

@@ -1,4 +1,4 @@
-"""A sweep from its plan to its results: rounds of chunks, a random sample by the plain reference, labelled arrays."""
+"""Runs a sweep from its plan to its results: rounds of chunks, a check by the plain reference, labelled arrays."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ from compare.sweep.refinement import Grid
 from compare.sweep.store import SweepStore, flags
 
 CHECKED = 20
-"""Trajectories of a sweep that the plain reference simulates again."""
+"""Number of trajectories that the plain reference repeats."""
 
 CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
-"""Groups of a store besides its rounds."""
+"""Groups of a store in addition to its rounds."""
 
 Progress = Callable[[str, int, int], None]
-"""Takes what is done, how much of it, and how much there is."""
+"""Takes the name of the work, the amount done and the total."""
 
 
 def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
-    """Do whatever of the sweep is not in ``store`` yet."""
+    """Compute the parts of the sweep that ``store`` lacks."""
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))
@@ -50,14 +50,14 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
 
 
 def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
-    """Return what formulas say of a plan: the group that it is in, and how it comes about."""
+    """Return the group of results from formulas for a plan, with the function that computes it."""
     if isinstance(plan, Map):
         return {CURVES: lambda: curves_of(plan)}
     return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
 
 
 def finished(store: SweepStore) -> bool:
-    """Return whether all of the sweep is there as it was written; what is not is in ``store.broken``."""
+    """Return whether the sweep is complete and intact; damaged parts are added to ``store.broken``."""
     groups = (CHECK, RESULT, *_theory(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None
@@ -66,7 +66,7 @@ def finished(store: SweepStore) -> bool:
             found = store.look(i, plan.send(ends))  # type: ignore[arg-type]  # None starts it
             if found is None:
                 return False
-            _look_at_chunks(store, i, found, InProcess())
+            _check_chunks(store, i, found, InProcess())
             if not np.all(found.done):
                 return False
             ends = found.ends
@@ -74,7 +74,7 @@ def finished(store: SweepStore) -> bool:
 
 
 def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tuple[list[Round], Grid | None]:
-    """Simulate what is missing; return all rounds, and what the plan returns after the last."""
+    """Simulate missing trajectories; return all rounds, and the grid of a refined basin."""
     plan = store.plan.rounds()
     rounds: list[Round] = []
     ends = None
@@ -84,24 +84,23 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
         except StopIteration as last:
             return rounds, last.value
         rounds.append(store.round(len(rounds), numbers))
-        _look_at_chunks(store, len(rounds) - 1, rounds[-1], executor)
+        _check_chunks(store, len(rounds) - 1, rounds[-1], executor)
         _simulate(store, rounds, executor, progress)
         ends = rounds[-1].ends
 
 
-def _look_at_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
-    """Note which chunks of round ``i`` are done, and which of those that are there are broken."""
+def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
+    """Mark intact chunks of round ``i`` as done, and add damaged ones to ``store.broken``."""
     tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.chunks.there())
     broken = []
     for chunk, whole in executor.run(tasks):
         found.done[chunk] = whole
         if not whole:
             broken.append(chunk)
-    store.tell_broken(i, sorted(broken), len(found.chunks))
+    store.note_damaged(i, sorted(broken), len(found.chunks))
 
 
 def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress) -> None:
-    """Have the missing chunks of the last of ``rounds`` simulated and written."""
     current = rounds[-1]
     what = f"round {len(rounds)}" if len(rounds) > 1 else "trajectories"
     total = len(current.numbers)
@@ -123,7 +122,6 @@ def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, pr
 def _label(
     store: SweepStore, rounds: Sequence[Round], grid: Grid | None, executor: Executor, progress: Progress
 ) -> None:
-    """Have the results labelled, block by block."""
     plan = store.plan
     group = store.begin(RESULT, large_of(plan))
     blocks = blocks_of(plan)
@@ -144,7 +142,7 @@ def _label(
 def _checked(
     store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress
 ) -> xr.Dataset:
-    """Return a random sample of the trajectories beside those of the plain reference."""
+    """Return a random sample of the trajectories, compared with the plain reference."""
     sizes = [len(one.numbers) for one in rounds]
     count = min(CHECKED, sum(sizes))
     chosen = np.sort(np.random.default_rng(store.plan.seed).choice(sum(sizes), count, replace=False))
@@ -164,7 +162,7 @@ def _checked(
         plain[i] = found
         progress("check by the plain reference", len(plain), count)
     difference = np.array([states[i] - plain[i].state for i in range(count)])
-    meaning = "state at that time minus that of the plain reference"
+    meaning = "state at this time minus the state of the plain reference"
     return xr.Dataset(
         {
             "time": (("trajectory",), np.array(time), {"units": "s"}),

@@ -1,4 +1,4 @@
-"""Which uncertain quantity an uncertain result depends on: Sobol's indices (Saltelli et al. 2010), block by block."""
+"""Sobol indices of results for uncertain quantities (Saltelli et al. 2010), computed block by block."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
 GROUPS = 16
-"""Of rows: the scatter of the indices among them gives their error."""
+"""Number of groups of rows; the scatter of the indices between groups gives their error."""
 
 LEAST_SAMPLES = 16 * GROUPS
-"""Of rows."""
+"""Least number of rows."""
 
 
 class Indices(NamedTuple):
-    """Sobol's indices, each of shape (results, quantities), and half of the width of their intervals.
+    """Sobol indices of shape (results, quantities), and half the widths of their confidence intervals.
 
-    The first order is the part of the variance that would be gone if the quantity were known; the total order is
-    the part that would be left if all others were. NaN where the result does not vary.
+    The first-order index is the share of the variance that vanishes if the quantity is known. The total index is the
+    share that remains if all other quantities are known. Both are NaN if the result does not vary.
     """
 
     first: FloatArray
@@ -34,11 +34,11 @@ class Indices(NamedTuple):
 
 
 class Moments(NamedTuple):
-    """What a block of rows adds to the indices.
+    """Contribution of a block of rows to the indices.
 
-    Of the results f_A and f_B of both draws, for each result: number of rows, ``mean``, sum of ``squares`` of their
-    deviations from it, ``least`` and ``largest`` of all there are. With f_M of each mixture, of shape (results,
-    quantities): sums of (f_B − mean)(f_M − f_A), of f_M − f_A, and of its square.
+    For the results f_A and f_B of both draws, shape (results,): the number of rows, the ``mean``, the sum of
+    ``squares`` of deviations from it; ``least`` and ``largest`` include the mixtures. With the results f_M of the
+    mixtures, shape (results, quantities): sums of (f_B − mean)(f_M − f_A), of f_M − f_A and of its square.
     """
 
     rows: int
@@ -52,7 +52,7 @@ class Moments(NamedTuple):
 
 
 def moments(results: FloatArray) -> Moments:
-    """Return what rows of ``results``, shape (results, rows, 2 + quantities), in the order of the plan, come to."""
+    """Return the moments of ``results``, shape (results, rows, 2 + quantities), in the order of the plan."""
     bases, change = results[..., :BASES], results[..., BASES:] - results[..., :1]
     mean = np.mean(bases, axis=(1, 2))
     deviations = bases - mean[:, np.newaxis, np.newaxis]
@@ -69,13 +69,13 @@ def moments(results: FloatArray) -> Moments:
 
 
 def indices(blocks: Sequence[Moments]) -> Indices:
-    """Return the indices from blocks of equally many rows in their order; ``GROUPS`` divides how many there are."""
+    """Return the indices from ordered blocks with equal numbers of rows; ``GROUPS`` divides the number of blocks."""
     size = len(blocks) // GROUPS
     grouped = [reduce(_together, blocks[i * size : (i + 1) * size]) for i in range(GROUPS)]
     of_groups = np.array([_indices(group) for group in grouped])
     whole = reduce(_together, grouped)
     first, total = _indices(whole)
-    from scipy.stats import t  # takes long, and most sweeps do without
+    from scipy.stats import t  # slow import that most sweeps do not need
 
     width = t.ppf(0.5 + 0.5 * CONFIDENCE, GROUPS - 1) / math.sqrt(GROUPS)
     errors = width * np.std(of_groups, axis=0, ddof=1)
@@ -86,7 +86,7 @@ def indices(blocks: Sequence[Moments]) -> Indices:
 
 
 def _together(one: Moments, other: Moments) -> Moments:
-    """Return the moments of the rows of both, by the formulas of Chan, Golub and LeVeque 1983."""
+    """Return the moments of the rows of both, with the formulas of Chan, Golub and LeVeque (1983)."""
     rows = one.rows + other.rows
     apart = other.mean - one.mean
     mean = one.mean + apart * (other.rows / rows)
@@ -103,12 +103,12 @@ def _together(one: Moments, other: Moments) -> Moments:
 
 
 def _about(of: Moments, mean: FloatArray) -> FloatArray:
-    """Return the sum of (f_B − ``mean``)(f_M − f_A), about another mean than its own."""
+    """Return the sum of (f_B − ``mean``)(f_M − f_A), where ``mean`` is the mean of a larger set of rows."""
     return of.product + (of.mean - mean)[:, np.newaxis] * of.change
 
 
 def _indices(of: Moments) -> tuple[FloatArray, FloatArray]:
-    """Return first and total order, shape (results, quantities)."""
+    """Return first-order and total indices, shape (results, quantities)."""
     variance = of.squares[:, np.newaxis] / BASES
-    with np.errstate(divide="ignore", invalid="ignore"):  # of a result that does not vary
+    with np.errstate(divide="ignore", invalid="ignore"):  # results that do not vary
         return of.product / variance, 0.5 * of.change_squared / variance

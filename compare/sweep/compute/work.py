@@ -1,4 +1,4 @@
-"""The pieces of work of a sweep, as functions that another process or machine can import."""
+"""Tasks of a sweep, as functions that other processes and machines can import."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from reference_model.systems import COLUMNS, FloatArray, System
 from reference_model.trajectory import SimulationError, Trajectory
 
 DOUBLINGS = 3
-"""How often the plain reference simulates for twice as long where it has not found the end yet."""
+"""Largest number of times that the plain reference doubles its duration to find an end."""
 
 
 class OtherCodeError(RuntimeError):
-    """Workers have another version of the code than who made the store; the message says so."""
+    """A worker has a different version of the code from that of the store."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plain:
-    """A trajectory of the plain reference: its state at a time that was asked for, and what it ends as.
+    """A trajectory of the plain reference: its state at a requested time, and its end.
 
-    NaN and undecided where it gave up at once.
+    They are NaN and undecided if the simulation failed.
     """
 
     state: FloatArray
@@ -41,22 +41,19 @@ class Plain:
 def simulate_chunk(
     chunks: Chunks, chunk: int, plan: Plan, numbers: Numbers, threads: int | None, made_by: str
 ) -> int:
-    """Simulate the trajectories of a chunk and write what they come to; return how many there are.
+    """Simulate the trajectories of a chunk, write their results and return their number.
 
-    Raises :class:`OtherCodeError`, and writes nothing, where the code is not that of the stamp ``made_by``.
+    Raises :class:`OtherCodeError`, before anything is written, if the code does not match the stamp ``made_by``.
     """
     if stamp() != made_by:
-        raise OtherCodeError("a worker has other code or libraries than this process")
+        raise OtherCodeError("a worker uses a different version of the code or libraries")
     chunks.write(chunk, compute(plan, numbers, threads))
     return len(numbers)
 
 
 def compute(plan: Plan, numbers: Numbers, threads: int | None) -> dict[str, NDArray[Any]]:
-    """Simulate the trajectories of these numbers on ``threads`` threads, None for all cores.
-
-    Returns arrays of length n by the names of ``RESULTS``.
-    """
-    from reference_model.ensemble import simulate_ensemble  # the one place where sweeps meet the kernel
+    """Simulate trajectories on ``threads`` threads, None for all cores; return the arrays named in ``RESULTS``."""
+    from reference_model.ensemble import simulate_ensemble  # the only call of the kernel in sweeps
 
     states, parameters = plan.trajectories(numbers)
     found = simulate_ensemble(
@@ -71,11 +68,11 @@ def compute(plan: Plan, numbers: Numbers, threads: int | None) -> dict[str, NDAr
 
 
 def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
-    """Simulate one trajectory with the plain reference; ``time`` (s) is when its state is asked for.
+    """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
-    It is watched for as long again as the kernel took to be certain of ``end``. Where it does not end like this, it
-    is simulated for longer and longer before that counts: what shall be certain from the motion alone takes more
-    time than a kernel may need that knows where motions end. What is undecided is simulated up to ``time`` only.
+    The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
+    duration is doubled up to ``DOUBLINGS`` times, because the motion alone shows its end later than the kernel, which
+    uses known attractors. An undecided trajectory is simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -95,36 +92,36 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     return Plain(state, int(found))
 
 
-# --- What a trajectory of the plain reference ends as: the judge of a sweep's random sample.
+# --- Ends of trajectories of the plain reference, for the check of a sweep's random sample.
 
 WATCHED = 0.5
-"""Part of a trajectory, before its end, by which it is judged."""
+"""Share of a trajectory, at its end, that decides the end state."""
 
 SAMPLES_PER_TURN = 64
-"""Of what is watched; of what was before, which only tells how far the motion went, ``SAMPLES_BEFORE``."""
+"""Samples per turn in the last part; earlier ones, ``SAMPLES_BEFORE``, only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
 
 AT_REST = 0.02
-"""Largest distance from the last place, in units of that of the whole motion, at which the centre is at rest."""
+"""Largest distance from the last position, relative to the whole motion, of a centre at rest."""
 
 STEADY = 0.01
-"""Spread (largest − smallest)/(largest + smallest) of the radius, turn after turn, up to which a motion is steady."""
+"""Largest spread (largest − smallest)/(largest + smallest) of the radii at successive turns of a steady motion."""
 
 SAME = 1.4
-"""Ratio of the spreads in both halves of what is watched, up to which a modulation neither grows nor decays."""
+"""Largest ratio of the spreads in both halves of the last part for a modulation of constant size."""
 
 DYING = 0.1
-"""Ratio of the slip speeds in both halves of what is watched, below which slip dies out: a whirl's stays as it is."""
+"""Ratio of the slip speeds in both halves of the last part below which slip dies out; for a whirl it stays near 1."""
 
 LEAST_TURNS = 24
-"""After which the second half of a motion is watched, at the earliest."""
+"""Least number of turns before the last part of a motion."""
 
 
 def plain_trajectory(
     system: System, state: FloatArray, time: float, duration: float, tolerance: float
 ) -> Trajectory:
-    """Return the motion from 0 to ``duration`` (s) by the plain reference, at times of which ``time`` (s) is one."""
+    """Return the motion of the plain reference from 0 to ``duration`` (s), at times that include ``time`` (s)."""
     since = (1.0 - WATCHED) * duration
     before = _samples(system, 0.0, since, SAMPLES_BEFORE)
     watched = _samples(system, since, duration, SAMPLES_PER_TURN)
@@ -133,7 +130,7 @@ def plain_trajectory(
 
 
 def twice_as_long(trajectory: Trajectory) -> Trajectory:
-    """Return the motion for twice its duration, simulated on from its last state."""
+    """Return the motion for twice its duration, continued from its last state."""
     times, last, solution = trajectory.times, float(trajectory.times[-1]), trajectory.solution
     later = _samples(trajectory.system, last, 2.0 * last - float(times[0]), SAMPLES_PER_TURN)
     more = simulate(trajectory.system, trajectory.at_end, later, tolerance=solution.tolerance)
@@ -152,29 +149,29 @@ def twice_as_long(trajectory: Trajectory) -> Trajectory:
 
 
 def watched_until(system: System, certain: float, duration: float) -> float:
-    """Return until when (s) to simulate a motion whose end another knew at ``certain`` (s): for as long again."""
+    """Return the duration of a check in s: twice the time ``certain`` (s), at least 2·``LEAST_TURNS`` turns."""
     return max(certain, LEAST_TURNS * _turn(system, duration)) / WATCHED
 
 
 def _samples(system: System, first: float, last: float, per_turn: int) -> FloatArray:
-    """Return times in s from ``first`` to ``last``."""
+    """Return times in s from ``first`` to ``last``, ``per_turn`` or more in each turn."""
     return np.linspace(first, last, math.ceil((last - first) / _turn(system, last) * per_turn) + 2)
 
 
 def _turn(system: System, duration: float) -> float:
-    """Return the time of a turn in s, of which something that never turns has one in ``duration``."""
+    """Return the time of a turn in s, at most 2π·``duration``."""
     return 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
 
 
 def end_of(trajectory: Trajectory) -> EndState:
-    """Return what a trajectory ends as, UNDECIDED where its second half leaves a doubt.
+    """Return the end of a trajectory, UNDECIDED if its second half is ambiguous.
 
-    - *Stuck*: the last stick phase has lasted for a whole turn of the master disc: it sees no force that it has not
-      seen; or the contact slips all the time, but ever more slowly. *Stick–slip*: there are shorter stick phases, and
-      they begin at the same radius again and again.
+    - *Stuck*: the last stick phase lasts a whole turn of the master disc, so no new force can release it; or the
+      contact slips permanently, but ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same
+      radius.
     - *Self-centred*: the centre hardly moves in the last quarter.
-    - *Whirl*, *modulated*: the motion goes round the axis, and where it passes the positive x-axis (once a turn, so
-      that an offset does not matter) the radius is the same, or not, in both halves alike.
+    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis, taken once a turn so an
+      offset does not matter, is constant for a whirl and varies equally in both halves for a modulated motion.
     """
     system, times = trajectory.system, trajectory.times
     since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))
@@ -203,7 +200,7 @@ def end_of(trajectory: Trajectory) -> EndState:
 
 
 def _at_rest(trajectory: Trajectory, since: float) -> bool:
-    """Return whether the centre hardly moves from ``since`` (s) on, beside all its motion."""
+    """Return whether the centre hardly moves after ``since`` (s) compared with its whole motion."""
     x, y = trajectory.states.T[:2]
     distance = np.hypot(x - x[-1], y - y[-1])
     last = trajectory.times >= since
@@ -211,7 +208,7 @@ def _at_rest(trajectory: Trajectory, since: float) -> bool:
 
 
 def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
-    """Return whether the slip after ``middle`` (s) is below ``DYING`` of that before, or below its error."""
+    """Return whether the slip after ``middle`` (s) is below ``DYING`` times the slip before, or below its error."""
     slip, times = trajectory.slip_speed, trajectory.times
     before, after = np.max(slip[(times >= since) & (times < middle)]), np.max(slip[times >= middle])
     error = trajectory.solution.tolerance * abs(trajectory.system.disc_speed) * np.max(trajectory.radius)
@@ -219,14 +216,14 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times in s and radii in m of the passages of the positive x-axis in the sense of the master disc."""
+    """Return times in s and radii in m of passages of the positive x-axis in the master disc's sense of rotation."""
     velocities = COLUMNS[type(trajectory.system)].index(("vx", "m/s"))
     x, y = trajectory.states.T[:2]
     vx, vy = trajectory.states.T[velocities : velocities + 2]
     y, vy = (math.copysign(1.0, trajectory.system.disc_speed) * values for values in (y, vy))
     at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (trajectory.times[:-1] >= since))
     step = trajectory.times[at + 1] - trajectory.times[at]
-    # the zero of the cubic through y and its slope at both ends by two steps of Newton's method
+    # two Newton steps to the zero of the cubic through y and its slope at both ends
     share = y[at] / (y[at] - y[at + 1])
     for _ in range(2):
         value, slope = _cubic(y, vy, at, step, share)
@@ -239,7 +236,7 @@ def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatAr
 def _cubic(
     values: FloatArray, slopes: FloatArray, at: Any, step: FloatArray, share: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return Hermite's cubic between samples ``at`` and ``at`` + 1, and its derivative by ``share`` of the step."""
+    """Return the Hermite cubic between samples ``at`` and ``at`` + 1, and its derivative by ``share``."""
     low, high = values[at], values[at + 1]
     left, right = slopes[at] * step, slopes[at + 1] * step
     second, third = 3.0 * (high - low) - 2.0 * left - right, 2.0 * (low - high) + left + right
@@ -248,7 +245,7 @@ def _cubic(
 
 
 def _spreads(times: FloatArray, radii: FloatArray, middle: float) -> tuple[float, float]:
-    """Return (largest − smallest)/(largest + smallest) of radii before and after ``middle``, inf for a single one."""
+    """Return (largest − smallest)/(largest + smallest) of radii before and after ``middle``, inf for one radius."""
     spreads = []
     for chosen in (radii[times < middle], radii[times >= middle]):
         low, high = (float(np.min(chosen)), float(np.max(chosen))) if chosen.size > 1 else (0.0, math.inf)

@@ -169,7 +169,7 @@ def theory():
 def test_the_first_line_counts_independent_evidence_first(reported):
     matrix, folder = reported
     line = (
-        "4 agree on independent evidence, besides 1 by self-check, 1 of algebra and 1 implied; "
+        "4 agree on independent evidence, plus 1 by self-check, 1 by algebra and 1 by implication; "
         "0 differ, 0 inconclusive"
     )
     assert summary(matrix) == line

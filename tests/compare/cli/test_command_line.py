@@ -1,4 +1,4 @@
-"""What the commands print and write, and how they end, beyond the table of arguments."""
+"""Output, files and exit statuses of the commands, beyond the table of arguments."""
 
 import csv
 import io
@@ -37,7 +37,7 @@ def test_list_names_studies_and_engines(capsys):
     out = capsys.readouterr().out
     assert "  verdicts      Fig. 3: self-centring of the pin at low speed\n" in out
     assert "Engines: reference, exudyn" in out
-    assert "; on request compiled, plain\n" in out
+    assert "; on request: compiled, plain\n" in out
 
 
 def test_errata_prints_both_forms_and_both_errors(capsys):
@@ -63,7 +63,8 @@ for arguments in (["sweep", "basin", "pin"], ["sweep", "basin", "--help"], ["lis
 
 def test_help_needs_no_heavy_library_and_only_a_sweep_needs_the_extra():
     done = subprocess.run([REAL[0], "-c", WITHOUT], env=environment(), capture_output=True, encoding="utf-8")
-    needs = "a sweep needs friction-discs[sweep] (missing: zarr): pip install 'friction-discs[sweep]'\n"
+    extra = "friction-discs[sweep]"
+    needs = f"sweeps need {extra} (missing: zarr); install it with: pip install '{extra}'\n"
     assert done.stderr == needs
     assert re.findall(r"^(?:heavy|status) .*$", done.stdout, re.MULTILINE) == [
         "heavy []",
@@ -82,11 +83,11 @@ def report(*arguments, engine="fake_studies:straight", output, studies=fake_stud
 def test_a_report_that_differs_ends_with_status_1(reported):
     process, folder = reported
     assert process.returncode == 1
-    assert "\r" not in process.stderr  # no progress bar but on a terminal
+    assert "\r" not in process.stderr  # no progress bar without a terminal
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
     gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
     assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
-    first = "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed"
+    first = "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed"
     totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
     assert totals == f" ({folder / 'index.html'})"
     assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
@@ -100,13 +101,13 @@ REPORTS = [
         "verdicts",
         "fake_studies:straight",
         1,
-        "2 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive (",
+        "2 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive (",
     ),
     (
         "verdicts",
         "fake_studies:failing",
         1,
-        f"{NONE}, besides 1 of algebra; 0 differ, 0 inconclusive, 1 failed (",
+        f"{NONE}, plus 1 by algebra; 0 differ, 0 inconclusive, 1 failed (",
     ),
     ("inconclusive", "fake_studies:straight", 3, f"{NONE}; 0 differ, 1 inconclusive ("),
     (
@@ -128,7 +129,7 @@ def test_status_and_totals_of_a_report(study, engine, status, said, tmp_path, ca
 
 def test_a_report_without_differences_prints_its_totals_and_nothing_else(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert report("--level", "quick", output="new/folder") == 0  # of all studies
+    assert report("--level", "quick", output="new/folder") == 0  # the default is all studies
     page = os.path.join("new", "folder", "index.html")
     totals = f"1 agrees on independent evidence; 0 differ, 0 inconclusive ({page})\n"
     assert capsys.readouterr() == (totals, "")
@@ -147,7 +148,7 @@ def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
     assert "2/2" in sys.stderr.getvalue()
 
 
-def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypatch, capsys):
+def test_missing_measurements_are_listed_once_at_the_end(tmp_path, monkeypatch, capsys):
     names = tuple(f"engine-{i}" for i in range(20))
     limits = []
 
@@ -162,8 +163,8 @@ def test_what_is_missing_is_told_once_and_after_what_matters(tmp_path, monkeypat
     assert out.splitlines()[0] == "verdicts theory differs: A claim"
     assert len(out.splitlines()) == 2
     listed = ", ".join(f"verdicts engine-{i}" for i in range(10))
-    assert (
-        err == f"Interrupted; missing: {listed} and 10 more. The same command with --resume completes it.\n"
+    assert err.startswith(
+        f"Interrupted; still missing: {listed} and 10 more. Repeat the command with --resume"
     )
     assert report("verdicts", "--study-limit", "2.5", output=tmp_path) == 130
     assert limits == [None, 2.5]
@@ -238,7 +239,7 @@ def test_simulate_without_settings_is_the_second_case_of_fig_5(capsys):
     assert rows[-1].startswith("400.0,")
 
 
-def test_files_stay_as_they_are_when_the_engine_gives_up(tmp_path):
+def test_files_are_kept_if_the_engine_fails(tmp_path):
     (tmp_path / "old.csv").write_text("precious")
     for name in ("old.csv", "new.csv"):
         arguments = ["--engine", "fake_studies:failing", "--output", str(tmp_path / name)]
@@ -253,21 +254,21 @@ needs_full = pytest.mark.skipif(
 
 @needs_full
 @pytest.mark.parametrize("arguments", ["list", "simulate pin --until 1", "simulate pin --output full.csv"])
-def test_a_full_disk_ends_in_one_sentence(arguments, tmp_path, monkeypatch, capsys):
+def test_a_full_disk_gives_a_message_of_one_line(arguments, tmp_path, monkeypatch, capsys):
     (tmp_path / "full.csv").symlink_to("/dev/full")
     monkeypatch.chdir(tmp_path)
     with open("/dev/full", "w") as full:
         monkeypatch.setattr(sys, "stdout", full)
         assert cli.status(arguments.split()) == 2
-    assert re.fullmatch(r"can't write .*: No space left on device\n", capsys.readouterr().err)
+    assert re.fullmatch(r"cannot write .*: No space left on device\n", capsys.readouterr().err)
 
 
 @pytest.fixture
 def without_reader(monkeypatch):
-    """A standard output that nobody reads; closing it, as a process does at its end, must be no error either."""
+    """Standard output without a reader; closing it, as a process does at its end, must not fail either."""
     reader, writer = os.pipe()
     os.close(reader)
-    monkeypatch.setattr(sys, "stderr", sys.stderr)  # which typer may replace
+    monkeypatch.setattr(sys, "stderr", sys.stderr)  # typer may replace it
     with open(writer, "w") as output:
         monkeypatch.setattr(sys, "stdout", output)
         yield
@@ -290,7 +291,7 @@ def test_a_reader_that_stops_early_changes_no_status(arguments, status, tmp_path
     assert capsys.readouterr().err == ""
 
 
-def test_ctrl_c_while_a_command_runs_is_told(monkeypatch, capsys):
+def test_ctrl_c_during_a_command_is_reported(monkeypatch, capsys):
     def interrupted(*arguments, **more):
         raise KeyboardInterrupt
 
@@ -299,7 +300,7 @@ def test_ctrl_c_while_a_command_runs_is_told(monkeypatch, capsys):
     assert capsys.readouterr().err == "Interrupted.\n"
 
 
-def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
+def test_lack_of_memory_is_reported(monkeypatch, tmp_path, capsys):
     try:
         try:
             raise OSError("libllvmlite.so: failed to map segment from shared object")
@@ -307,7 +308,7 @@ def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
             raise OSError("Could not find/load shared object file 'libllvmlite.so'") from error
     except OSError as error:
         library = error
-    assert failure(library).reason.startswith("there is not enough memory (OSError: Could not find/load")
+    assert failure(library).reason.startswith("not enough memory (OSError: Could not find/load")
     assert lacks_memory(MemoryError())
     assert not lacks_memory(OSError(28, "No space left on device"))
 
@@ -316,22 +317,20 @@ def test_little_memory_is_told_as_such(monkeypatch, tmp_path, capsys):
 
     monkeypatch.setattr("compare.sweep.compute.run.run", run)
     assert cli.status(["sweep", "basin", "pin", "--output", str(tmp_path)]) == 1
-    assert capsys.readouterr().err == (
-        "there is not enough memory. The same command with --resume goes on.\n"
-    )
+    assert capsys.readouterr().err == ("not enough memory. Repeat the command with --resume to continue.\n")
 
 
 ENDS_OF_PROCESSES = [
     (["simulate", "pin", "--set", "mass=-1"], os.devnull, 2, "mass = -1 kg: it must be > 0\n"),
     pytest.param(
-        ["list"], "/dev/full", 2, "can't write to the output: No space left on device\n", marks=needs_full
+        ["list"], "/dev/full", 2, "cannot write to the output: No space left on device\n", marks=needs_full
     ),
     (["interrupted while it loads"], os.devnull, 130, "Interrupted.\n"),
 ]
 
 
 @pytest.mark.parametrize(("arguments", "output", "status", "sentence"), ENDS_OF_PROCESSES)
-def test_a_process_ends_with_status_and_sentence(arguments, output, status, sentence, tmp_path):
+def test_a_process_ends_with_status_and_message(arguments, output, status, sentence, tmp_path):
     if status == 130:
         (tmp_path / "typer.py").write_text("raise KeyboardInterrupt")
     path = os.pathsep.join([str(tmp_path), environment()["PYTHONPATH"]])
@@ -346,7 +345,7 @@ def test_a_process_ends_with_status_and_sentence(arguments, output, status, sent
     assert (done.returncode, done.stderr) == (status, sentence)
 
 
-def test_a_process_whose_reader_stops_early_ends_well():
+def test_a_process_ends_normally_if_its_reader_stops_early():
     process = subprocess.Popen(
         [*REAL, "simulate", "pin", "--until", "50", "--samples", "20001"],
         env=environment(),

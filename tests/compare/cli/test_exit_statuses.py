@@ -1,4 +1,4 @@
-"""Exit statuses where an engine has measured nothing, or less than it was asked for."""
+"""Exit statuses if an engine measured nothing, or less than requested."""
 
 import json
 from dataclasses import replace
@@ -25,7 +25,7 @@ def dying(*arguments, **accuracy):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """A folder with engines that do not answer, and one that ends the process that imports it."""
+    """A folder with engines that do not answer, and an engine that ends the importing process."""
     (tmp_path / "hostile.py").write_text(ENGINES)
     (tmp_path / "exiting.py").write_text("import os\nos._exit(0)")
     monkeypatch.chdir(tmp_path)
@@ -47,13 +47,11 @@ ENDING = [
     ("matrix --engine exiting:simulate", 2),
     ("simulate pin --engine hostile:dying", 1),
 ]
-"""The engine ends the process in which it works."""
+"""Ends its own process."""
 
 
 @pytest.mark.parametrize(("command", "status"), RAISING + ENDING)
-def test_no_command_ends_with_status_0_where_an_engine_has_measured_nothing(
-    command, status, hostile, request
-):
+def test_status_is_not_0_if_an_engine_measured_nothing(command, status, hostile, request):
     if (command, status) in RAISING:
         request.getfixturevalue("in_this_process")
     assert cli.status(command.split(), STUDIES) == status
@@ -62,7 +60,7 @@ def test_no_command_ends_with_status_0_where_an_engine_has_measured_nothing(
 
 
 def measure_with_another(engine):
-    """Return an independent claim and one that follows from it."""
+    """Return an independent claim and a claim that it implies."""
     independent = fake_studies.measure_agreement(engine).claims
     implied = fake_studies.claim("It follows", engine.name, 0.5, 0.5, 0.0, implied_by=independent[0].sentence)
     return Findings((*independent, implied))
@@ -76,8 +74,8 @@ def test_the_theorys_own_algebra_is_not_conclusive(least, status, tmp_path, caps
     arguments = ["report", "--engine", "fake_studies:straight", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--min-conclusive", least], (study,)) == status
     out, err = capsys.readouterr()
-    assert out.startswith("1 agrees on independent evidence, besides 1 of algebra and 1 implied; ")
-    assert err == ("2 verdicts are conclusive: 3 are asked for\n" if status else "")
+    assert out.startswith("1 agrees on independent evidence, plus 1 by algebra and 1 by implication; ")
+    assert err == ("2 claims agree, but --min-conclusive requires 3\n" if status else "")
 
 
 def itself(engine, value):
@@ -85,17 +83,17 @@ def itself(engine, value):
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_claim_that_is_left_out_without_a_reason_has_a_status_of_its_own(tmp_path, capsys):
+def test_a_claim_omitted_without_a_reason_has_its_own_status(tmp_path, capsys):
     study = Study("silent", Prose("A study with nothing to measure"))
     study.claim("{} is itself", resolution=1.0, each={"One": None, "Two": 2.0})(itself)
     arguments = ["report", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--engine", "fake_studies:straight"], (study,)) == 4
-    sentence = "silent fake_studies:straight: not measured, and no reason given: One is itself\n"
+    sentence = "silent fake_studies:straight: claims not measured, without a reason: One is itself\n"
     assert capsys.readouterr().err.endswith(sentence)
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_part_of_the_report_does_not_replace_the_whole_one(tmp_path, monkeypatch):
+def test_a_partial_report_does_not_replace_the_full_one(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("compare.engines.registry._REGISTRY", {"good": fake_studies.GOOD})
     studies = (fake_studies.AGREEMENT, fake_studies.PARTLY)

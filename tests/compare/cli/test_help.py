@@ -1,4 +1,4 @@
-"""Every example in a help text or a document is a command that is understood; those that take no time are run."""
+"""Every example in help texts and documents is a valid command; fast examples are run."""
 
 import re
 import shlex
@@ -21,7 +21,7 @@ COMMAND = "friction-discs "
 
 
 def help_texts(command=None, path="friction-discs"):
-    """Yield name and help text of every command."""
+    """Yield the name and the help text of every command."""
     command = command or typer.main.get_command(cli.app)
     yield path, command.help
     for name, part in getattr(command, "commands", {}).items():
@@ -29,7 +29,7 @@ def help_texts(command=None, path="friction-discs"):
 
 
 def examples(text):
-    """Return the lines that begin with the command, each with those below it that are indented further."""
+    """Return the lines that begin with the command, each joined with its indented continuation lines."""
     found, margin = [], None
     for line in text.splitlines():
         indent = len(line) - len(line.lstrip())
@@ -59,19 +59,19 @@ DOCUMENTS = [
 
 
 class Understood(BaseException):
-    """The arguments have been looked at, and the work would begin."""
+    """The arguments are valid, and the work would begin."""
 
 
 @pytest.fixture
 def idle(monkeypatch, tmp_path):
-    """No work is done, and nothing is written where this process was started."""
+    """Stop before any work, and change to an empty folder."""
 
     def stop(*arguments, **options):
         raise Understood
 
     monkeypatch.chdir(tmp_path)
     (tmp_path / "motions").mkdir()
-    write_plan(tmp_path / "motions", ["pin"], [])  # that of a document
+    write_plan(tmp_path / "motions", ["pin"], [])  # the plan of a document
     monkeypatch.setattr(compare.run.runner, "run", stop)
     monkeypatch.setattr(compare.run.workers.Workers, "finished", stop)
     monkeypatch.setattr(Engine, "simulate", stop)
@@ -85,7 +85,7 @@ def idle(monkeypatch, tmp_path):
 
 
 def at_hand(arguments):
-    """Return the arguments with our engines in place of those that may not be installed, if these have good names."""
+    """Return the arguments with engines of this project in place of engines that may not be installed."""
     ours = iter(("reference", "exudyn"))
     return [
         next(ours)
@@ -99,7 +99,7 @@ def at_hand(arguments):
 @pytest.mark.parametrize(
     ("where", "example"), [pytest.param(*pair, id=": ".join(pair)) for pair in HELP + DOCUMENTS]
 )
-def test_an_example_is_understood(where, example, idle, capsys):
+def test_an_example_is_valid(where, example, idle, capsys):
     arguments = at_hand(shlex.split(example, comments=True)[1:])
     try:
         status = cli.status(arguments)
@@ -111,7 +111,7 @@ def test_an_example_is_understood(where, example, idle, capsys):
     assert arguments[0] in ("list", "errata") or arguments[-1] == "--help"
 
 
-def test_every_command_has_an_example_of_its_own():
+def test_every_command_has_its_own_example():
     assert {name for name, _ in HELP} == {name for name, _ in help_texts()}
     for name, example in HELP:
         assert example.startswith(name) or name == "friction-discs"

@@ -1,4 +1,4 @@
-"""``friction-discs report --claim ID``: one claim by itself, and nothing else."""
+"""``friction-discs report --claim ID`` measures only this claim."""
 
 import json
 
@@ -17,14 +17,14 @@ ASKED = []
 
 @STUDY.claim("One is one", unit="m", resolution=1.0)
 def one(engine):
-    """Compare one."""
+    """Compare one number."""
     ASKED.append("one")
     return Measured(predicted=1.0, value=1.0 + 1e-3, error=1e-2)
 
 
 @STUDY.claim("It is {}", unit="m, rad", resolution=1.0, each={"Small one": 1e-9, "large": 1.0})
 def of_size(engine, size):
-    """Compare a size."""
+    """Compare one number for each size."""
     ASKED.append(size)
     return Measured(
         predicted=[size, 1.0], value=[size, 2.0], error=0.1, components=("x in m", "angle in rad")
@@ -33,7 +33,7 @@ def of_size(engine, size):
 
 @pytest.fixture
 def reporting(monkeypatch, tmp_path, in_this_process):
-    """Return the status of a report with the study; what is asked of it is listed anew."""
+    """Return the status of a report with the study, and restart the list of its measurements."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "_REGISTRY", {GOOD.name: GOOD})
     ASKED.clear()
@@ -48,20 +48,20 @@ def test_one_claim_is_measured_and_its_numbers_printed(reporting, tmp_path, caps
     )
     (study,) = json.loads((tmp_path / "report-part" / "results.json").read_text(encoding="utf-8"))["studies"]
     assert [claim["id"] for claim in study["claims"]] == ["declared/one"]
-    assert not (tmp_path / "report").exists()  # a whole report would not be written over
+    assert not (tmp_path / "report").exists()  # the full report is not overwritten
 
 
-def test_one_of_a_family_is_measured_by_itself(reporting, tmp_path, capsys):
+def test_one_claim_of_a_family_is_measured_alone(reporting, tmp_path, capsys):
     arguments = ("--claim", "declared/of-size/small-one", "--engine", "good", "--output", "elsewhere")
     assert reporting(*arguments) == 1
     assert ASKED == [1e-9]
     printed = capsys.readouterr().out
     assert "good differs: predicted 1.0 rad, measured 2.0 rad" in printed
-    assert "largest difference of 2: 0 m, 1.0 rad" in printed  # each unit by itself
+    assert "largest difference of 2: 0 m, 1.0 rad" in printed  # each unit separately
     assert (tmp_path / "elsewhere" / "arrays" / "declared" / "of-size" / "small-one.csv").exists()
 
 
-def test_an_unknown_claim_is_answered_with_the_nearest(reporting, capsys):
+def test_an_unknown_claim_gets_a_suggestion(reporting, capsys):
     assert reporting("--claim", "declared/ones") == 2
     assert "unknown claim 'declared/ones': did you mean 'declared/one'?" in capsys.readouterr().err
     assert ASKED == []

@@ -112,7 +112,7 @@ def test_a_module_that_fails_or_declares_nonsense_is_refused_in_a_sentence(code,
     ("name", "sentence"),
     [
         ("exudin", "unknown engine 'exudin': did you mean 'exudyn'?"),
-        ("zzz", "unknown engine 'zzz': known are reference, exudyn"),
+        ("zzz", "unknown engine 'zzz': choose from reference, exudyn"),
         *(
             (name, f"engine '{name}' ")
             for name in (

@@ -1,4 +1,4 @@
-"""A grade and a sentence for each engine, from verdicts and error bars and nothing else."""
+"""Grade and sentence for each engine, derived only from verdicts and error bars."""
 
 from dataclasses import replace
 
@@ -14,11 +14,11 @@ pytestmark = pytest.mark.usefixtures("all_in_this_process")
 SLIDES, STICKS, TURNS = "A pin slides", "A pin sticks", "A disc turns"
 IN_SHORT = {SLIDES: ("slides", "slip"), STICKS: ("sticks", "stick"), TURNS: ("disc", "slip")}
 RESOLUTION = 0.01
-"""In m: another law of friction changes ten times as much."""
+"""Resolution in m; another friction law changes ten times as much."""
 
 
 def setting(engine, name, own=True, **off):
-    """Return what was recorded of a setting: how far off it is in m, by the motion, and its error."""
+    """Return a recorded setting with errors and error bars in m for each motion."""
     words = {"slides": SLIDES, "sticks": STICKS, "disc": TURNS}
     by_sentence = {words[motion]: both for motion, both in off.items()}
     return recorded(engine, name, by_sentence, resolution=RESOLUTION, own=own, cases=IN_SHORT)
@@ -60,28 +60,31 @@ def test_engines_of_the_run_come_first_then_the_recorded_ones_the_best_before_th
 
 def test_a_grade_is_the_largest_error_over_what_another_law_would_change(found):
     grades = {name: one.grade for name, one in found.items()}
-    assert grades["ours"] == "exact"  # 1e-12 of 0.1 m
-    assert grades["Kite"] == "fine"  # 4e-6 of 0.1 m
-    assert grades["Pins"] == "rough"  # 9e-3 of 0.1 m, an error bar
+    assert grades["ours"] == "exact"  # 1e-12 relative to 0.1 m
+    assert grades["Kite"] == "fine"  # 4e-6 relative to 0.1 m
+    assert grades["Pins"] == "rough"  # an error bar of 9e-3 relative to 0.1 m
     assert grades["Blind"] == "open"
     assert (grades["Wrong"], grades["good"], grades["failing"]) == ("differs",) * 3
 
 
-def test_the_best_setting_of_the_engines_own_friction_speaks_for_it(found):
+def test_the_best_setting_of_its_own_friction_represents_an_engine(found):
     assert found["Kite"].sentence == (
-        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another law by box."
+        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another friction law with box."
     )
     assert found["Kite"].where == "#agreement-recorded"
 
 
-def test_a_sentence_says_what_an_engine_cannot_do_and_where_it_differs(found):
-    assert found["Pins"].sentence == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; cannot: disc."
-    assert found["Open"].sentence.endswith("; too coarse to tell: disc.")
+def test_a_sentence_lists_missing_motions_and_differences(found):
+    assert (
+        found["Pins"].sentence
+        == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; not simulated: disc."
+    )
+    assert found["Open"].sentence.endswith("; too coarse to decide: disc.")
     assert "; differs: slides" in found["Wrong"].sentence
     assert found["Pins"].cells[2] is None
 
 
-def test_an_engine_of_the_run_is_told_by_its_claims(found):
+def test_an_engine_of_the_run_is_described_by_its_claims(found):
     assert found["good"].sentence == "3 of 5 claims agree on independent evidence; 1 differs; 1 inconclusive."
     assert found["good"].version == "3"
     assert found["failing"].sentence == "1 of 1 claims agree on independent evidence; 4 failed."

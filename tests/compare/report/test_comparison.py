@@ -1,4 +1,4 @@
-"""What parts two reports, by their files, and the exit status of ``friction-discs diff``."""
+"""Differences of two reports, and the exit status of ``friction-discs diff``."""
 
 import json
 from dataclasses import replace
@@ -19,14 +19,14 @@ PLACES = "the pin comes to rest at the point of eq. (3)"
 
 
 def written(folder, measure=measure_verdicts, studies=(), engine=GOOD):
-    """Return the folder of a report of one study, made by hand, and of ``studies``."""
+    """Return the folder of a report of ``studies`` and a handmade study."""
     study = fake(VERDICTS.name, VERDICTS.title, "Any.", measure)
     write_report(run((study, *studies), (engine,), folder=folder / "data"), folder)
     return folder
 
 
 def with_first(**changes):
-    """Measure as always, but for the first two claims: numbers beside the old ones."""
+    """Measure as before, except for changed numbers in the first two claims."""
 
     def measure(engine):
         first, second, *others = measure_verdicts(engine).claims
@@ -56,19 +56,19 @@ def told(capsys, *arguments):
     return status(["diff", *map(str, arguments)], None), capsys.readouterr().out.splitlines()
 
 
-def test_nothing_parts_a_report_from_itself(old, capsys):
+def test_a_report_does_not_differ_from_itself(old, capsys):
     assert told(capsys, old, old) == (0, ["0 worse, 0 moved, 0 gone, 0 new, 0 better"])
 
 
-def test_what_stays_within_both_error_bars_has_not_moved(old, tmp_path, capsys):
+def test_a_change_within_both_error_bars_does_not_count(old, tmp_path, capsys):
     new = written(tmp_path, with_first(first=0.08 + 3e-11 - 0.99e-10))
     assert told(capsys, old, new / "results.json")[0] == 0
 
 
-def test_what_leaves_them_has_moved_though_both_agree(old, tmp_path, capsys):
+def test_a_change_beyond_both_error_bars_counts_even_if_both_agree(old, tmp_path, capsys):
     verdicts = measure_verdicts(GOOD).claims
     semicircle = verdicts[1].measured.copy()
-    semicircle[4] -= 5e-10  # allowed are 2e-10 of each report
+    semicircle[4] -= 5e-10  # each report allows 2e-10
     wide = replace_measured(verdicts[1], semicircle)
     new = written(tmp_path, lambda engine: Findings((verdicts[0], wide_as_it(wide), *verdicts[2:])))
     found, lines = told(capsys, old, new)
@@ -81,13 +81,13 @@ def test_what_leaves_them_has_moved_though_both_agree(old, tmp_path, capsys):
 
 
 def wide_as_it(one):
-    """Return a claim that allows what it is off by, a little."""
+    """Return a claim whose difference is slightly within its error."""
     predicted = one.predicted.copy()
     predicted[4] = one.measured[4]
     return claim(one.sentence, one.engine, predicted, one.measured, 2.4e-10, equation=one.equation)
 
 
-def test_a_number_that_is_missing_has_moved(old, tmp_path, capsys):
+def test_a_missing_number_counts_as_a_change(old, tmp_path, capsys):
     new = written(tmp_path, with_first(first=np.nan))
     found, lines = told(capsys, old, new)
     assert (found, lines[0].partition(":")[0]) == (1, "worse")
@@ -104,25 +104,25 @@ def test_verdicts_get_worse_and_better(old, tmp_path, capsys):
     assert (found, lines[-1]) == (0, "0 worse, 0 moved, 0 gone, 0 new, 1 better")
 
 
-def test_what_is_gone_counts_and_what_is_new_does_not(old, tmp_path, capsys):
+def test_missing_claims_count_and_new_ones_do_not(old, tmp_path, capsys):
     new = written(tmp_path, lambda engine: Findings(measure_verdicts(engine).claims[1:]), (AGREEMENT,))
     found, lines = told(capsys, old, new)
     assert (found, lines[-1]) == (1, "0 worse, 0 moved, 1 gone, 2 new, 0 better")
     assert "gone: verdicts/the-pin-comes-to-rest-at-the-point-of-eq-3 good: " in lines[0]
     found, lines = told(capsys, new, old)
-    assert lines[0] == "gone: agreement good: is no part of the new report"
+    assert lines[0] == "gone: agreement good: missing in the new report"
 
 
-def test_a_study_that_fails_is_told_once(old, tmp_path, capsys):
+def test_a_failed_study_is_reported_once(old, tmp_path, capsys):
     new = written(tmp_path, engine=replace(FAILING, name="good"))
     found, lines = told(capsys, old, new)
     assert found == 1
     assert [line.partition(": the")[0] for line in lines[:-1]] == [
-        "worse: verdicts good: was finished, failed",
+        "worse: verdicts good: finished before, failed now",
     ]
 
 
-def test_reports_in_which_an_engine_has_no_verdict_are_not_alike(old, tmp_path, capsys):
+def test_reports_without_verdicts_of_an_engine_do_not_pass(old, tmp_path, capsys):
     failed = written(tmp_path, engine=FAILING)
     assert told(capsys, failed, failed)[0] == 4
     assert told(capsys, failed, old)[0] == 1
@@ -142,13 +142,13 @@ def test_known_failures_do_not_count(old, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (None, "can't read"),
-        ("{}", "is no baseline"),
-        ("[", "is no baseline"),
+        (None, "cannot read"),
+        ("{}", "is not a baseline"),
+        ("[", "is not a baseline"),
         ('{"format": 1, "version": 1}', "is no"),
     ],
 )
-def test_what_is_no_baseline_is_refused(old, tmp_path, capsys, content, sentence):
+def test_an_invalid_baseline_is_rejected(old, tmp_path, capsys, content, sentence):
     known = tmp_path / "known.json"
     if content is not None:
         known.write_text(content, encoding="utf-8")
@@ -172,5 +172,5 @@ def test_reports_with_other_numbers_are_not_compared_one_by_one(old, tmp_path, c
         ),
     )
     found, lines = told(capsys, old, shorter)
-    assert (found, lines[0].endswith("they can't be compared one by one")) == (1, True)
+    assert (found, lines[0].endswith("so they cannot be compared")) == (1, True)
     assert content["format"] == "friction-discs results"

@@ -1,4 +1,4 @@
-"""What programs read of a report: results by their published schema, tables with every number, to the last bit."""
+"""Files of a report for programs: results with a published schema, and tables in full precision."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -25,7 +25,7 @@ def results(reported):
     return json.loads((reported[1] / "results.json").read_text(encoding="utf-8"))
 
 
-def test_results_are_as_the_published_schema_says(results):
+def test_results_match_the_published_schema(results):
     jsonschema.Draft202012Validator.check_schema(schema())
     CHECKED.validate(results)
 
@@ -41,18 +41,18 @@ def test_results_are_as_the_published_schema_says(results):
         lambda it: it["stamp"].pop("commit"),
     ],
 )
-def test_the_schema_refuses_other_files(results, wrong):
+def test_the_schema_rejects_other_files(results, wrong):
     wrong(results)
     assert not CHECKED.is_valid(results)
 
 
-def test_it_says_what_was_measured_with_what(results):
+def test_results_list_studies_engines_and_versions(results):
     assert results["engine_versions"] == {"good": "", "failing": ""}
     assert all(results["stamp"][name] for name in ("commit", "processor", "exudyn"))
     assert "inf" not in results["stamp"].values()
 
 
-def test_all_numbers_of_a_claim_come_back_from_its_table(reported):
+def test_tables_restore_all_numbers_of_a_claim(reported):
     found = read_results(reported[1])["studies"][0]["claims"]
     claims = {one["sentence"]: claim_from_json(one) for one in found if one["engine"] == "good"}
     for made in measure_verdicts(GOOD).claims:
@@ -66,7 +66,7 @@ def test_all_numbers_of_a_claim_come_back_from_its_table(reported):
 
 
 def mixed(engine):
-    """A claim with numbers of two units, one of them missing, which an engine makes twice."""
+    """A claim with numbers in two units, one of them missing, that an engine makes twice."""
     parts = {"unit": "m, rad", "axes": (("a", "b"), ("x in m", "angle in rad")), "size": [1.0, np.inf]}
     values = np.array([[0.1, np.nan], [0.3, 1.0 / 3.0]])
     return Findings(
@@ -75,7 +75,7 @@ def mixed(engine):
 
 
 @pytest.mark.parametrize("large", [0, 10**9], ids=["compressed", "plain"])
-def test_a_table_says_unit_and_place_of_each_number(tmp_path, monkeypatch, large):
+def test_a_table_contains_unit_and_place_of_each_number(tmp_path, monkeypatch, large):
     monkeypatch.setattr(arrays, "LARGE", large)
     study = fake("mixed", "Mixed", "Any.", mixed)
     write_report(run((study,), (GOOD,), folder=tmp_path / "data"), tmp_path)
@@ -89,7 +89,7 @@ def test_a_table_says_unit_and_place_of_each_number(tmp_path, monkeypatch, large
         assert table[4] == f'good,1,3,"b, angle in rad",rad,{1 / 3!r},{1 / 3!r},0.5,inf'
 
 
-def test_a_badge_counts_what_agrees_and_is_red_where_something_differs(reported, tmp_path):
+def test_a_badge_counts_agreement_and_is_red_for_differences(reported, tmp_path):
     badge = ET.fromstring((reported[1] / "badge.svg").read_text(encoding="utf-8"))
     assert badge.get("aria-label") == "friction-discs: 5 of 11 agree"
     colours = [one.get("fill") for one in badge.iter() if one.tag.endswith("path")]
@@ -101,26 +101,29 @@ def test_a_badge_counts_what_agrees_and_is_red_where_something_differs(reported,
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (None, "can't read .*: No such file"),
-        ("{", "is no results.json of a report"),
-        ("[]", "is no results.json of a report"),
-        ('{"format": "friction-discs results", "version": 7}', "has version 7: this program reads version 1"),
+        (None, "cannot read .*: No such file"),
+        ("{", "is not the results.json of a report"),
+        ("[]", "is not the results.json of a report"),
+        (
+            '{"format": "friction-discs results", "version": 7}',
+            "has version 7, but this program reads version 1",
+        ),
     ],
 )
-def test_another_file_is_refused(tmp_path, content, sentence):
+def test_another_file_is_rejected(tmp_path, content, sentence):
     if content is not None:
         (tmp_path / "results.json").write_text(content, encoding="utf-8")
     with pytest.raises(ValueError, match=sentence):
         read_results(tmp_path)
 
 
-def test_a_table_of_another_report_is_refused(reported, tmp_path):
+def test_a_table_of_another_report_is_rejected(reported, tmp_path):
     (tmp_path / "results.json").write_bytes((reported[1] / "results.json").read_bytes())
-    with pytest.raises(ValueError, match=r"can't read .*, a table of .*: No such file"):
+    with pytest.raises(ValueError, match=r"cannot read .*, a table of .*: No such file"):
         read_results(tmp_path)
     one = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["studies"][0]["claims"][0]
     table = tmp_path / one["arrays"]
     table.parent.mkdir(parents=True)
     table.write_text(",".join(arrays.COLUMNS) + "\n", encoding="utf-8")
-    with pytest.raises(ValueError, match="has 0 numbers of theory"):
+    with pytest.raises(ValueError, match="contains 0 numbers of theory"):
         read_results(tmp_path)

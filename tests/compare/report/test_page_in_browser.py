@@ -17,7 +17,7 @@ WIDTHS = 1280, 400
 
 @contextmanager
 def page_at(width, browser, reported):
-    """Yield the page at a width, with the addresses that it asked for."""
+    """Yield the page at a width, with the addresses that it requested."""
     page = browser.new_page(viewport={"width": width, "height": 800})
     asked = []
     page.on("request", lambda sent: asked.append(sent.url))
@@ -28,13 +28,13 @@ def page_at(width, browser, reported):
 
 @pytest.fixture(params=WIDTHS)
 def opened(request, browser, reported):
-    """The page, and the addresses that it asked for."""
+    """The page, and the addresses that it requested."""
     with page_at(request.param, browser, reported) as opened:
         yield opened
 
 
 def overhang(page):
-    """How far the page is wider than the window."""
+    """Return the excess of the page's width over the window's."""
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
 
 
@@ -47,21 +47,19 @@ NAMED = """[...document.querySelectorAll('table')].every(table => table.caption)
         || document.getElementById(it.getAttribute('aria-labelledby')))"""
 
 
-def test_the_page_fits_is_legible_has_names_and_asks_nothing_of_the_network(opened):
+def test_the_page_fits_is_legible_and_makes_no_requests(opened):
     page, asked = opened
     assert overhang(page) <= 0
-    assert page.evaluate(TABLES_OUTSIDE) == 0  # or they scroll in their own container
+    assert page.evaluate(TABLES_OUTSIDE) == 0  # or inside a scrolling container
     assert page.evaluate(SMALLEST) >= 11
     assert page.evaluate(NAMED)
     assert asked
     assert all(url.startswith(("file:", "data:")) for url in asked)
 
 
-def test_the_first_screen_shows_totals_what_differs_and_a_grade_for_each_engine(opened):
+def test_the_first_screen_shows_totals_differences_and_grades(opened):
     page, _ = opened
-    page.evaluate(
-        "scrollTo(0, document.getElementById('glance').offsetTop)"
-    )  # below the contents on a telephone
+    page.evaluate("scrollTo(0, document.getElementById('glance').offsetTop)")  # below the contents on a phone
     top = page.locator("#glance").bounding_box()["y"]
     table = page.locator("#engines table").bounding_box()
     assert page.locator("#totals").bounding_box()["y"] < table["y"] < top + 500
@@ -70,7 +68,7 @@ def test_the_first_screen_shows_totals_what_differs_and_a_grade_for_each_engine(
     assert page.locator("#engines .badge").all_inner_texts()[:2] == ["differs", "differs"]
 
 
-def test_all_images_are_decoded_once_they_are_looked_at(opened):
+def test_all_images_are_decoded_when_visible(opened):
     page, _ = opened
     page.evaluate("location.hash = '#verdicts'")
     page.evaluate("[...document.images].forEach(image => { image.loading = 'eager'; })")
@@ -81,7 +79,7 @@ def test_all_images_are_decoded_once_they_are_looked_at(opened):
 CLAIM = "verdicts/the-equilibrium-is-lost-at-the-load-of-eq-5"
 
 
-def test_a_link_opens_what_it_leads_to(opened):
+def test_a_link_opens_its_target(opened):
     page, _ = opened
     assert not page.locator("details[open]").count()
     page.locator(".exceptions a").nth(1).click()
@@ -94,7 +92,7 @@ def test_a_link_opens_what_it_leads_to(opened):
     assert page.locator('[id="figure/fake-radius"]').is_visible()
 
 
-def test_the_way_from_an_engine_leads_to_its_claims(opened):
+def test_the_link_of_an_engine_leads_to_its_claims(opened):
     page, _ = opened
     page.locator(".glance tbody a").first.click()
     page.wait_for_url("**?engine=good#studies")
@@ -102,13 +100,13 @@ def test_the_way_from_an_engine_leads_to_its_claims(opened):
     assert page.locator("#studies").bounding_box()["y"] < 800
 
 
-def test_the_way_to_one_claim_opens_none_unasked(opened):
+def test_the_link_to_the_claims_opens_none(opened):
     page, _ = opened
     page.locator(".ways a", has_text="Check one claim").click()
     assert page.locator("details[open]").count() == 0
 
 
-def test_without_a_script_all_can_be_read(browser, reported):
+def test_the_page_is_readable_without_scripts(browser, reported):
     page = browser.new_page(java_script_enabled=False)
     page.goto((reported[1] / "index.html").as_uri() + f"#{CLAIM}")
     page.locator(f'[id="{CLAIM}"] > summary').click()  # the browser opens its study
@@ -118,11 +116,11 @@ def test_without_a_script_all_can_be_read(browser, reported):
 
 
 def shown(page):
-    """Return the claims that a filter leaves."""
+    """Return the claims that a filter shows."""
     return page.evaluate("[...document.querySelectorAll('details.claim:not([hidden])')].map(one => one.id)")
 
 
-def test_filters_leave_what_is_asked_for_and_the_link_says_it(opened, reported):
+def test_filters_select_claims_and_are_stored_in_the_link(opened, reported):
     page, _ = opened
     everything = shown(page)
     page.select_option("[name=verdict]", "differs")
@@ -141,14 +139,14 @@ def test_filters_leave_what_is_asked_for_and_the_link_says_it(opened, reported):
 @pytest.mark.parametrize(
     "asked", ["q=semicircle", "q=release+eq.", "evidence=algebra", "equation=(4)", "study=agreement"]
 )
-def test_a_link_may_ask_for_claims(browser, reported, asked):
+def test_a_link_may_contain_a_filter(browser, reported, asked):
     page = browser.new_page()
     page.goto((reported[1] / "index.html").as_uri() + f"?{asked}")
     assert len(shown(page)) == 1
     page.close()
 
 
-def test_keys_lead_to_the_search_and_from_claim_to_claim(opened):
+def test_keys_move_to_the_search_and_between_claims(opened):
     page, _ = opened
     page.keyboard.press("/")
     assert page.evaluate("document.activeElement.name") == "q"
@@ -160,7 +158,7 @@ def test_keys_lead_to_the_search_and_from_claim_to_claim(opened):
     assert page.locator("details.claim[open]").count() == 1
 
 
-def test_an_animation_plays_when_asked_and_pauses(opened):
+def test_an_animation_plays_and_pauses_on_request(opened):
     page, _ = opened
     page.evaluate("location.hash = '#figure/fake-motion'")
     image, button = page.locator(".moves img"), page.locator(".moves .play")
@@ -198,7 +196,7 @@ CONTRASTS = """() => {
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_text_stands_out_from_its_paper(browser, reported, scheme):
+def test_text_contrasts_with_its_background(browser, reported, scheme):
     page = browser.new_page(color_scheme=scheme)
     page.goto((reported[1] / "index.html").as_uri())
     contrast, *where = page.evaluate(CONTRASTS)
@@ -208,8 +206,8 @@ def test_text_stands_out_from_its_paper(browser, reported, scheme):
     page.close()
 
 
-def test_the_print_fits_on_its_paper(browser, reported):
-    page = browser.new_page(viewport={"width": 688, "height": 1000})  # A4 within its margins
+def test_the_print_fits_the_paper(browser, reported):
+    page = browser.new_page(viewport={"width": 688, "height": 1000})  # A4 without margins
     page.goto((reported[1] / "index.html").as_uri())
     page.emulate_media(media="print")
     assert overhang(page) <= 0

@@ -28,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 
 class Cells(HTMLParser):
-    """Collects what the cells of all tables say: [class of table, id of body, label, text, numbers]."""
+    """Collects the cells of all tables: [class of table, id of body, label, text, numbers]."""
 
     def __init__(self, page):
         super().__init__()
@@ -60,7 +60,7 @@ class Cells(HTMLParser):
 
 
 def claims_of(page):
-    """Return what is said of each engine beside each claim, by the claim's id."""
+    """Return the texts for each engine next to each claim, by the claim's id."""
     found = {}
     for identity, said in re.findall(
         r'<details class="claim" id="([^"]*)".*?<span class="cells">(.*?)</summary>', page, flags=re.DOTALL
@@ -90,9 +90,7 @@ def results(reported):
 def test_the_totals_are_those_of_the_claims(results, page):
     gaps = {"failed": 4, "missing": 0, "not simulated": 0}
     assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
-    assert (
-        "4 agree on independent evidence, besides 1 of algebra; 1 differs, 1 inconclusive, 4 failed." in page
-    )
+    assert "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed." in page
     verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
     for verdict in ("agrees", "differs", "inconclusive"):
         assert verdicts.count(verdict) == results["totals"][verdict]
@@ -128,7 +126,7 @@ def test_an_array_shows_its_worst_element(results, cells):
 
 
 def measure_openly(engine):
-    """Return two open claims: in the first the element nearest to failing is not the least certain one."""
+    """Return two inconclusive claims; in the first, the element nearest to failing is not the least certain one."""
     numbers = ((1e-9, [1e-9, 0.75, 1e-9]), (0.4, [0.5, 0.5, 0.5]))
     claims = (made("Open", engine.name, np.zeros(3), [off, 0.0, 0.0], errors) for off, errors in numbers)
     return Findings(tuple(claims))
@@ -143,13 +141,13 @@ def test_an_inconclusive_claim_shows_its_least_certain_element_and_a_cell_its_le
     assert claims_of(page) == {"open/open": ["one ? inconclusive ×2 ± 0.75 m"]}
 
 
-def test_each_claim_says_every_verdict_in_a_word_and_a_mark(page):
+def test_each_claim_shows_every_verdict_as_word_and_mark(page):
     said = [text for claim in claims_of(page).values() for text in claim]
     for words in ("theory ✓ agrees", "good ✗ differs", "good ? inconclusive", "failing ! failed"):
         assert any(text.startswith(words) for text in said)
 
 
-def test_what_must_not_be_overlooked_stands_below_the_totals(page):
+def test_exceptions_are_listed_below_the_totals(page):
     (listed,) = re.findall(r'<ul class="exceptions">(.*?)</ul>', page, flags=re.DOTALL)
     lines = [" ".join(re.sub("<[^>]*>", "", line).split()) for line in listed.split("</li>")][:-1]
     assert lines == [
@@ -167,7 +165,7 @@ def test_a_failed_engine_gives_its_reason(results, page):
     assert page.count(unit["reason"]) >= 2
 
 
-def test_links_lead_somewhere_and_the_page_asks_for_nothing(page, cells, reported):
+def test_links_have_targets_and_the_page_loads_nothing(page, cells, reported):
     for link in (re.sub(r"^\?[^#]*", "", link) for link in cells.links):
         assert (
             unquote(link[1:]) in cells.ids if link.startswith("#") else (reported[1] / unquote(link)).exists()
@@ -184,13 +182,13 @@ def test_the_page_shows_the_figures_of_the_folder(page, reported):
     for name, start in files.items():
         assert (reported[1] / "figures" / name).read_bytes().startswith(start)
     assert '<img src="figures/fake-radius.svg" loading="lazy"' in page
-    assert '<img src="figures/fake-motion.png" loading="lazy"' in page  # nothing moves until it is asked for
+    assert '<img src="figures/fake-motion.png" loading="lazy"' in page  # animations start on request
     assert '<a class="play" href="figures/fake-motion.gif">' in page
     assert "Radius of the equilibrium over the load: both engines on the formula (3)." in page
 
 
 SAID = (
-    "friction-discs report verdicts --engine good",  # how to repeat it
+    "friction-discs report verdicts --engine good",  # command that repeats the study
     "friction-discs report agreement --engine failing",
     "towards the centre of the disc, <code>rest(load) &lt; X₀</code>.</p>",
     "mass = 1 kg, stiffness = 1 N/m, damping = 0.1 N s/m, disc_speed = 0.7 rad/s, offset = 0.1 m.",
@@ -203,7 +201,7 @@ def test_commands_code_and_parameters_of_claims_are_on_the_page(words, page):
     assert words in page
 
 
-def test_the_report_does_not_tell_where_it_was_made(page, reported):
+def test_the_report_does_not_reveal_its_machine(page, reported):
     for name in ("results.json", "junit.xml"):
         page += (reported[1] / name).read_text(encoding="utf-8")
     assert str(ROOT) not in page
@@ -249,7 +247,7 @@ def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
 
 @pytest.fixture(scope="module")
 def partly_reported(tmp_path_factory, all_in_this_process):
-    """Matrix and folder of a report with engines that simulate all, some, and a pin only."""
+    """Matrix and folder of a report with engines that simulate all systems, some systems, and only a pin."""
     folder = tmp_path_factory.mktemp("partly")
     engines = (
         Engine("all", straight, EVERY_KIND),
@@ -260,7 +258,7 @@ def partly_reported(tmp_path_factory, all_in_this_process):
     return result, write_report(result, folder), folder
 
 
-def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported):
+def test_not_simulated_is_a_separate_state(partly_reported):
     result, matrix, _ = partly_reported
     states = {
         row.sentence: {column: cell.state for column, cell in row.cells.items()}
@@ -277,15 +275,15 @@ def test_what_an_engine_does_not_simulate_is_a_state_of_its_own(partly_reported)
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
     assert summary(matrix) == "7 agree on independent evidence; 0 differ, 0 inconclusive, 5 not simulated"
-    assert set(result.data(RING_ONLY)) == {"all"}  # the others have nothing to draw
+    assert set(result.data(RING_ONLY)) == {"all"}  # other studies have no figures
 
 
-def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_reported):
+def test_the_page_gives_the_reason_once_per_study_and_counts_it_separately(partly_reported):
     page = (partly_reported[2] / "index.html").read_text(encoding="utf-8")
     reason = "some does not simulate a disc on a continuous ring"
     (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
     assert legend.count(reason) == 1
-    assert page.count(f": {reason}.") == 2  # one a study
+    assert page.count(f": {reason}.") == 2  # one per study
     assert (
         page.count("2 claims: pins does not simulate a disc on single points or a disc on a continuous ring")
         == 1
@@ -294,7 +292,7 @@ def test_the_page_gives_the_reason_once_a_study_and_counts_it_apart(partly_repor
     assert overview == [
         "2 of 2 agree",  # independent evidence
         "2 of 2 agree, 2 not simulated",
-        "2 exact",  # how finely
+        "2 exact",  # grades
         "2 of 2 agree, 1 not simulated",
         "1 not simulated",
     ]
@@ -316,7 +314,7 @@ GIVEN = {
     "fig11": ["0.1 m"],
     "drivetrain-frozen": ["10 %", "1.4 N", "0.2 N"],
 }
-"""What a finding says of parameters, which no claim measures."""
+"""Numbers of parameters in findings, which no claim measures."""
 
 
 def test_numbers_of_a_finding_are_quoted_from_claims():
@@ -328,19 +326,19 @@ def test_numbers_of_a_finding_are_quoted_from_claims():
         assert any(quoted for _, quoted in parts(study.prose.finding))
 
 
-def test_a_caption_and_a_paragraph_have_no_brace_but_of_a_quote():
+def test_captions_and_paragraphs_use_braces_only_for_quotes():
     for study in STUDIES:
         for text in (study.prose.finding, study.prose.paper, *study.figures.values()):
             assert all(quoted != "" for _, quoted in parts(text))
 
 
-def test_studies_of_a_section_stand_together():
+def test_studies_of_a_section_are_adjacent():
     sections = [study.prose.section for study in STUDIES]
     assert all(sections)
     assert [name for name, _ in groupby(sections)] == list(dict.fromkeys(sections))
 
 
-def test_programs_see_what_is_not_simulated(partly_reported):
+def test_results_for_programs_contain_claims_not_simulated(partly_reported):
     _, _, folder = partly_reported
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert results["totals"]["not simulated"] == 5
@@ -355,7 +353,7 @@ def test_programs_see_what_is_not_simulated(partly_reported):
     assert (root.get("tests"), root.get("skipped"), root.get("errors")) == ("12", "5", "0")
 
 
-def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
+def test_a_gap_is_shown_even_if_no_engine_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
     (row,) = matrix.rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
@@ -363,7 +361,7 @@ def test_a_gap_is_seen_even_if_nobody_fills_it(tmp_path):
 
 
 def settings():
-    """Return what two engines of others made of two claims: one agrees with both, the other with neither."""
+    """Return recorded results of two engines for two claims: one agrees with both, the other with neither."""
     settings = {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}
     return [
         recorded(
@@ -377,14 +375,14 @@ def settings():
 
 @pytest.fixture(scope="module")
 def recorded_reported(tmp_path_factory, all_in_this_process):
-    """The exit status, the folder of the report, of a study that agrees and has a recorded engine that differs."""
+    """Exit status and folder of a report of an agreeing study with a recorded engine that differs."""
     folder = tmp_path_factory.mktemp("recorded")
     study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": settings})
     arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]
     return status(arguments, (study,)), folder
 
 
-def test_what_recorded_engines_get_wrong_is_no_failure_of_this_project(recorded_reported):
+def test_errors_of_recorded_engines_do_not_fail_the_report(recorded_reported):
     exit_status, folder = recorded_reported
     assert exit_status == 0
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
@@ -411,7 +409,7 @@ def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_rep
     assert "4 agree, 2 differ, 0 inconclusive." in page
 
 
-def test_every_state_has_its_place_among_the_worst():
+def test_every_state_has_a_priority():
     assert set(WORST_FIRST) == set(State)
     assert WORST_FIRST[-1] is State.AGREES
 

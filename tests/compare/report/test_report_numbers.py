@@ -37,12 +37,12 @@ def test_errors_have_two_digits(value, text):
         (2.0, math.inf, "2.000"),
     ],
 )
-def test_results_have_the_digits_that_their_uncertainty_leaves(value, uncertainty, text):
+def test_results_have_the_digits_that_their_uncertainty_allows(value, uncertainty, text):
     assert value_text(value, uncertainty) == text
 
 
 @pytest.mark.parametrize(
     ("value", "text"), [(0.09, "0.09"), (1.0, "1"), (1e-9, "1×10⁻⁹"), (1.5, "1.5"), (4001, "4001")]
 )
-def test_given_numbers_stay_as_they_were_given(value, text):
+def test_exact_numbers_keep_their_digits(value, text):
     assert trimmed(value) == text

@@ -1,4 +1,4 @@
-"""What is drawn of equal data by equal code is drawn once; anything else is drawn again."""
+"""Reuse of stored drawings: only equal data and equal code give the same drawing."""
 
 import shutil
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("in_this_process")
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Run one study in the same folder as before; return its drawing, and whether it was drawn now."""
+    """Run a study in the same folder as before; return its drawing, and whether it was redrawn."""
     drawn = []
 
     def draw(study, data):
@@ -63,7 +63,7 @@ ZEROS = {"good": {"radius": np.zeros(4)}}
     ],
     ids=["last bit", "type", "shape", "name", "engine", "empty array", "nothing"],
 )
-def test_other_data_have_another_stamp(data):
+def test_the_stamp_changes_with_the_data(data):
     assert drawing_stamp(ZEROS) == drawing_stamp({"good": {"radius": np.zeros(4)}})
     assert drawing_stamp(data) != drawing_stamp(ZEROS)
 
@@ -74,7 +74,7 @@ def test_other_data_are_drawn_again(engines, run):
     assert run(fake.VERDICTS, *engines)[1]
 
 
-def test_all_is_drawn_again_where_figures_look_different_now(run, tmp_path, monkeypatch):
+def test_figures_are_drawn_again_after_a_change_of_style(run, tmp_path, monkeypatch):
     run(fake.VERDICTS, fake.GOOD)
     for package in PACKAGES:
         skipped = shutil.ignore_patterns("__pycache__", "built")

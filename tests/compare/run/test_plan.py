@@ -1,4 +1,4 @@
-"""What studies ask for, as far as it does not depend on the answers."""
+"""Motions of studies that do not depend on the answers."""
 
 import json
 from functools import lru_cache
@@ -72,17 +72,17 @@ def test_claims_that_ask_the_same_of_any_engine_are_planned_and_others_are_not()
     assert {question["system"]["kind"] for question in questions(found)} == {"pin"}
 
 
-def test_what_another_kind_of_engine_is_asked_is_planned_for_that():
+def test_motions_are_planned_for_the_kind_of_engine():
     found = planned(STUDY, ("pin", "ring"))
     assert (found.claims, found.adaptive) == (3, 2)
     assert {question["system"]["kind"] for question in questions(found)} == {"pin", "ring"}
 
 
-def test_the_plan_of_the_command_line_is_judged_when_it_is_answered(tmp_path, monkeypatch, capsys):
+def test_answers_to_the_plan_of_the_command_line_are_judged(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert cli.status(["plan", "--jobs", "1"], (STUDY,)) == 0
     out = capsys.readouterr().out
-    assert "planned: 2 motions for 2 claims, 2 left out" in out
+    assert "planned: 2 motions for 2 claims, 2 claims left out" in out
     assert "report --engine files:plan" in out
     paths = [path for path in (tmp_path / "plan").glob("*.json") if path.name != "plan.json"]
     assert len(paths) == 2
@@ -112,28 +112,26 @@ def _asked_first(path):
     return json.loads(path.read_text())["tolerance"] == 1e-9
 
 
-def test_a_plan_of_nothing_is_refused_in_one_sentence(tmp_path, capsys):
+def test_an_empty_plan_is_rejected(tmp_path, capsys):
     assert cli.status(["plan", "--kind", "points", "--jobs", "1", "--output", str(tmp_path)], (STUDY,)) == 2
-    sentence = "no study of these asks for motions that do not depend on the answers"
+    sentence = "no motions to plan: they are of another --kind, or they depend on earlier answers"
     assert sentence in capsys.readouterr().err
     assert not (tmp_path / "plan.json").exists()
 
 
-def test_a_study_that_is_about_engines_of_this_project_is_not_left_out_in_silence(tmp_path, capsys):
+def test_skipping_a_study_of_engines_of_this_project_is_reported(tmp_path, capsys):
     ours = Study("ours", Prose("A study of one engine"), only=("exudyn",))
     assert cli.status(["plan", "ours", "planned", "--output", str(tmp_path)], (ours, STUDY)) == 0
-    assert capsys.readouterr().err == "ours is about exudyn only: nothing is planned\n"
+    assert capsys.readouterr().err == "ours applies only to exudyn; skipped\n"
 
 
-def test_a_study_that_fails_with_the_answers_of_the_reference_is_told_and_the_others_are_planned(
-    tmp_path, capsys
-):
+def test_a_study_that_fails_is_reported_and_the_others_are_planned(tmp_path, capsys):
     broken = Study("broken", Prose("A study with a mistake"))
     broken.claim("It is measured", resolution=1.0)(_broken)
     assert cli.status(["plan", "--jobs", "1", "--output", str(tmp_path)], (broken, STUDY)) == 1
     said = capsys.readouterr()
-    assert said.err.startswith("broken can't be planned: a mistake (test_plan.py:")
-    assert said.out.startswith("planned: 2 motions for 2 claims, 2 left out")
+    assert said.err.startswith("cannot plan broken: a mistake (test_plan.py:")
+    assert said.out.startswith("planned: 2 motions for 2 claims, 2 claims left out")
 
 
 def _broken(engine):

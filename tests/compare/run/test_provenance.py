@@ -1,4 +1,4 @@
-"""From which commit, versions and processor results are."""
+"""Commit, versions and processor of results."""
 
 import json
 import platform
@@ -16,7 +16,7 @@ from compare.run import provenance
 
 @pytest.fixture
 def installed(monkeypatch, tmp_path):
-    """The project without a repository; return what says how its distribution was installed."""
+    """The project without a repository; return a function that sets the record of its installation."""
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
 
     def as_said(content):
@@ -34,7 +34,7 @@ def test_an_installed_project_has_the_commit_that_it_was_installed_from(installe
     assert provenance.commit() == ""
 
 
-def test_without_distribution_or_git_the_commit_is_not_known(installed, monkeypatch, tmp_path):
+def test_without_distribution_or_git_the_commit_is_unknown(installed, monkeypatch, tmp_path):
     def missing(_):
         raise PackageNotFoundError
 
@@ -45,13 +45,13 @@ def test_without_distribution_or_git_the_commit_is_not_known(installed, monkeypa
     assert provenance.commit() == ""
 
 
-def test_an_engine_has_its_own_version_or_that_of_where_its_code_is_from():
+def test_an_engine_has_its_own_version_or_that_of_its_distribution():
     assert provenance.engine_version("exudyn-native", "exudyn", "") == provenance.version_of("exudyn")
     assert provenance.engine_version("mine", "", "1.2") == "1.2"
     assert provenance.engine_version("mine", "", "") == ""
 
 
-def test_a_processor_without_a_name_is_told_by_its_kind(monkeypatch):
+def test_a_processor_without_a_name_is_reported_by_its_architecture(monkeypatch):
     def missing(*_, **__):
         raise FileNotFoundError
 

@@ -1,4 +1,4 @@
-"""Findings are resumed while sources, libraries and the engine's own files are the same: what the stamp sees."""
+"""Stamps of findings change with sources, libraries and the engine's own files."""
 
 import importlib
 import sys
@@ -20,7 +20,7 @@ from compare.studies import STUDIES
 
 @pytest.fixture
 def code(tmp_path, monkeypatch):
-    """Write modules in place of older ones, which are forgotten, into a folder where imports find them."""
+    """Write modules into an import folder and forget their older versions."""
     folder = tmp_path / "code"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
@@ -46,7 +46,7 @@ def code(tmp_path, monkeypatch):
 
 
 def stamp_of(module, *promises, folder=""):
-    """Return the stamp of the engine that is the function ``simulate`` of a module."""
+    """Return the stamp of the function ``simulate`` of a module as an engine."""
     return engine_stamp(Engine("mine", ByName(module, "simulate", str(folder)), *promises))
 
 
@@ -60,7 +60,7 @@ CHANGED = {
 
 
 @pytest.mark.parametrize(("module", "changed"), CHANGED.values(), ids=CHANGED)
-def test_an_engine_has_another_stamp_when_its_module_or_one_beside_it_changes(module, changed, code):
+def test_the_stamp_changes_with_the_engines_module_and_its_neighbours(module, changed, code):
     own = f"{module.replace('.', '/')}.py"
     stamps = []
     for text in ("FACTOR = 1", "FACTOR = 1", "FACTOR = 2"):
@@ -70,7 +70,7 @@ def test_an_engine_has_another_stamp_when_its_module_or_one_beside_it_changes(mo
     assert stamps[0] == stamps[1] != stamps[2]
 
 
-def test_an_engine_has_another_stamp_when_it_promises_something_else(code):
+def test_the_stamp_changes_with_the_engines_promises(code):
     code({"mine.py": "def simulate(): pass"})
     promises = ((("pin",), True), (("pin",), True), (("pin", "ring"), True), (("pin", "ring"), False))
     one, same, *others = (stamp_of("mine", *each) for each in promises)
@@ -97,7 +97,7 @@ def test_the_modules_of_an_engine_are_not_imported_for_its_stamp(module, code):
     assert "bad" not in sys.modules
 
 
-def test_of_an_installed_module_its_own_file_counts_and_the_versions_of_all_packages(tmp_path, monkeypatch):
+def test_the_stamp_of_an_installed_module_contains_its_file_and_all_versions(tmp_path, monkeypatch):
     site = tmp_path / "site-packages"
     (metadata := site / "helper-1.0.dist-info").mkdir(parents=True)
     monkeypatch.syspath_prepend(site)
@@ -123,11 +123,11 @@ OUTSIDE = {
     "an FMU": (lambda folder: Fmu(f"{folder}/model.fmu"), "model.fmu"),
     "a motion in a file": (MotionFiles, "0f3a.csv"),
 }
-"""Engines from elsewhere by their kind, with the file that is changed."""
+"""Foreign engines by kind, with the file to change."""
 
 
 @pytest.mark.parametrize(("function", "changed"), OUTSIDE.values(), ids=OUTSIDE)
-def test_a_program_or_model_has_another_stamp_when_a_file_changes(function, changed, tmp_path):
+def test_the_stamp_of_a_program_or_model_changes_with_its_files(function, changed, tmp_path):
     (tmp_path / "helpers").mkdir()
     for name in ("engine.js", "engine.py", "engine", "plan.json", *(file for _, file in OUTSIDE.values())):
         (tmp_path / name).write_text("before")
@@ -140,11 +140,11 @@ def test_a_program_or_model_has_another_stamp_when_a_file_changes(function, chan
 
 
 @pytest.mark.parametrize("command", [("python3", "-m", "mine"), ("no-such-program",)])
-def test_a_program_whose_files_are_not_known_is_always_measured_again(command, tmp_path):
+def test_a_program_with_unknown_files_is_always_measured_again(command, tmp_path):
     assert engine_stamp(Engine("it", Program(command, str(tmp_path)))) is None
 
 
-def test_environments_and_links_that_lead_back_are_left_out(tmp_path):
+def test_environments_and_cyclic_links_are_left_out(tmp_path):
     (tmp_path / "back").symlink_to(tmp_path, target_is_directory=True)
     for folder in ("helpers", ".venv", "site-packages", "__pycache__"):
         (tmp_path / folder).mkdir()
@@ -168,11 +168,11 @@ def test_any_source_and_any_library_changes_the_stamp(changed, tmp_path, monkeyp
     else:
         with open(tmp_path / changed, "a", encoding="utf-8") as stream:
             stream.write("\n")
-        stamp._sources.cache_clear()  # a process has the code that it was started with
+        stamp._sources.cache_clear()  # a process keeps the code it started with
     assert stamp.stamp() != before
 
 
-def test_the_stamp_knows_the_code_of_every_study_and_of_our_engines():
+def test_the_stamp_covers_all_studies_and_our_engines():
     own = {Path(sys.modules[one.function.__module__].__file__) for study in STUDIES for one in study.declared}
     assert all(path.is_relative_to(stamp.ROOT / "compare") for path in own)
     assert engine_stamp(reference) != engine_stamp(None) is not None

@@ -25,7 +25,7 @@ BOTH = (fake.GOOD, fake.FAILING)
 
 @pytest.fixture(scope="module")
 def both_ways(tmp_path_factory):
-    """Runs in one and in two processes, of which one dies, and the progress that the first one told of."""
+    """Runs in one process and in two, one of which dies, and the progress reported by the first run."""
     told = []
     one = run(
         (fake.VERDICTS, fake.AGREEMENT),
@@ -40,7 +40,7 @@ def both_ways(tmp_path_factory):
 
 
 @pytest.mark.parametrize("way", [0, 1])
-def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_ways):
+def test_a_failing_engine_and_a_dying_process_do_not_affect_the_rest(way, both_ways):
     result = both_ways[way]
     assert not result.interrupted
     assert result.missing == ()
@@ -56,13 +56,13 @@ def test_a_failing_engine_and_a_dying_process_leave_the_rest_alone(way, both_way
     assert failure.where[-1].startswith("fake_studies.py:")
     assert "/" not in "".join(failure.where)
     if way == 1:
-        assert result.outcomes["death", "good"].reason == "its process came to a sudden end (exit status 7)"
+        assert result.outcomes["death", "good"].reason == "its process ended unexpectedly (exit status 7)"
 
 
-def test_a_measurement_that_does_not_end_is_given_up_at_the_limit_and_the_rest_goes_on(tmp_path, monkeypatch):
-    """The clock jumps once the measurement runs, first to just before the limit, then beyond it.
+def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
+    """The clock jumps during the measurement, first to just before the limit, then beyond it.
 
-    How long its process took to start does not matter.
+    The time that the process takes to start does not count.
     """
     running, limit, wait = tmp_path / "running", 1000.0, workers.wait
     monkeypatch.setenv("RUNNING", str(running))
@@ -98,15 +98,14 @@ def test_one_and_two_processes_find_and_draw_the_same(both_ways):
     assert [c.measured.tolist() for c in good[0].claims] == [c.measured.tolist() for c in good[1].claims]
 
 
-def test_what_is_no_result_is_said(tmp_path):
+def test_an_invalid_result_is_reported(tmp_path):
     unsendable = replace(fake.NO_FINDINGS, name="unsendable", provided={"measure": lambda engine: None})
     found = run((fake.NO_FINDINGS, unsendable), (fake.GOOD,), folder=tmp_path).outcomes
     assert (
-        found["no-findings", "good"].reason == "TypeError: the study returned NoneType: it must be Findings"
+        found["no-findings", "good"].reason
+        == "TypeError: the study returned NoneType, but must return Findings"
     )
-    assert found["unsendable", "good"].reason.startswith(
-        "it cannot be sent to another process (Can't pickle "
-    )
+    assert found["unsendable", "good"].reason.startswith("cannot be sent to another process (Can't pickle ")
     assert found["unsendable", "good"].reason.endswith("use functions of a module")
 
 
@@ -118,7 +117,7 @@ def count(tmp_path, monkeypatch, in_this_process):
     return lambda: path.read_text().split()
 
 
-def test_resume_computes_only_what_is_not_there_by_the_same_code(tmp_path, count, monkeypatch):
+def test_resume_computes_only_missing_results_of_the_same_code(tmp_path, count, monkeypatch):
     first = run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path)
     assert count() == ["good"]
     second = run((fake.COUNTED,), (fake.GOOD, fake.ALSO_GOOD), folder=tmp_path, resume=True)
@@ -134,12 +133,14 @@ def test_resume_computes_only_what_is_not_there_by_the_same_code(tmp_path, count
 
 def test_progress_counts_to_its_end(both_ways):
     _, _, told = both_ways
-    assert [done for done, _, _ in told] == list(range(8))  # theory, twice two engines, the figures of both
+    assert [done for done, _, _ in told] == list(
+        range(8)
+    )  # theory, two engines for each of two studies, and the figures of both
     assert {total for _, total, _ in told} == {7}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")
-def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
+def test_ctrl_c_keeps_finished_results_and_lists_missing_ones(tmp_path):
     running, output = tmp_path / "running", tmp_path / "report"
     arguments = ["report", "unending", "--engine", "good", "--engine", "also-good", "--engine", "failing"]
     process = subprocess.Popen(
@@ -153,7 +154,7 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
     )
     wait_for(process, running)
     wait_until(lambda: list(store_of(output).glob("unending--good--*.json.xz")))
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
+    os.killpg(process.pid, signal.SIGINT)  # to all processes, as a terminal does
     out, err = process.communicate(timeout=PATIENCE)
     assert_that_the_rest_is_missing(process.returncode, out, err, output)
     wait_until(lambda: ended(process.pid))
@@ -162,7 +163,10 @@ def test_ctrl_c_keeps_what_is_finished_and_says_what_is_missing(tmp_path):
 def assert_that_the_rest_is_missing(status, out, err, output):
     assert status == 130
     missing = "unending also-good, unending failing"
-    assert err == f"Interrupted; missing: {missing}. The same command with --resume completes it.\n"
+    assert (
+        err
+        == f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report.\n"
+    )
     assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
     results = json.loads((output / "results.json").read_text(encoding="utf-8"))
     assert results["interrupted"]
@@ -203,7 +207,7 @@ def test_no_process_outlives_a_killed_one(tmp_path):
 
 
 def ended(group):
-    """Whether every process of the group has ended; an ended one may wait to be collected."""
+    """Return whether every process of the group has ended; zombies count as ended."""
     try:
         os.killpg(group, 0)
     except ProcessLookupError:

@@ -1,4 +1,4 @@
-"""Stores of findings and drawings: what is found is what was kept last, or nothing, however files are damaged."""
+"""Stores of findings and drawings return the last stored content or nothing, even if files are damaged."""
 
 import json
 import shutil
@@ -26,7 +26,7 @@ KEYS = [
     ("fig03", 100 * "exec:a"),
     ("fig03", 101 * "exec:a"),
 ]
-"""Similar or long names, as engines have them."""
+"""Similar and long names of engines."""
 
 UNUSUAL = claim(
     "c", "good", [0.0, np.inf], [np.nan, -np.inf], np.inf, parameters={"a": np.float64(1.0), "n": 3}
@@ -40,7 +40,7 @@ DRAWN = (Drawing({"radius": b"<svg/>", "spin": b""}, {"motion": bytes(range(99))
 
 
 class OfFindings:
-    """The store of findings, with all that is found in one text that can be compared."""
+    """The store of findings, with contents as one comparable text."""
 
     keys, values, stamps = KEYS, FOUND, ("now", "then", None)
 
@@ -79,7 +79,7 @@ class OfDrawings:
 
 
 class Stores(RuleBasedStateMachine):
-    """Keeps, damages and finds, beside a dictionary."""
+    """Stores, damages and finds, compared with a dictionary."""
 
     kind = None
 
@@ -98,7 +98,7 @@ class Stores(RuleBasedStateMachine):
         before = {str(path).lower() for path in self.folder.rglob("*.*")}
         self.store.keep(key, stamp, self.store.values[i])
         new = [path for path in self.folder.rglob("*.*") if str(path).lower() not in before]
-        assert new or key in self.files  # no two keys share a file, also where case is ignored
+        assert new or key in self.files  # no two keys share a file, even if case is ignored
         self.files.setdefault(key, new)
         self.kept[key] = stamp, self.store.told(self.store.values[i])
         self.damaged.discard(key)
@@ -138,7 +138,7 @@ TestFindingsStore, TestDrawingStore = FindingsStores.TestCase, DrawingStores.Tes
 
 
 @pytest.mark.parametrize("kind", [OfFindings, OfDrawings])
-def test_of_files_with_any_byte_changed_the_same_is_found_or_nothing(kind, tmp_path):
+def test_files_with_any_byte_changed_give_the_same_content_or_nothing(kind, tmp_path):
     store = kind(tmp_path)
     key, value = store.keys[0], store.values[0]
     store.keep(key, "now", value)
@@ -151,8 +151,8 @@ def test_of_files_with_any_byte_changed_the_same_is_found_or_nothing(kind, tmp_p
         path.write_bytes(whole)
 
 
-def test_only_claims_and_figures_that_a_study_declares_are_taken(tmp_path):
-    """Files of the report have their names."""
+def test_only_declared_claims_and_figures_are_accepted(tmp_path):
+    """Claims that are not declared are rejected, because files of the report have their names."""
     store = Store(tmp_path)
     for identity, taken in {"": True, "fig03/rests": True, "fig03/../../escaped": False}.items():
         findings = Findings((claim("c", "good", 0.0, 0.0, 0.0, identity=identity),))

@@ -1,4 +1,4 @@
-"""Processes that work for others: what they import, and what is known of their end."""
+"""Worker processes: their imports, and the reasons for their end."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ from compare.run.workers import Failure, Workers
 
 
 def last_words(status):
-    """End this process suddenly, with two lines on its standard error."""
+    """End this process abruptly, after two lines on its standard error."""
     os.write(2, "what comes before\nthe last word: 1 µm\n".encode())
     os._exit(status)
 
@@ -41,7 +41,7 @@ def close_all_descriptors(then, *arguments):
     then(*arguments)
 
 
-SUDDEN = "its process came to a sudden end"
+SUDDEN = "its process ended unexpectedly"
 
 ENDS = [
     (sys.exit, 0, "SystemExit: 0"),
@@ -59,15 +59,13 @@ POSIX_ENDS = [
 
 @pytest.fixture(scope="module")
 def workers():
-    """One process that works for several tests, and another one when it has ended."""
+    """One process for several tests, replaced if it ends."""
     with Workers() as workers:
         yield workers
 
 
 @pytest.mark.parametrize(("function", "argument", "reason"), [*ENDS, *POSIX_ENDS])
-def test_however_work_ends_its_process_that_is_a_sentence_and_no_traceback(
-    function, argument, reason, workers, capfd
-):
+def test_any_end_of_a_process_is_reported_without_a_traceback(function, argument, reason, workers, capfd):
     assert workers.ask(function, argument).reason == reason
     assert workers.ask(len, "next") == 4
     assert capfd.readouterr().err == ""
@@ -91,7 +89,7 @@ def leave_a_folder_and(end, *arguments):
 
 
 @pytest.mark.parametrize(("end", "argument"), [(len, ""), (os._exit, 1), (time.sleep, 3600.0)])
-def test_temporary_files_of_a_process_go_with_it_however_it_ends(end, argument, tmp_path, monkeypatch):
+def test_temporary_files_of_a_process_are_removed_however_it_ends(end, argument, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     with Workers(1, limit=3.0) as workers:
@@ -102,7 +100,7 @@ def test_temporary_files_of_a_process_go_with_it_however_it_ends(end, argument, 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The current folder, with an engine that has been imported from there."""
+    """The current folder, with an engine that was imported from it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     (tmp_path / "engine_of_this_folder.py").write_text("def simulate(): return 42\n")
@@ -116,19 +114,19 @@ def test_a_worker_imports_from_the_folder_of_the_engine(folder):
 
 
 @pytest.mark.parametrize("stray", ["random", "socket"])
-def test_a_stray_module_does_not_take_the_place_of_one_of_the_library(stray, folder):
+def test_a_stray_module_does_not_replace_a_library_module(stray, folder):
     (folder[0] / f"{stray}.py").write_text("raise SystemExit('the stray one was imported')\n")
     assert isinstance(done(tempfile.gettempdir), str)
 
 
-def test_a_sudden_end_is_told_with_the_last_line_of_the_standard_error(workers, capfd):
+def test_a_sudden_end_is_reported_with_the_last_line_on_standard_error(workers, capfd):
     assert workers.ask(last_words, 3) == Failure(
-        "its process came to a sudden end (exit status 3): the last word: 1 µm"
+        "its process ended unexpectedly (exit status 3): the last word: 1 µm"
     )
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
 
 
-def test_nothing_that_a_worker_writes_reaches_the_terminal_as_it_is(workers, capfd):
+def test_output_of_a_worker_is_made_printable(workers, capfd):
     assert workers.ask(speak, "\x1b[31m \x9b") is None
     assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
 
@@ -143,7 +141,7 @@ def spoil(module):
     return os.getpid()
 
 
-def test_a_process_that_worked_for_one_engine_works_for_no_other(workers):
+def test_a_process_never_works_for_two_engines(workers):
     spoilt = workers.ask(spoil, "json", owner="mine")
     assert workers.ask(os.getpid, owner="mine") == spoilt
     assert workers.ask(os.getpid) != spoilt
@@ -167,7 +165,7 @@ def start_a_child():
 
 
 def is_alive(number):
-    """Whether a process runs; one that has ended may wait for its new parent."""
+    """Return whether a process runs; zombies do not."""
     try:
         return "Z" not in Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:

@@ -6,7 +6,7 @@ from compare.cli import app as cli
 
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory):
-    """What is in the store of a sweep that nothing happened to; from then on the kernel is compiled for everyone."""
+    """Contents of the store of an undisturbed sweep; it also compiles the kernel for all tests."""
     folder = tmp_path_factory.mktemp("undisturbed")
     assert cli.status([*LONG, "--output", str(folder)]) == 0
     return content(folder / "sweep.zarr")

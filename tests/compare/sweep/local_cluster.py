@@ -32,9 +32,9 @@ def started(*arguments, signalled=""):
 
 @contextmanager
 def cluster(folder, workers, signalled=""):
-    """Yield a scheduler with so many workers of one thread; the first is to be ``signalled`` while it writes.
+    """Yield a scheduler with workers of one thread each; the first is ``signalled`` while it writes.
 
-    That has to be its first chunk if it must happen: others may take over all that it has not begun.
+    Choose its first chunk if the signal must occur, because other workers may take over all later ones.
     """
     file = folder / "scheduler.json"
     processes = [started("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))]

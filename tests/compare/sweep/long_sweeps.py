@@ -1,4 +1,4 @@
-"""Sweeps of many small chunks as processes, so that there is time to interfere, and what is in their stores."""
+"""Sweeps of many small chunks in separate processes, to allow interference, and the contents of their stores."""
 
 import resource
 import subprocess
@@ -17,17 +17,17 @@ from compare.sweep.quantities import RESULTS
 LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
 SIGNALLING = Path(__file__).with_name("signalling_sweep.py")
 CHUNKS = ["--chunk", "20"]
-"""Many small chunks, so that there is time to interfere."""
+"""Arguments with many small chunks, to allow interference."""
 
 
 def long_sweep(folder, *more, limit=None, signalled=None):
     """Start the command; ``limit`` is the largest file in bytes that it may write.
 
-    ``signalled`` are name of a signal, process (0 for itself) and number of the chunk that is half written then.
+    ``signalled`` contains the name of a signal, the process (0 for itself) and the number of the half-written chunk.
     """
     restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     command = REAL if signalled is None else [sys.executable, str(SIGNALLING), *map(str, signalled)]
-    # Python leaves compiled modules that are cut off there, at which every later process fails.
+    # Python would leave truncated compiled modules, and every later process would fail.
     whole = {} if limit is None else {"PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.Popen(
         [*command, *LONG, *CHUNKS, "--output", str(folder), *more],
@@ -40,7 +40,7 @@ def long_sweep(folder, *more, limit=None, signalled=None):
 
 
 def marks(folder: Path) -> set[str]:
-    """Return the chunks of which all results are written."""
+    """Return the chunks with complete results."""
     chunks = folder / "sweep.zarr" / "round-0"
     there = [{path.name for path in (chunks / name / "c").glob("*")} for name in RESULTS]
     return {chunk for chunk in set.intersection(*there) if chunk.isdigit()}
@@ -52,12 +52,12 @@ def finished_by(process):
 
 
 def resumed(folder, *more):
-    """Do the rest in this process, which has all libraries loaded, and return the exit status."""
+    """Complete the sweep in this process, which has all libraries loaded, and return the exit status."""
     return cli.status([*LONG, *CHUNKS, "--output", str(folder), "--resume", *more])
 
 
 def content(path):
-    """Return all arrays of a store by group and name; it is the file that it has become, if there is one."""
+    """Return all arrays of a store, packed or not, by group and name."""
     archive = Path(f"{path}.zip")
     store = ZipStore(archive, mode="r") if archive.exists() else path
     return {

@@ -1,9 +1,9 @@
-"""Sends a signal in the middle of writing a chunk of a sweep, however fast or slow the machine is.
+"""Sends a signal while a chunk of a sweep is being written, on machines of any speed.
 
-``python signalling_sweep.py NAME PID CHUNK ...`` is ``friction-discs`` with the arguments that follow: it sends the
-signal to a process, 0 for itself, when a part of the CHUNK-th chunk from its start is written, or, where others write
-them, when it is told of the CHUNK-th.
-``dask worker --preload signalling_sweep.py`` with NAME, PID and CHUNK in the variable SIGNALLED makes a worker do so.
+``python signalling_sweep.py NAME PID CHUNK ...`` runs ``friction-discs`` with the remaining arguments. It signals a
+process, 0 for itself, when its CHUNK-th chunk is partly written, or, if workers write the chunks, when the
+CHUNK-th is reported. ``dask worker --preload signalling_sweep.py`` with NAME, PID and CHUNK in the variable SIGNALLED
+makes a worker do the same.
 """
 
 import os
@@ -16,7 +16,7 @@ from compare.sweep.compute.executors import Cluster
 
 
 def signalling(name, process, chunk):
-    """Let this process send the signal while it writes its ``chunk``-th chunk, and write one after the other."""
+    """Send the signal while this process writes its ``chunk``-th chunk; chunks are written one after the other."""
     write, lock, written = Chunks.write, threading.Lock(), 0
 
     def counted(self, place, results):
@@ -48,6 +48,6 @@ def dask_setup(worker):
 if __name__ == "__main__":
     from compare.cli import app as cli
 
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # which is ignored in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # it is ignored in background processes
     signalling(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))
     cli.main(sys.argv[4:])

@@ -1,4 +1,4 @@
-"""The command line of sweeps: what it prints and draws, and stores that it leaves alone."""
+"""Command line of sweeps: output, figures, and stores that it must not overwrite."""
 
 import re
 from dataclasses import asdict
@@ -17,11 +17,11 @@ from compare.sweep.files import Files
 from compare.sweep.store import SweepStore
 from reference_model.orbits.shock import Shock
 
-SMALL = ["--until", "20"]  # most are undecided then
+SMALL = ["--until", "20"]  # leaves most undecided
 BASIN = ["sweep", "basin", "pin", "--x", "x=0:0.2:3", "--y", "vx=0:0.1:2", *SMALL]
 
 
-def test_help_has_the_axes_and_distributions_that_there_are(capsys):
+def test_help_lists_the_default_axes_and_all_distributions(capsys):
     for name, axes in (("basin", PLANES), ("map", MAPS)):
         cli.status(["sweep", name, "--help"])
         out = capsys.readouterr().out
@@ -34,12 +34,12 @@ def test_help_has_the_axes_and_distributions_that_there_are(capsys):
 
 
 @pytest.mark.parametrize("more", [[], ["--resume"]])
-def test_of_two_commands_that_begin_at_once_the_later_one_is_told(more, tmp_path, monkeypatch, capsys):
-    there = [set(), {"zarr.json"}]  # it is there when the store is made, and not when the command looks
+def test_the_later_of_two_simultaneous_commands_is_rejected(more, tmp_path, monkeypatch, capsys):
+    there = [set(), {"zarr.json"}]  # another process creates the store after the check
     monkeypatch.setattr(Files, "inside", lambda self, folder="": there.pop(0))
     assert cli.status([*BASIN, "--output", str(tmp_path), *more]) == 2
     place = str(tmp_path / STORE)
-    sentence = f"another command has just begun {place!r}: wait until it ends, or take another --output\n"
+    sentence = f"another command has just started {place!r}; wait until it ends, or choose another --output\n"
     assert capsys.readouterr() == ("", sentence)
 
 
@@ -58,7 +58,7 @@ def files(folder):
 
 
 def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch):
-    """All of it but a cluster of a batch system, which is the last block."""
+    """Run the examples except the last block, which needs a batch system."""
     (tmp_path / "basin").symlink_to(finished[0])
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
@@ -75,16 +75,14 @@ def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch)
 @pytest.mark.parametrize(
     ("more", "words"),
     [
-        ("", "is there already: --resume goes on with it, or take another --output"),
-        ("--seed 2 --resume", "belongs to another sweep: take another --output"),
-        ("--set mass=2", "belongs to another sweep: take another --output"),
+        ("", "already exists; use --resume to continue it, or choose another --output"),
+        ("--seed 2 --resume", "contains a different sweep; choose another --output"),
+        ("--set mass=2", "contains a different sweep; choose another --output"),
         ("--chunk 5 --resume", "chunk = 5: "),
-        ("--resume", "was computed by other code or libraries"),
+        ("--resume", "was computed by a different version of the code or libraries"),
     ],
 )
-def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(
-    more, words, finished, monkeypatch, capsys
-):
+def test_a_store_of_another_sweep_is_rejected_and_not_overwritten(more, words, finished, monkeypatch, capsys):
     folder, arguments = finished
     if words.endswith("libraries"):
         monkeypatch.setattr("compare.run.provenance.stamp", lambda: "other")
@@ -104,21 +102,21 @@ def test_a_store_of_another_sweep_is_refused_and_nothing_overwritten(
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",
 )
-def test_an_end_is_waited_for_as_long_as_the_help_says(more, until, monkeypatch, capsys):
+def test_the_default_duration_is_that_of_the_help(more, until, monkeypatch, capsys):
     plans = []
     monkeypatch.setattr("compare.cli.sweep.options.run_sweep", lambda plan, *others: plans.append(plan))
     cli.status(["sweep", "basin", *more])
     assert plans[0].duration == until
     cli.status(["sweep", "basin", "--help"])
     words = " ".join(capsys.readouterr().out.split())
-    assert "[default: (12000, of a disc on single points 1200)]" in words
+    assert "[default: (12000; 1200 for a disc on single points)]" in words
 
 
-def test_a_folder_that_is_no_store_is_refused_and_left_alone(capsys, tmp_path):
+def test_a_folder_that_is_not_a_store_is_rejected_and_kept(capsys, tmp_path):
     (tmp_path / STORE).mkdir()
     (tmp_path / STORE / "precious").write_text("data")
     assert cli.status([*BASIN, "--output", str(tmp_path), "--resume"]) == 2
-    assert "is no store of a sweep" in capsys.readouterr().err
+    assert "is not the store of a sweep" in capsys.readouterr().err
     assert [path.name for path in (tmp_path / STORE).iterdir()] == ["precious"]
 
 
@@ -135,7 +133,7 @@ def test_a_finished_sweep_prints_and_draws_the_same_again(finished, capsys):
     assert {name: (folder / name).read_bytes() for name in before} == before
 
 
-def test_parameters_and_the_other_components_are_taken(tmp_path):
+def test_parameters_and_other_components_are_accepted(tmp_path):
     more = ["--set", "damping=0.2", "--start", "y=0.05,vy=-0.1", "--output", str(tmp_path)]
     assert cli.status([*BASIN, *more]) == 0
     plan = SweepStore.open(tmp_path / STORE).plan
@@ -144,10 +142,10 @@ def test_parameters_and_the_other_components_are_taken(tmp_path):
     assert states.tolist() == [[x, 0.05, vx, -0.1] for vx in (0.0, 0.1) for x in (0.0, 0.1, 0.2)]
 
 
-def test_a_sweep_that_leaves_most_open_has_a_status_of_its_own(tmp_path, capsys):
+def test_a_mostly_undecided_sweep_has_its_own_status(tmp_path, capsys):
     output = str(tmp_path / "short")
     assert cli.status([*BASIN[:-2], "--until", "0.1", "--output", output]) == NOTHING_SHOWN
-    assert "100 % are undecided: raise --until" in capsys.readouterr().err
+    assert "100 % of the trajectories are undecided; use a larger --until" in capsys.readouterr().err
     assert cli.status(["sweep", "figures", output]) == NOTHING_SHOWN
 
 
@@ -165,19 +163,19 @@ def test_every_sweep_prints_and_draws_its_results(arguments, tmp_path, capsys):
     kind, *more = arguments.split()
     status = cli.status(["sweep", kind, *more, *SMALL, "--output", str(tmp_path)])
     assert status in (NOTHING_SHOWN, 1)
-    assert "of them by the plain reference" in capsys.readouterr().out
+    assert "trajectories by the plain reference" in capsys.readouterr().out
     for suffix in ("svg", "png"):
         assert (tmp_path / f"{kind}.{suffix}").stat().st_size > 5000
     assert {group for group, _ in content(tmp_path / STORE)} >= {"round-0", "check", "result"}
 
 
 @pytest.mark.parametrize(("bisected", "status"), [(0.1 + 2e-9, 0), (0.1 + 2e-7, 1)])
-def test_the_smallest_shock_is_told_and_whether_both_ways_agree(bisected, status, monkeypatch, capsys):
+def test_the_smallest_shock_is_printed_with_its_check(bisected, status, monkeypatch, capsys):
     monkeypatch.setattr("reference_model.smallest_shock", lambda pin, tolerance: Shock(pin, 0.06, -0.08))
     monkeypatch.setattr("reference_model.orbits.shock.by_bisection", lambda shock: bisected)
     assert cli.status(["sweep", "shock", "--set", "mass=2"]) == status
     assert capsys.readouterr().out == (
-        "smallest shock that leads to the whirl: 0.2 N s, a change of the velocity by 0.1 m/s, (0.06, -0.08) m/s\n"
+        "smallest shock that leads to the whirl: 0.2 N s, a velocity change of 0.1 m/s, (0.06, -0.08) m/s\n"
         "  direction: -53.13° from the x-axis\n"
-        f"  by bisection of ends: {bisected:.9g} m/s, relative difference {bisected / 0.1 - 1.0:.0e}\n"
+        f"  check by bisection: {bisected:.9g} m/s, relative difference {bisected / 0.1 - 1.0:.0e}\n"
     )

@@ -46,10 +46,10 @@ def test_no_point_of_the_boundary_is_nearer(shock):
 
 
 def test_what_has_no_such_boundary_is_refused(monkeypatch):
-    with pytest.raises(ValueError, match="no equilibrium to start from"):
+    with pytest.raises(ValueError, match="the self-centred equilibrium exists only"):
         smallest_shock(replace(FIG5, offset=0.0))
-    with pytest.raises(ValueError, match="this formula holds for a linear support only"):
+    with pytest.raises(ValueError, match="only linear supports are covered"):
         smallest_shock(replace(FIG5, hardening=3.0))
     monkeypatch.setattr("reference_model.orbits.shock.stick_slip_orbits", lambda pin, tolerance: ())
-    with pytest.raises(ValueError, match="0 saddle-type stick-slip orbits"):
+    with pytest.raises(ValueError, match="no saddle-type stick-slip orbit"):
         smallest_shock(FIG5)

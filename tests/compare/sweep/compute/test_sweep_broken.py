@@ -1,4 +1,4 @@
-"""What is said of stores whose files are missing, cut, or have other contents: all are mended or refused.
+"""Messages for stores with missing, truncated or changed files; all are repaired or rejected.
 
 ``test_sweep_store_states`` damages every file of a store.
 """
@@ -29,7 +29,7 @@ def most_may_be_undecided():
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The folder of a finished sweep whose store is a folder, and what is in it."""
+    """The folder of a finished sweep with an unpacked store, and its contents."""
     folder = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(store, "SMALL", 0)
@@ -77,7 +77,7 @@ def another_seed(path):
 
 
 def foreign(**changes):
-    """Return what makes an array another one, in a group whose checksum is right."""
+    """Return a function that changes the description of an array and corrects the group's checksum."""
 
     def described(path):
         path.write_text(json.dumps(json.loads(path.read_text()) | changes))
@@ -87,7 +87,7 @@ def foreign(**changes):
     return described
 
 
-PICKLE = [{"name": "numcodecs.pickle"}]  # runs code of whoever wrote the array
+PICKLE = [{"name": "numcodecs.pickle"}]  # may run foreign code
 
 MENDED = [
     (foreign(codecs=PICKLE), "result/time/zarr.json", "result"),
@@ -96,7 +96,7 @@ MENDED = [
     (foreign(storage_transformers=PICKLE), "check/time/zarr.json", "check"),
     (foreign(codecs=PICKLE), "round-0/end/zarr.json", "the description of round-0"),
     (foreign(codecs=[{"name": "bytes"}]), "round-0/end/zarr.json", "the description of round-0"),
-    (empty, "round-0/end/c/1", "of 3 chunks of round-0 these: 1"),
+    (empty, "round-0/end/c/1", "round-0: chunk 1 (of 3)"),
     (another_unit, "round-0/time/zarr.json", "the description of round-0"),
     (remove, "round-0/time", "the description of round-0"),
     (one_bit, "result/time/c/0/0/0", "result"),
@@ -108,7 +108,7 @@ NAMES = [f"{how.__name__} {file}" for how, file, _ in MENDED]
 
 
 @pytest.mark.parametrize(("how", "file", "broken"), MENDED, ids=NAMES)
-def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, whole, capsys):
+def test_damage_is_reported_and_recomputed(how, file, broken, copied, whole, capsys):
     path = copied / STORE
     before = (path / file).read_bytes() if (path / file).is_file() else None
     how(path / file)
@@ -116,16 +116,16 @@ def test_what_is_broken_is_told_and_computed_again(how, file, broken, copied, wh
     assert cli.status(["sweep", "figures", str(copied)]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
-    assert err == f"{str(path)!r} is broken ({broken}): --resume computes that again\n"
+    assert err == f"{str(path)!r} is damaged ({broken}); repeat the sweep with --resume to recompute it\n"
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
-    assert capsys.readouterr().err == f"{str(path)!r} was broken and is computed again: {broken}\n"
+    assert capsys.readouterr().err == f"recomputed damaged parts of {str(path)!r}: {broken}\n"
     assert_same(content(path), whole[1])
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.filterwarnings("ignore:Object at .* is not recognized")  # zarr lists the folder
-def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
+@pytest.mark.filterwarnings("ignore:Object at .* is not recognized")  # because zarr lists the folder
+def test_additional_arrays_of_another_format_are_not_opened(copied):
     for folder in ("", "result", "result/time", "round-0/end"):
         (copied / STORE / folder / ".zarray").write_text(
             '{"zarr_format": 2, "shape": [1], "chunks": [1], "dtype": "|O", "filters": [{"id": "pickle"}]}'
@@ -134,7 +134,7 @@ def test_arrays_of_another_format_beside_ours_are_not_opened(copied):
 
 
 @pytest.mark.parametrize("how", [empty, garble, remove, another_seed])
-def test_a_store_whose_plan_is_broken_is_refused_and_left_as_it_is(how, copied, capsys):
+def test_a_store_with_a_damaged_plan_is_rejected_and_kept(how, copied, capsys):
     file = copied / STORE / "zarr.json"
     before = file.read_bytes()
     how(file)
@@ -148,21 +148,21 @@ def assert_refused(folder, capsys):
         assert cli.status(arguments) == 2
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1)
-        assert "broken" in err
+        assert "damaged" in err
     assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == left
 
 
-def test_what_is_gone_is_computed_again(copied, whole, capsys):
+def test_missing_parts_are_recomputed(copied, whole, capsys):
     remove(copied / STORE / "round-0/end/c/1")
     assert cli.status(["sweep", "figures", str(copied)]) == 2
-    assert "is not finished: --resume goes on with it" in capsys.readouterr().err
+    assert "is not finished; repeat it with --resume to complete it" in capsys.readouterr().err
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     assert_same(content(copied / STORE), whole[1])
 
 
 @pytest.fixture
 def packed(copied, monkeypatch, capsys):
-    """The same sweep as one file."""
+    """The same sweep, packed into one file."""
     monkeypatch.setattr(store, "SMALL", 10)
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     capsys.readouterr()
@@ -175,7 +175,7 @@ def test_a_small_sweep_is_one_file(packed, whole):
 
 
 @pytest.mark.parametrize("name", ["round-0/states/c/1/0", "check/time/zarr.json"])
-def test_a_file_of_which_a_part_is_broken_is_mended(name, packed, whole, capsys):
+def test_a_partly_damaged_file_is_repaired(name, packed, whole, capsys):
     content_of, before = bytearray(packed.read_bytes()), packed.read_bytes()
     content_of[before.index(name.encode()) + len(name) + 20] ^= 1
     packed.write_bytes(content_of)
@@ -188,6 +188,6 @@ def test_a_file_of_which_a_part_is_broken_is_mended(name, packed, whole, capsys)
 
 
 @pytest.mark.parametrize("how", [empty, cut])
-def test_a_file_that_is_no_archive_any_more_is_refused_and_left_as_it_is(how, packed, capsys):
+def test_a_damaged_archive_is_rejected_and_kept(how, packed, capsys):
     how(packed)
     assert_refused(packed.parent, capsys)

@@ -22,17 +22,15 @@ from compare.sweep.quantities import Axis
 from compare.sweep.store import SweepStore
 
 
-def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
-    undisturbed, tmp_path, monkeypatch, capsys
-):
-    """In an object store, that of fsspec for files, which needs no server."""
-    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # the chunks stay files
+def test_results_survive_a_killed_driver_and_a_killed_worker(undisturbed, tmp_path, monkeypatch, capsys):
+    """Store in fsspec's local file system, which needs no server."""
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     url = f"file://{tmp_path}"
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
         driver = long_sweep(url, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
         written = marks(tmp_path)
-        assert len(written) >= 11  # of workers, which go on for a moment
+        assert len(written) >= 11  # workers continue for a moment
 
         code = resumed(url, "--scheduler", local.address)
         assert local.workers[0].poll() == -signal.SIGKILL
@@ -46,15 +44,13 @@ def test_killed_driver_and_killed_worker_leave_the_results_as_they_are(
     assert finished(store)
     store.files.write({"round-0/end/c/3": store.files.read("round-0/end/c/4") + b"more"})
     assert not finished(store)
-    assert store.broken == ["of 60 chunks of round-0 these: 3"]
+    assert store.broken == ["round-0: chunk 3 (of 60)"]
 
 
-def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
-    undisturbed, tmp_path, monkeypatch, capsys
-):
+def test_a_lost_scheduler_is_reported_and_the_sweep_can_continue(undisturbed, tmp_path, monkeypatch, capsys):
     with cluster(tmp_path, workers=1) as local, monkeypatch.context() as patch:
         for owner, name in ((Chunks, "write"), (Cluster, "run")):
-            patch.setattr(owner, name, getattr(owner, name))  # to be undone
+            patch.setattr(owner, name, getattr(owner, name))  # restored after the test
         signalling("SIGKILL", local.scheduler.pid, 10)
         code = cli.status([*LONG, *CHUNKS, "--output", str(tmp_path), "--scheduler", local.address])
     out, err = capsys.readouterr()
@@ -65,19 +61,22 @@ def test_a_lost_scheduler_is_told_and_the_sweep_goes_on_without_it(
     assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
 
 
-def test_a_scheduler_that_is_not_there_is_told_in_time(tmp_path, capsys):
+def test_a_missing_scheduler_is_reported_in_time(tmp_path, capsys):
     with socket.socket() as other:
-        other.bind(("127.0.0.1", 0))  # so that nobody else listens there
+        other.bind(("127.0.0.1", 0))  # reserves the port without listening
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
         clock = time.monotonic()
         code = cli.status([*LONG, "--scheduler", address, "--output", str(tmp_path)])
     assert time.monotonic() - clock < 10.0
     assert code == 2
-    assert capsys.readouterr() == ("", f"no Dask scheduler answers at {address}: start one, dask scheduler\n")
+    assert capsys.readouterr() == (
+        "",
+        f"no Dask scheduler answers at {address}; start one with: dask scheduler\n",
+    )
     assert not (tmp_path / "sweep.zarr").exists()
 
 
-def test_who_listens_but_says_nothing_is_no_scheduler(monkeypatch):
+def test_a_silent_server_is_not_a_scheduler(monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 0.5)
     with socket.socket() as mute:
         mute.bind(("127.0.0.1", 0))
@@ -88,11 +87,11 @@ def test_who_listens_but_says_nothing_is_no_scheduler(monkeypatch):
     assert time.monotonic() - clock < 5.0
 
 
-def test_a_scheduler_without_workers_is_told(tmp_path, monkeypatch):
+def test_a_scheduler_without_workers_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(executors, "WAIT", 2.0)
     with (
         cluster(tmp_path, workers=0) as local,
-        pytest.raises(ClusterError, match="has no workers: start some"),
+        pytest.raises(ClusterError, match="has no workers; start one"),
     ):
         Cluster(local.address)
 
@@ -106,7 +105,7 @@ def store(tmp_path):
 
 
 class Elsewhere(InProcess):
-    """Workers where something is not what it is here."""
+    """Workers with a difference from this process."""
 
     def __init__(self, otherwise):
         self.otherwise = otherwise
@@ -117,24 +116,24 @@ class Elsewhere(InProcess):
             yield task.key, task.function(*task.arguments)
 
 
-def test_a_worker_with_other_code_is_refused_and_writes_nothing(store, tmp_path, monkeypatch):
+def test_a_worker_with_different_code_is_rejected_and_writes_nothing(store, tmp_path, monkeypatch):
     other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.stamp", lambda: "other"))
-    with pytest.raises(OtherCodeError, match="other code or libraries than this process"):
+    with pytest.raises(OtherCodeError, match="a different version of the code or libraries"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 
 
-def test_a_worker_that_has_another_store_at_that_place_is_refused(store, tmp_path):
+def test_a_worker_with_a_different_store_at_that_path_is_rejected(store, tmp_path):
     other = Elsewhere(lambda: (tmp_path / "sweep.zarr" / DESCRIPTION).write_text("{}"))
-    with pytest.raises(StoreError, match="--output must be a folder that all share, or an object store"):
+    with pytest.raises(StoreError, match="--output must be a shared folder or an object store"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
 
 
-def test_who_comes_second_does_not_make_the_store_again(store):
+def test_the_second_process_does_not_create_the_store_again(store):
     before = store.files.read(DESCRIPTION)
     with pytest.raises(FileExistsError):
         SweepStore.create(store.path, store.plan, 2)
-    with pytest.raises(FileExistsError):  # also where both have found nothing
+    with pytest.raises(FileExistsError):  # also if both failed
         store.files.claim(DESCRIPTION, b"other")
     assert store.files.read(DESCRIPTION) == before

@@ -1,4 +1,4 @@
-"""Motions along one parameter: told apart, matched from value to value, beside those that formulas give."""
+"""Motions along one parameter: separated, matched between values, and compared with formulas."""
 
 from dataclasses import replace
 
@@ -32,7 +32,7 @@ PLAN = Continuation(
 )
 
 
-def test_motions_that_end_as_the_same_are_told_apart_by_their_radii():
+def test_motions_with_equal_ends_are_separated_by_their_radii():
     ends = np.array([EndState.WHIRL] * 4 + [EndState.UNDECIDED, EndState.STUCK, EndState.STUCK], dtype="u1")
     largest = np.array([0.5, 1.0, 0.501, 0.502, np.nan, 0.1, 0.4])
     found = motions_of(ends, 0.5 * largest, largest)
@@ -43,8 +43,8 @@ def test_motions_that_end_as_the_same_are_told_apart_by_their_radii():
     ]
 
 
-def test_motions_are_matched_by_where_they_were_going():
-    # two that cross, as lines do, and one of another kind that is there at two values
+def test_motions_are_matched_by_extrapolation():
+    # two crossing lines, and a motion of another kind at two values
     up, down = (lambda i: Motion(2, 1, 0.0, 1.0 + 0.1 * i)), (lambda i: Motion(2, 1, 0.0, 1.5 - 0.1 * i))
     found = [[up(i), down(i)] if i % 2 else [down(i), up(i)] for i in range(6)]
     found[3].append(Motion(1, 1, 0.0, 1.3))
@@ -63,7 +63,7 @@ def test_motions_that_differ_in_one_radius_only_are_matched_by_that(radius):
     assert (first, second) == (dict.fromkeys(range(4), one), dict.fromkeys(range(4), other))
 
 
-def test_what_jumps_begins_a_new_branch():
+def test_a_jump_begins_a_new_branch():
     found = [[Motion(2, 1, 0.0, radius)] for radius in (1.0, 1.0, 0.5, 0.5)]
     assert [sorted(branch) for branch in matched(found, lambda motion: motion.end)] == [[0, 1], [2, 3]]
 
@@ -96,7 +96,7 @@ def test_shares_and_radii_along_the_speed(store):
             assert found == list(expected[end])
     assert result["motion_end"].values.tolist() == [EndState.SELF_CENTRED, EndState.WHIRL]
     share = result["motion_share"].values
-    assert share[0, 0] == 1.0  # no start whirls at the lowest speed, and more and more do
+    assert share[0, 0] == 1.0  # no start whirls at the lowest speed; their number increases
     assert np.isnan(share[1, 0])
     assert np.all(np.diff(share[1, 1:]) >= 0.0)
     assert np.all(result["motion_share_low"].values[1, 1:] < share[1, 1:])
@@ -124,7 +124,7 @@ def test_branches_without_offset_are_those_of_the_formulas():
 def test_each_motion_has_a_line(store):
     lines = [line for line in summary(store) if "disc_speed from" in line]
     assert len(lines) == 2
-    # with 50 starts the last speed at which one comes to rest is the last but one
+    # with 50 starts, the last speed at which one comes to rest is the last but one
     assert lines[0] == (
         "  self centred   disc_speed from 1.05 to 2.35 rad/s: largest radius 0.04359 to 0.04359 m, "
         "share 100.00 to 2.00 %"

@@ -43,10 +43,10 @@ def test_curves_of_a_disc_pass_through_the_crossings_that_the_reference_finds():
             distance = np.hypot(
                 (found[:, 0] - FIG11.disc_speed) / (x.high - x.low), (found[:, 1] - load) / (y.high - y.low)
             )
-            assert np.min(distance) < 0.03  # that of neighbouring points
+            assert np.min(distance) < 0.03  # distance of neighbouring points
 
 
-def test_a_plane_that_the_reference_does_not_know_has_the_curves_that_remain():
+def test_a_plane_that_the_reference_does_not_support_has_the_other_curves():
     x, y = Axis("disc_speed", -1.0, 2.0, 3), Axis("contact_radius", 0.01, 0.5, 3)
     plan = Map(system=FIG11, starts=((0.0,) * 6,), x=x, y=y, **COMMON)
     (only,) = {curve.meaning for curve in curves(plan)}

@@ -1,4 +1,4 @@
-"""Sweeps that are killed, interrupted, or run out of disk, as processes of their own."""
+"""Sweeps in separate processes that are killed, interrupted or run out of disk space."""
 
 import signal
 from shutil import copytree
@@ -9,7 +9,7 @@ from long_sweeps import assert_same, content, finished_by, long_sweep, marks, re
 
 @pytest.fixture(scope="module")
 def interrupted(undisturbed, tmp_path_factory):
-    """The folder of a sweep that was interrupted from the keyboard, its exit status and what it said."""
+    """The folder of a sweep interrupted by Ctrl-C, its exit status and its output."""
     folder = tmp_path_factory.mktemp("interrupted")
     return folder, finished_by(long_sweep(folder, signalled=("SIGINT", 0, 11)))
 
@@ -20,33 +20,33 @@ def unfinished(interrupted, tmp_path):
     return copytree(interrupted[0], tmp_path / "unfinished")
 
 
-def test_an_interrupt_from_the_keyboard_is_told(interrupted):
+def test_a_keyboard_interrupt_is_reported(interrupted):
     code, out, err = interrupted[1]
-    assert (code, out, said(err)) == (130, "", ["Interrupted. The same command with --resume goes on."])
+    assert (code, out, said(err)) == (130, "", ["Interrupted. Repeat the command with --resume to continue."])
 
 
 def said(err):
-    """Return the lines on standard error but for those of a slow machine and of old versions of a library.
+    """Return the lines on standard error, except for compilation notes and warnings at import.
 
-    The first say that something is compiled, which takes long to load there; the others are warnings at import.
+    Compilation notes appear on slow machines, warnings with old versions of a library.
     """
     lines = (line for line in err.splitlines() if not line.startswith((" ", "Compiling for this machine")))
     return [line for line in lines if "Warning" not in line]
 
 
-def test_interrupted_and_then_killed_a_sweep_comes_to_the_same_results(undisturbed, unfinished):
+def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_kill(undisturbed, unfinished):
     written = times(unfinished)
     process = long_sweep(unfinished, "--resume", signalled=("SIGKILL", 0, 11))
     assert finished_by(process)[0] == -signal.SIGKILL
     now = times(unfinished)
     assert len(now) == len(written) + 10
-    assert {mark: now[mark] for mark in written} == written  # nothing was written once more
+    assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
     assert resumed(unfinished) == 0
     assert_same(content(unfinished / "sweep.zarr"), undisturbed)
 
 
 def times(folder):
-    """Return when the files of all chunks that are whole were written."""
+    """Return the times at which the files of complete chunks were written."""
     chunks = folder / "sweep.zarr" / "round-0"
     return {
         mark: [(chunks / name / "c" / mark).stat().st_mtime_ns for name in ("end", "time", "steps")]
@@ -54,13 +54,13 @@ def times(folder):
     }
 
 
-def test_a_disk_that_takes_no_more_is_told_and_what_is_written_stays_valid(undisturbed, unfinished):
+def test_a_full_disk_is_reported_and_written_results_stay_valid(undisturbed, unfinished):
     before = marks(unfinished)
     code, out, err = finished_by(long_sweep(unfinished, "--resume", limit=100))
     assert (code, out) == (2, "")
     path = unfinished / "sweep.zarr"
     (line,) = said(err)
-    assert line.startswith(f"can't write to {str(path)!r}: File too large. What is written stays")
+    assert line.startswith(f"cannot write to {str(path)!r}: File too large. Results written so far remain")
     assert marks(unfinished) == before
     assert resumed(unfinished) == 0
     assert_same(content(path), undisturbed)

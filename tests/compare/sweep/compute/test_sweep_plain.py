@@ -1,4 +1,4 @@
-"""Ends of single trajectories of the plain reference, for motions whose ends the theory knows."""
+"""Ends of single trajectories of the plain reference for motions with known ends."""
 
 from dataclasses import replace
 
@@ -47,7 +47,7 @@ ENDS = {
 
 
 @pytest.mark.parametrize(("system", "start", "duration", "expected"), ENDS.values(), ids=ENDS)
-def test_the_end_is_the_one_that_theory_knows(system, start, duration, expected):
+def test_the_end_is_that_of_the_theory(system, start, duration, expected):
     assert end(system, start, duration) == expected
 
 
@@ -56,7 +56,7 @@ def test_the_modulated_cycle_of_fig_11():
 
 
 @pytest.mark.parametrize("duration", [20.0, 200.0])
-def test_a_pin_that_creeps_to_the_sticking_radius_for_ever_is_no_whirl(duration):
+def test_a_pin_that_creeps_to_the_sticking_radius_is_not_a_whirl(duration):
     # β² > 4m(C − mω²): slip dies out like exp(−λt), λ = 0.92/s, and never ends.
     pin = PinOnDisc(mass=1.0, stiffness=4.0, damping=5.0, friction_force=0.4, disc_speed=0.5)
     start = (0.12, 0.0, 0.0, 0.06)
@@ -65,7 +65,7 @@ def test_a_pin_that_creeps_to_the_sticking_radius_for_ever_is_no_whirl(duration)
 
 
 @pytest.mark.parametrize(("system", "start"), [STICKING, SLIPPING], ids=["sticking", "slipping"])
-def test_a_motion_that_is_simulated_on_is_the_same_as_at_once(system, start):
+def test_a_continued_motion_equals_one_simulated_at_once(system, start):
     motion = twice_as_long(plain_trajectory(system, np.array(start), 3.0, 60.0, 1e-10))
     assert motion.times[[0, -1]].tolist() == [0.0, 120.0]
     assert 3.0 in motion.times
@@ -77,7 +77,7 @@ def test_a_motion_that_is_simulated_on_is_the_same_as_at_once(system, start):
 
 
 def recomputed(monkeypatch, start, time, end):
-    """Return what a start of Fig. 5 comes to and the durations that were simulated for it."""
+    """Return the end of a start of Fig. 5, and the durations of its simulations."""
     durations = []
 
     def watching(function):
@@ -95,25 +95,25 @@ def recomputed(monkeypatch, start, time, end):
     return recompute(plan, 0, time, end), durations
 
 
-def test_a_motion_is_watched_for_as_long_again_as_the_kernel_took(monkeypatch):
+def test_a_motion_is_simulated_twice_as_long_as_the_kernel_needed(monkeypatch):
     found, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 200.0, EndState.WHIRL)
     assert (found.end, durations) == (EndState.WHIRL, [400.0])
     at_time = simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 200.0]).states[-1]
     np.testing.assert_allclose(found.state, at_time, atol=1e-7)
 
 
-def test_a_motion_is_watched_for_longer_and_longer_before_it_counts_as_another(monkeypatch):
+def test_the_duration_is_doubled_before_an_end_counts_as_different(monkeypatch):
     found, durations = recomputed(monkeypatch, FIG5_STARTS["equilibrium"], 1.0, EndState.STUCK)
     first = 2.0 * LEAST_TURNS * 2.0 * np.pi / FIG5.disc_speed
     assert found.end == EndState.SELF_CENTRED
     np.testing.assert_allclose(durations, first * 2.0 ** np.arange(DOUBLINGS + 1))
 
 
-def test_what_is_undecided_is_simulated_up_to_its_time_only(monkeypatch):
+def test_an_undecided_motion_is_simulated_up_to_its_time_only(monkeypatch):
     _, durations = recomputed(monkeypatch, FIG5_STARTS["whirl"], 50.0, EndState.UNDECIDED)
     assert durations == [50.0]
 
 
-def test_what_never_turns_is_watched_too():
+def test_a_motion_without_turns_is_checked_too():
     resting = replace(FIG5, stiffness=1e-300, disc_speed=0.0)
     assert watched_until(resting, 0.0, 7.0) == 2.0 * LEAST_TURNS * 2.0 * np.pi * 7.0

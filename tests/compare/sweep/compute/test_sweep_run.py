@@ -1,4 +1,4 @@
-"""Sweeps in this process: what is in their stores, and resumption."""
+"""Sweeps in this process: contents of their stores, and resumption."""
 
 import json
 import time
@@ -45,7 +45,7 @@ def silent(what, done, total):
 
 
 class Recording(InProcess):
-    """Remembers the arguments of its tasks, and may be interrupted after some of them."""
+    """Records the arguments of its tasks, and may be interrupted after some of them."""
 
     def __init__(self, until=10**9):
         self.calls, self.until = [], until
@@ -78,7 +78,7 @@ def test_chunks_of_any_size_give_the_same_store_to_the_last_bit(plan, tmp_path):
     assert_same(content(tmp_path / "7"), content(tmp_path / "1000"))
 
 
-def test_a_basin_is_labelled_and_its_points_end_as_the_plain_reference_says(tmp_path):
+def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(tmp_path):
     result = swept(tmp_path / "s", BASIN, 50).get("result")
     assert dict(result.sizes) == {"vx": 9, "x": 17, "end_state": len(EndState)}
     assert (result["x"].attrs["units"], result["vx"].attrs["units"]) == ("m", "m/s")
@@ -92,7 +92,7 @@ def test_a_basin_is_labelled_and_its_points_end_as_the_plain_reference_says(tmp_
         assert int(point["end"]) == (EndState.WHIRL if circles else EndState.SELF_CENTRED)
 
 
-def test_numbers_of_a_basin_stand_at_their_points_and_only_where_it_was_simulated(tmp_path):
+def test_results_of_a_basin_are_at_their_simulated_points_only(tmp_path):
     result = swept(tmp_path / "s", BASIN, 50).get("result")
     simulated = result["simulated"].values.astype(bool)
     assert 0 < np.count_nonzero(simulated) < simulated.size
@@ -105,7 +105,7 @@ def test_numbers_of_a_basin_stand_at_their_points_and_only_where_it_was_simulate
     assert len(np.unique(alone["time"])) > 20
 
 
-def test_power_of_friction_on_the_whirl_is_that_of_its_slip(tmp_path):
+def test_friction_power_of_the_whirl_is_that_of_its_slip(tmp_path):
     centred = replace(MAP, system=replace(FIG5, offset=0.0), starts=((1.0, 0.0, 0.0, 1.0),))
     result = swept(tmp_path / "s", centred, 50).get("result").sel(start=0)
     speed, load = np.meshgrid(result["disc_speed"], result["friction_force"])
@@ -118,7 +118,7 @@ def test_power_of_friction_on_the_whirl_is_that_of_its_slip(tmp_path):
     assert np.max(result["modulation"]) < 1e-3
 
 
-def test_a_store_tells_how_it_was_made(tmp_path):
+def test_a_store_contains_its_provenance(tmp_path):
     swept(tmp_path / "s", RANDOM, 50)
     attributes = zarr.open_group(tmp_path / "s", mode="r").attrs
     plan = json.loads(attributes["plan"])
@@ -150,7 +150,7 @@ def test_the_check_has_every_trajectory_from_its_own_round(tmp_path, monkeypatch
         np.testing.assert_array_equal(check[name], result[name].values.flat[numbers])
 
 
-def test_a_kernel_that_is_wrong_is_found_by_the_plain_reference(tmp_path, monkeypatch):
+def test_the_plain_reference_detects_a_wrong_kernel(tmp_path, monkeypatch):
     def wrong(*arguments):
         found = compute(*arguments)
         return found | {
@@ -164,12 +164,12 @@ def test_a_kernel_that_is_wrong_is_found_by_the_plain_reference(tmp_path, monkey
     np.testing.assert_allclose(difference, np.tile([0.0, 0.0, 0.0, 0.01], (len(difference), 1)), atol=1e-6)
     assert not same_ends(store)
     assert (
-        f"{len(difference)} of them by the plain reference: {len(difference)} end differently"
+        f"check of {len(difference)} trajectories by the plain reference: {len(difference)} end differently"
         in list(summary(store))[-1]
     )
 
 
-def test_likelihood_of_the_whirl_and_what_it_depends_on(tmp_path):
+def test_probability_of_the_whirl_and_its_sensitivities(tmp_path):
     varied = (
         Uncertain.parse("vx=uniform(-0.4, 0.4)", FIG5),
         Uncertain.parse("mass=uniform(0.999, 1.001)", FIG5),
@@ -189,14 +189,14 @@ def test_likelihood_of_the_whirl_and_what_it_depends_on(tmp_path):
     )
     by_speed, by_mass = (result["sobol_total"].sel(uncertain=name).values for name in ("vx", "mass"))
     assert np.all(by_speed > 10.0 * np.abs(by_mass))
-    for i in (0, 200, 511):  # what is labelled belongs together
+    for i in (0, 200, 511):  # labelled arrays are consistent
         pin = replace(FIG5, mass=float(result["mass"][i]))
         start = [0.1, 0.0, float(result["vx"][i]), 0.0]
         motion = plain_trajectory(pin, np.array(start), 1.0, 400.0, 1e-9)
         assert end_of(motion) == int(result["end"][i])
 
 
-def test_an_interrupted_sweep_goes_on_without_computing_anything_twice(tmp_path):
+def test_an_interrupted_sweep_continues_without_repeating_work(tmp_path):
     whole, first, second = Recording(), Recording(until=5), Recording()
     swept(tmp_path / "whole", BASIN, 7, whole)
     with pytest.raises(KeyboardInterrupt):
@@ -208,7 +208,7 @@ def test_an_interrupted_sweep_goes_on_without_computing_anything_twice(tmp_path)
     assert_same(content(tmp_path / "s"), content(tmp_path / "whole"))
 
 
-def test_a_chunk_of_which_a_file_is_missing_is_computed_again(tmp_path):
+def test_a_chunk_with_a_missing_file_is_recomputed(tmp_path):
     swept(tmp_path / "s", RANDOM, 7)
     before = content(tmp_path / "s")
     (tmp_path / "s" / "round-0" / "steps" / "c" / "3").unlink()
@@ -219,7 +219,7 @@ def test_a_chunk_of_which_a_file_is_missing_is_computed_again(tmp_path):
 
 
 @pytest.mark.parametrize(("compiled", "at_once"), [(True, AT_ONCE), (False, 1)])
-def test_only_what_is_compiled_runs_side_by_side(compiled, at_once):
+def test_only_compiled_tasks_run_in_parallel(compiled, at_once):
     running, most = [], []
 
     def work(number):

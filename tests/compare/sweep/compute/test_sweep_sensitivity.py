@@ -10,7 +10,7 @@ def ishigami(x):
 
 
 def table_of(function, rows, quantities):
-    """Return the results of the plan's arrangement for numbers that are uniform between −π and π."""
+    """Return the results in the plan's design for uniform numbers between −π and π."""
     uniform = np.pi * (2.0 * uniform_rows(2, 0, rows, 2 * quantities) - 1.0)
     first, second = uniform[:, :quantities], uniform[:, quantities:]
     columns = [function(first), function(second)]
@@ -22,7 +22,7 @@ def table_of(function, rows, quantities):
 
 
 def indices_of(table, blocks=GROUPS):
-    """Return the indices of a table, shape (rows, 2 + quantities), that is seen block by block."""
+    """Return the indices of a table, shape (rows, 2 + quantities), computed block by block."""
     return indices([moments(part[np.newaxis]) for part in np.split(table, blocks)])
 
 
@@ -33,7 +33,7 @@ def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
     second = 49.0 / 8.0
     both = 0.01 * np.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
     variance = first + second + both
-    # twice the interval of 95 % that is given
+    # twice the 95 % interval
     assert np.all(
         np.abs(found.first[0] - np.array([first, second, 0.0]) / variance) < 2.0 * found.first_error[0]
     )
@@ -44,17 +44,19 @@ def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
 
 def test_intervals_close_with_the_root_of_the_number_of_rows():
     few, many = (np.mean(indices_of(table_of(ishigami, n, 3)).first_error) for n in (2**10, 2**14))
-    assert 2.0 < few / many < 8.0  # 4, by 16 groups' scatter
+    assert 2.0 < few / many < 8.0  # 4, from the scatter of 16 groups
 
 
-def test_what_does_not_vary_has_no_indices():
+def test_a_constant_result_has_no_indices():
     found = indices_of(np.ones((256, 4)))
     assert np.all(np.isnan(found.first))
     assert np.all(np.isnan(found.total))
 
 
-def test_block_by_block_they_are_those_of_scipy():
-    table = 1e4 + table_of(ishigami, 2**10, 3)  # a mean that would leave no digits of a sum of squares
+def test_indices_computed_by_blocks_equal_those_of_scipy():
+    table = 1e4 + table_of(
+        ishigami, 2**10, 3
+    )  # a large mean would cancel all digits of a plain sum of squares
     scipy = sobol_indices(
         func={"f_A": table[:, 0:1].T, "f_B": table[:, 1:2].T, "f_AB": table[:, 2:].T[:, np.newaxis]}, n=2**10
     )

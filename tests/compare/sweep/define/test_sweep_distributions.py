@@ -9,7 +9,7 @@ from compare.sweep.distributions import Uncertain, uniform_rows
 
 DRAWS = 20_000
 NEVER = 1e-6
-"""Probability with which a right sample would be refused."""
+"""Probability of rejecting a correct sample."""
 
 
 @pytest.mark.parametrize(
@@ -42,7 +42,7 @@ def test_the_table_of_random_numbers_is_uniform_without_correlation():
 
 
 @pytest.mark.parametrize("width", [1, 4, 5])
-def test_any_part_of_the_table_is_the_same_made_alone(width):
+def test_any_part_of_the_table_can_be_computed_separately(width):
     whole = uniform_rows(7, 0, 100, width)
     np.testing.assert_array_equal(uniform_rows(7, 37, 11, width), whole[37:48])
 
@@ -58,20 +58,20 @@ def test_zero_among_the_random_numbers_gives_a_finite_value():
         ("offset=normal(0.1", "write it as NAME=DISTRIBUTION"),
         ("offest=normal(0.1, 0.2)", "did you mean 'offset'?"),
         ("offset=norml(0.1, 0.2)", "did you mean 'normal'?"),
-        ("offset=normal(0.1)", "it takes (mean, deviation) with deviation > 0"),
+        ("offset=normal(0.1)", "normal takes (mean, deviation) with deviation > 0"),
         ("offset=normal(0.1, 0)", "with deviation > 0"),
         ("offset=normal(0.1, x)", "offset = ' x': it must be a number"),
         ("offset=uniform(2, 1)", "with low < high"),
         ("offset=triangular(1, 3, 2)", "with low <= mode <= high"),
         (
             "friction_force=normal(0.09, 0.01)",
-            "it allows friction_force = -inf, and it must be >= 0; truncnorm",
+            "includes friction_force = -inf, but it must be >= 0; use truncnorm",
         ),
-        ("mass=uniform(0, 1)", "it allows mass = 0, and it must be > 0"),
+        ("mass=uniform(0, 1)", "includes mass = 0, but it must be > 0"),
         ("hardening=uniform(0, 1)", "unknown parameter or component 'hardening'"),
         ("contact_points=uniform(3, 6)", "unknown parameter or component 'contact_points'"),
     ],
 )
-def test_what_is_no_possible_distribution_is_refused(text, words):
+def test_an_invalid_distribution_is_rejected(text, words):
     with pytest.raises(ValueError, match=re.escape(words)):
         Uncertain.parse(text, FIG11 if "contact_points" in text else FIG5)

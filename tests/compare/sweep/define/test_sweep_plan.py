@@ -109,6 +109,6 @@ def test_an_axis_has_its_ends_and_equal_steps():
         ("vx=0:1:2.5", "the number of points must be a whole number"),
     ],
 )
-def test_what_is_no_axis_is_refused(text, words):
+def test_an_invalid_axis_is_rejected(text, words):
     with pytest.raises(ValueError, match=re.escape(words)):
         Axis.parse(text, "component", ("x", "vx"))

@@ -1,4 +1,4 @@
-"""Regions whose boundaries are known take the place of basins."""
+"""Refinement of regions with known boundaries instead of basins."""
 
 import numpy as np
 import pytest
@@ -19,12 +19,12 @@ def rings(x, y):
 
 
 def comb(x, y):
-    """A region with teeth that are thinner than the coarse grid but hang together."""
+    """A connected region with teeth thinner than the coarse grid."""
     return (y < 0.3) | ((y < 0.8) & (x % 0.08 < 0.012))
 
 
 def refine(shape, coarse, region):
-    """Return the grid, what is true, and the numbers of all rounds."""
+    """Return the grid, the true region, and the numbers of all rounds."""
     y, x = np.mgrid[0.0 : 1.0 : shape[0] * 1j, 0.0 : 1.0 : shape[1] * 1j]
     truth = region(x, y).astype(np.uint8)
     rounds = refined(shape, coarse)
@@ -41,7 +41,7 @@ def refine(shape, coarse, region):
 def test_refinement_finds_the_region_as_a_full_grid_does(shape, region):
     grid, truth, numbers = refine(shape, 20, region)
     np.testing.assert_array_equal(grid.ends, truth)
-    assert len(np.unique(numbers)) == len(numbers)  # nothing twice
+    assert len(np.unique(numbers)) == len(numbers)  # no point twice
     np.testing.assert_array_equal(np.flatnonzero(grid.simulated), np.sort(numbers))
 
 
@@ -67,5 +67,5 @@ def test_a_coarse_grid_as_fine_as_the_finest_simulates_all():
 @pytest.mark.parametrize(
     ("points", "coarse", "stride"), [(257, 65, 4), (1000, 65, 8), (65, 65, 1), (64, 65, 1), (3, 2, 2)]
 )
-def test_the_coarse_grid_has_at_least_the_points_that_were_asked_for(points, coarse, stride):
+def test_the_coarse_grid_has_at_least_the_requested_points(points, coarse, stride):
     assert first_stride((points, 2 * points), coarse) == stride

@@ -1,4 +1,4 @@
-"""A store through any order of kills, damage and resumption: it always comes to the same results."""
+"""Kills, damage and resumption in any order: a store always reaches the same results."""
 
 import shutil
 import tempfile
@@ -23,13 +23,13 @@ X, Y = Axis("x", -0.3, 0.5, 5), Axis("vx", -0.4, 0.4, 5)
 PLAN = Basin(
     system=FIG5, duration=300.0, tolerance=1e-6, seed=1, start=(0.1, 0.0, 0.03, 0.0), x=X, y=Y, coarse=3
 )
-"""In rounds, each of several chunks."""
+"""Plan with several rounds of several chunks."""
 
 CHUNK = 3
 
 
 class Counting(InProcess):
-    """Counts the chunks that it simulates, and does so many tasks and then no more."""
+    """Counts the simulated chunks, and stops after a number of tasks."""
 
     def __init__(self, tasks=10**9):
         self.left, self.simulated = tasks, 0
@@ -63,7 +63,7 @@ class Store(RuleBasedStateMachine):
             assert ("round-1", "end") in Store.whole
 
     def files(self):
-        """Return all files but the description of the store, without which it is refused."""
+        """Return all files except the description of the store, which is required to open it."""
         found = sorted(path for path in (self.folder / "sweep.zarr").rglob("*") if path.is_file())
         return [path for path in found if path != self.folder / "sweep.zarr" / "zarr.json"]
 
@@ -113,7 +113,7 @@ Store.TestCase.settings = settings(
     stateful_step_count=5,
     deadline=None,
     suppress_health_check=list(HealthCheck),
-    phases=(Phase.reuse, Phase.generate),  # to shrink an example takes minutes
+    phases=(Phase.reuse, Phase.generate),  # shrinking an example takes minutes
 )
 
 
