@@ -1,4 +1,4 @@
-"""The surroundings of Fig. 11 by simulation: what thousands of discs end in, under the stability map's curves."""
+"""Simulated stability map: final motions of thousands of discs around Fig. 11, under the stability map's curves."""
 
 from __future__ import annotations
 
@@ -16,43 +16,43 @@ from compare.studies.toolkit.fig11 import KINDS, curves_in
 from reference_model import onset_load, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The plane of discs that are simulated, and when their end is asked for.
+# --- Parameters of the plane, the simulations and the checks.
 
 SIDE = 60
 """Discs along each side of the plane."""
 
 DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)
-"""In N s/m and N m s/rad."""
+"""Damping β in N s/m and shaft damping b in N m s/rad."""
 
 START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
-"""Beside the axis: x, y, angle, vx, vy, spin."""
+"""Initial state x, y, angle, vx, vy, spin, close to the axis."""
 
 UNTIL = 12000.0
-"""When the slowest have settled, in s."""
+"""Duration in s, after which the slowest motions have settled."""
 
 TOLERANCE = 10.0 * WORKING
-"""Only where a motion ends is asked."""
+"""Tolerance of the simulations, which only determine the kind of final motion."""
 
 MARGIN = 0.05
-"""Of the friction force beside the onset, relative: nearer to it deviations neither grow nor die out in this time."""
+"""Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
 EVERY = 5
-"""Each fifth disc in both directions is asked for the eigenvalues of its whirl."""
+"""Stride of the discs, in both directions, whose whirls' eigenvalues are computed."""
 
 GROWN = 15.0
-"""Re λ times the duration from which on a whirl that is unstable is left: deviations have grown by exp(15)."""
+"""Re λ times the duration after which motions have left an unstable whirl; deviations have grown by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
-"""Error of a truth value, which is 1 or −1 as a margin, where the ensemble does not know the end."""
+"""Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
 
 
-# --- What the discs of the plane end in, by the compiled ensemble, and the curves of the stability map.
+# --- Final motions by the compiled ensemble, and the curves of the stability map.
 
 Ends = NDArray[np.uint8]
 
 
 def discs() -> list[DiscOnDisc]:
-    """Return the discs, row by row of one shaft damping."""
+    """Return all discs, row by row; each row has one shaft damping."""
     return [
         replace(FIG11, damping=beta, shaft_damping=b)
         for b in SHAFT_DAMPING.tolist()
@@ -62,7 +62,7 @@ def discs() -> list[DiscOnDisc]:
 
 @functools.cache
 def simulated() -> Ends:
-    """Return what the discs end in, shape (SIDE, SIDE)."""
+    """Return the ``EndState`` of each disc, shape (SIDE, SIDE)."""
     from reference_model.ensemble import simulate_ensemble
 
     beta, b = np.meshgrid(DAMPING, SHAFT_DAMPING)
@@ -77,7 +77,7 @@ def simulated() -> Ends:
 
 
 def growth(disc: DiscOnDisc) -> float:
-    """Return the least growth rate in 1/s among the whirls of a disc; −inf without any."""
+    """Return the smallest growth rate in 1/s among the whirls of a disc, −inf if it has none."""
     found = whirls(disc)
     return min((max(value.real for value in each.eigenvalues) for each in found), default=-np.inf)
 
@@ -96,7 +96,7 @@ STUDY = Study.beside(
     "simulated-map",
     source=f"Fig. 11 with X0 = 0; β, b and the start {START} are ours",
     system=FIG11,
-    only=("theory",),  # the plane is simulated by the ensemble of the reference alone
+    only=("theory",),  # only the reference has an ensemble
     seconds=2.0,
     words={"side": f"{SIDE}"},
 )
@@ -111,7 +111,7 @@ STUDY = Study.beside(
     swept=("damping", "shaft_damping"),
 )
 def leaves_axis(ends: Ends | None = None) -> Measured:
-    """Count the motions that stay at the axis where they should leave it, and the other way round."""
+    """Check that motions leave the axis above the onset and return to it below."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends
@@ -133,7 +133,7 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
     swept=("damping", "shaft_damping"),
 )
 def no_unstable_whirl(ends: Ends | None = None) -> Measured:
-    """Count the motions that end as a whirl that is unstable."""
+    """Check that no motion ends as an unstable whirl."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends
@@ -153,7 +153,7 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
     )
 
 
-# --- The ends of a plane of discs, under the curves of the stability map.
+# --- Figure.
 
 DARK = "#3d3d3d"
 
@@ -173,7 +173,7 @@ CURVES: dict[str, tuple[str, Any]] = {
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the ends under the curves."""
+    """Draw the final motions under the curves."""
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap
@@ -219,7 +219,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _edges(values: FloatArray) -> tuple[float, float]:
-    """Return from where to where a picture of ``values`` reaches: half a step beyond both ends."""
+    """Return the limits of an image of ``values``, half a step beyond both ends."""
     half = 0.5 * (values[1] - values[0])
     return float(values[0] - half), float(values[-1] + half)
 

@@ -1,4 +1,4 @@
-"""Discs thrown on a plane at rest while they spin: a ring, points and a full disc."""
+"""Discs that slide and spin on a plane at rest: a ring, points and a full disc."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from reference_model import simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Discs on a plane at rest, how they are thrown, and what friction takes of each motion, in closed form.
+# --- Parameters of discs and throws, and closed forms of their deceleration.
 
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
 
 MASS, RADIUS, FRICTION = 1.0, 0.1, 1.0
-"""m in kg, R in m and μN in N."""
+"""Mass m in kg, radius R in m and friction force μN in N."""
 
 DECELERATION = FRICTION / MASS
-"""g in m/s²."""
+"""Deceleration g in m/s² of a disc that only slides."""
 
 SPEED = 1.0
-"""At the start in m/s, of the centre or the rim, or of each."""
+"""Initial speed in m/s of the centre, the rim or both."""
 
 HEADING = 0.7
 """Direction of the throw in rad from the x axis."""
@@ -36,18 +36,18 @@ HEADING = 0.7
 
 @dataclass(frozen=True)
 class Throw:
-    """A throw that friction slows down evenly.
+    """A throw with uniform deceleration.
 
     Parameters
     ----------
     name : str
-        In words.
+        Label.
     inertia : float
         J/(mR²).
     sliding, rim : float
-        U and W at the start in m/s, the latter with the sign of the spin.
+        Initial U and W in m/s; W has the sign of the spin.
     force, moment : float
-        Of friction, over μN and μNR, as long as the disc moves.
+        Friction over μN and μNR while the disc moves.
 
     """
 
@@ -59,7 +59,7 @@ class Throw:
     moment: float = 0.0
 
     def disc(self, contact_points: int | None = None) -> DiscOnDisc:
-        """Return the parameters."""
+        """Return the parameters of the disc."""
         return DiscOnDisc(
             mass=MASS,
             polar_inertia=self.inertia * MASS * RADIUS**2,
@@ -75,19 +75,19 @@ class Throw:
 
     @property
     def state(self) -> FloatArray:
-        """The state at the start, shape (6,)."""
+        """Initial state, shape (6,)."""
         velocity = cmath.rect(self.sliding, HEADING)
         return np.array([0.0, 0.0, 0.0, velocity.real, velocity.imag, self.rim / RADIUS])
 
     @property
     def time(self) -> float:
-        """When it stops, in s."""
+        """Time to rest in s."""
         if self.sliding > 0.0:
             return self.sliding / (DECELERATION * self.force)
         return abs(self.rim) * self.inertia / (DECELERATION * self.moment)
 
     def seen_at(self, shares: FloatArray) -> FloatArray:
-        """Return ways along, across and of the rim in m, and their speeds, at ``shares`` (n,) of ``time``: (n, 6)."""
+        """Return distances along, across and of the rim in m, and their speeds, at ``shares`` of ``time``, (n, 6)."""
         share = np.minimum(shares, 1.0)[:, np.newaxis]
         start = np.array([self.sliding, 0.0, self.rim])
         return np.hstack((start * self.time * (share - 0.5 * share**2), start * (1.0 - share)))
@@ -98,39 +98,43 @@ RING = (
     Throw("spins", 0.5, 0.0, -SPEED, moment=1.0),
     Throw("both", 1.0, SPEED, SPEED, force=2.0 / math.pi, moment=2.0 / math.pi),
 )
-"""Where U = W, the point at χ slips with 2U·|cos χ/2| and by |cos χ/2| of that along U: in the mean by 2/π."""
+"""Throws of a ring; if U = W, the share |cos χ/2| of the friction at the point χ acts along U, on average 2/π."""
 
 POINTS: Mapping[int, tuple[Throw, ...]] = {3: RING[:2], 6: RING[:2]}
-"""By the number of points, on which there is no closed form for both motions."""
+"""Throws by number of points; sliding and spinning together has no closed form on points."""
 
 FULL = (
     Throw("slides", 0.5, SPEED, 0.0, force=1.0),
     Throw("spins", 0.5, 0.0, -SPEED, moment=2.0 / 3.0),
     Throw("both", 1.0 / 3.0, SPEED, SPEED, force=8.0 / (3.0 * math.pi), moment=8.0 / (9.0 * math.pi)),
 )
-"""The force is (4/3π)·((1 + ε²)·E − (1 − ε²)·K)/ε, ε = U/W the modulus of E and K (Farkas et al. 2003), 8/3π at 1."""
+"""Throws of a full disc.
+
+The force is (4/3π)·((1 + ε²)·E − (1 − ε²)·K)/ε, with the modulus ε = U/W of E and K (Farkas et al. 2003); at ε = 1 it
+is 8/3π.
+"""
 
 TO_REST = np.array([0.0, 0.5, 1.25])
-"""When a throw is looked at, as fractions of the time in which it stops."""
+"""Sample times as fractions of the time to rest."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
-"""The same for a full disc, which a smoothed law need not bring to rest."""
+"""Sample times of a full disc, which a regularised law need not bring to rest."""
 
 
-# --- A full disc under uniform pressure, by those who have it: the reference's contact law, and Exudyn's part.
+# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part.
 
 EPSILON = 100.0
-"""ε of the part over tolerance and speed; what it changes of a sliding disc is of the size ε²."""
+"""Regularisation ε of the part over tolerance and speed; its effect on a sliding disc is of order ε²."""
 
 
 def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the states of a throw at ``times``, shape (n, 6), from the reference."""
+    """Return the states of a throw at ``times``, shape (n, 6), by the reference."""
     law = Annulus(0.0, RADIUS)
     return np.asarray(simulate(throw.disc(), throw.state, times, tolerance=tolerance, contact=law).states)
 
 
 def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the states of a throw at ``times``, shape (n, 6), from a model of Exudyn with the part."""
+    """Return the states of a throw at ``times``, shape (n, 6), by an Exudyn model with the part."""
     import exudyn_models
     from exudyn_models.solver.solver_run import solve
 
@@ -149,18 +153,18 @@ def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Way:
-    """How an engine follows a full disc, and how well it sums up the friction of its rings, over μN."""
+    """An engine's function for full discs, and the quadrature error of its friction over μN."""
 
     follow: Callable[[Throw, FloatArray, float], FloatArray]
     quadrature: float
 
 
 WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Way(by_part, 4e-10)}
-"""By the name of the engine; ``Annulus`` and ``exudyn_models.forces.slip_potential`` tell the errors."""
+"""Functions by engine; ``Annulus`` and ``exudyn_models.forces.slip_potential`` document the errors."""
 
 
 def way_of(engine: Engine) -> Way:
-    """Return how ``engine`` follows a full disc; raise ``UnsupportedSystemError`` where it does not."""
+    """Return the function of ``engine`` for full discs; raise ``UnsupportedSystemError`` if it has none."""
     if engine.name not in WAYS:
         raise UnsupportedSystemError(f"{engine.name} is not asked for a full disc, which no engine promises")
     return WAYS[engine.name]
@@ -178,11 +182,11 @@ SEEN = (
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""From a throw, times and tolerance to the states at the times."""
+"""Takes a throw, times and a tolerance; returns the states at the times."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:
-    """Return what follows throws of a disc on ``points``, or on a ring, with ``engine``."""
+    """Return the function that simulates throws of a disc on ``points``, or on a ring, with ``engine``."""
 
     def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
         return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
@@ -199,9 +203,9 @@ def compared(
     points: int | None = None,
     error: float = 0.0,
 ) -> Measured:
-    """Compare throws with the closed form, at ``shares`` of the time in which they stop.
+    """Compare throws with the closed form at ``shares`` of the time to rest.
 
-    ``name`` is for the figure, and ``error`` is that of friction over μN.
+    ``name`` is the key in the figure's data, and ``error`` the error of friction over μN.
     """
 
     def states(tolerance: float) -> FloatArray:
@@ -212,7 +216,7 @@ def compared(
     return Measured(
         predicted=[throw.seen_at(shares[1:]) for throw in throws],
         value=found.value,
-        error=found.largest + error * SPEED,  # friction takes all of the speed
+        error=found.largest + error * SPEED,  # friction removes the whole speed
         at={"throw": [throw.name for throw in throws], "t over the time to rest": shares[1:]},
         components=SEEN,
         system=throws[0].disc(points),
@@ -221,7 +225,7 @@ def compared(
 
 
 def seen(states: FloatArray) -> FloatArray:
-    """Return ways and speeds along and across the throw and of the rim, in m and m/s, of states (n, 6)."""
+    """Return distances in m and speeds in m/s along and across the throw and of the rim, from states (n, 6)."""
     z, v = (states[:, (0, 3)] + 1j * states[:, (1, 4)]).T * cmath.rect(1.0, -HEADING)
     rim = RADIUS * states[:, (2, 5)]
     return np.column_stack((z.real, z.imag, rim[:, 0], v.real, v.imag, rim[:, 1]))
@@ -280,13 +284,13 @@ TAKEN = {
         r"both: $\frac{8}{3\pi}\,\mu N$, $\frac{8}{9\pi}\,\mu NR$",
     ),
 }
-"""What friction takes of the throws, in their order."""
+"""Labels with the friction on the throws, in their order."""
 
 DASHES = ("-", "--", (0.0, (1.0, 1.5)))
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the speeds that are left, on a ring and on a full disc."""
+    """Draw the speeds over time, on a ring and on a full disc."""
     if not data:
         return {}
     figure, panels = new_figure(ncols=2, width=9.6, height=3.8, sharey=True)

@@ -1,4 +1,4 @@
-"""Eq. 20 to 23: the friction that acts on a disc in each engine, and how far the laws of contact are apart."""
+"""Eqs. (20) to (23): friction on a disc in each engine, and differences between the contact laws."""
 
 from compare.studies.disc.contact_laws.pictures import draw
 from compare.studies.disc.contact_laws.study import STUDY

@@ -1,4 +1,4 @@
-"""How the study of the laws of contact is drawn."""
+"""Figures of the contact laws."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ LOOKS = {
     "points12": ("12 points", SKY),
     "points24": ("24 points", BLACK),
 }
-"""Name and colour of the laws whose error is drawn."""
+"""Labels and colours of the laws in the figure of errors."""
 
 NEAR = (0.2, 5.0)
-"""U/W where there is an error to be seen."""
+"""Range of U/W with visible errors."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw force and moment of all laws over U/W, and how far they are from the ring."""
+    """Draw force and moment of all laws over U/W, and their distance from the ring."""
     return {"contact-laws": laws(data), "contact-errors": errors(data)}
 
 
@@ -71,7 +71,7 @@ def laws(data: ByEngine) -> Figure:
 
 
 def errors(data: ByEngine) -> Figure:
-    """Draw the distance of the laws from the ring, and mark where it is the largest."""
+    """Draw the distance of the laws from the ring, and mark its largest value."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
         if "theory" in data:

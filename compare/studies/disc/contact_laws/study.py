@@ -1,4 +1,4 @@
-"""The study of the laws of contact, to which the modules beside this one add its claims."""
+"""Study of the contact laws and its claims."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ STUDY = Study.beside(
 STUDY.provides(curves=curves)
 
 
-# --- The friction that acts on a disc in an engine, read off its acceleration.
+# --- Friction on a disc in an engine, from its acceleration.
 
 NOTE = (
     "F_x, F_y over μN and M over μN·R. From the acceleration at the start, by the velocities of the first "
@@ -66,7 +66,7 @@ NOTE = (
     "Friction on the continuous ring is the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
 )
 def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """Compare friction on the ring with the integral, at the ``ratios`` U/W."""
+    """Compare friction on the ring with the integral at the ``ratios`` U/W."""
     predicted = [ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
     return friction_on(engine, DISC, ratios, "ring", predicted)
 
@@ -78,13 +78,13 @@ def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     note=NOTE,
 )
 def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """Compare friction on six points with the sum over them, at the ``ratios`` U/W."""
+    """Compare friction on six points with the sum over the points at the ``ratios`` U/W."""
     predicted = [sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
     return friction_on(engine, SIX, ratios, "points6", predicted)
 
 
 def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
-    """Return slip of the centre and of the rim, u and R·(ω − φ̇) in m/s, for U/W and both signs of the latter."""
+    """Return the slip u of the centre and R·(ω − φ̇) of the rim in m/s, for all U/W and both signs of the rim's."""
     alphas = [math.atan2(1.0, ratio) for ratio in ratios]
     return [
         (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))
@@ -96,10 +96,10 @@ def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
-    """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with those ``predicted``, shape (2n, 3).
+    """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
 
-    By (19) they are what the acceleration at the start takes besides springs and dampers. ``name`` is that of the
-    law in the figures.
+    By (19) they are the initial acceleration times inertia plus the resistance of springs and dampers. ``name`` is
+    the key of the law in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 
@@ -115,8 +115,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # One number alone may be right by chance: of the noise the largest of all counts, of the differences' own error
-    # the largest in a motion.
+    # A single number may be right by chance, so the largest noise of all motions and the largest truncation error in
+    # a motion count.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(
@@ -132,7 +132,7 @@ def friction_on(
     )
 
 
-# --- How far the laws of contact are from the integral, from each other and from the textbook; no engine takes part.
+# --- Contact laws against the integral, each other and the textbook, without an engine.
 
 OF_EXPANSION = (
     "Predicted: the integral (20), and the same with the three terms of (22). Measured: the closed forms. Error: "
@@ -154,7 +154,7 @@ PARTS = ("force", "moment")
     note="F_x, F_y over μN and M over μN·R. Predicted: adaptive quadrature, whose own estimate is the error.",
 )
 def closed_form() -> Measured:
-    """Compare the closed form of the ring with quadrature, for slip in any direction and spin of either sign."""
+    """Compare the closed form of the ring with quadrature, for several slip directions and both signs of spin."""
     predicted, measured, errors = [], [], []
     for sign in (1.0, -1.0):
         for i, ratio in enumerate(COMPARED):
@@ -173,7 +173,7 @@ def closed_form() -> Measured:
 
 
 def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> Measured:
-    """Return what was measured of laws: all that they depend on is a radius, or two."""
+    """Return a result for contact laws, whose only parameters are one or two radii."""
     return Measured(
         parameters={"contact_radius": R} | dict(parameters or {}), source=SOURCE_OF_LAWS, **measured
     )
@@ -186,7 +186,7 @@ def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> M
     note=f"{OF_EXPANSION}.",
 )
 def error_of_expansion() -> Measured:
-    """Compare how far (23) is from the ring where it is the farthest."""
+    """Compare the largest error of (23) by closed forms with the largest error by integrals."""
     integrals, formulas = greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 1],
@@ -204,7 +204,7 @@ def error_of_expansion() -> Measured:
     note=f"U/W. {OF_EXPANSION}, and how well a top can be located with it.",
 )
 def place_of_expansion_error() -> Measured:
-    """Compare where (23) is the farthest from the ring."""
+    """Compare the U/W of the largest error of (23) by closed forms with that by integrals."""
     integrals, formulas = greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 0],
@@ -222,7 +222,7 @@ def place_of_expansion_error() -> Measured:
     f"most, and the others are a sum of sines at U = W. {OF_POINTS} step.",
 )
 def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
-    """Compare how far points are from the ring where they are the farthest."""
+    """Compare the largest error of points with its closed form."""
     found = greatest_errors_of_points(numbers)
     return of_laws(
         predicted=[[1.0 / n + 2.0 / math.pi - 1.0 / (n * math.tan(0.5 * math.pi / n))] * 2 for n in numbers],
@@ -241,7 +241,7 @@ def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
     note=f"U/W. {OF_POINTS} change of the place.",
 )
 def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
-    """Compare where points are the farthest from the ring."""
+    """Compare the U/W of the points' largest error with 1."""
     found = greatest_errors_of_points(numbers)
     return of_laws(
         predicted=np.ones(found.shape[:2]),
@@ -265,7 +265,7 @@ OF_RINGS = (
     note=OF_RINGS,
 )
 def annulus_converges() -> Measured:
-    """Observe at which order force and moment of an annulus converge."""
+    """Measure the order at which force and moment of an annulus converge."""
     return order_in_rings(Annulus.shares, ORDER)
 
 
@@ -276,12 +276,12 @@ def annulus_converges() -> Measured:
     note=OF_RINGS,
 )
 def slopes_converge() -> Measured:
-    """Observe at which order the slopes of force and moment of an annulus converge."""
+    """Measure the order at which the slopes of force and moment of an annulus converge."""
     return order_in_rings(Annulus.slopes, SLOPE_ORDER)
 
 
 def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
-    """Observe at which order a ``function`` of an annulus converges with its rings."""
+    """Measure the order at which a ``function`` of an annulus converges with the number of rings."""
     # Gauss's rule on powers and logarithms has an error in even powers of 1/(n + ½).
     fineness = 1.0 / (np.array(RINGS) + 0.5)
     observed = []
@@ -310,7 +310,7 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
     f"{', '.join(f'{width:g}' for width in WIDTHS)}. Errors: scatter, and the change without a next term.",
 )
 def thin_annulus() -> Measured:
-    """Observe how an annulus becomes a ring."""
+    """Measure the order in the width of the annulus' difference from a ring."""
     widths, slips = np.array(WIDTHS), (0.5 * R, 2.0 * R)
     observed = []
     for slip in slips:
@@ -336,7 +336,7 @@ def thin_annulus() -> Measured:
     "uniform pressure, (r₁ + r₂)/2 under one like 1/r. Error: rounding.",
 )
 def in_place() -> Measured:
-    """Compare the moment of annuli that turn in place with the textbook."""
+    """Compare the moment of annuli that only spin with the textbook."""
     predicted, measured = [], []
     for inner in (0.0, INNER):
         uniform = 2.0 / 3.0 * (R**3 - inner**3) / (R**2 - inner**2)

@@ -1,4 +1,4 @@
-"""How far the laws of contact are from each other, and from the integral that they stand for."""
+"""Differences of the contact laws from each other and from the integral (20)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Contact, PointsOnRing, Ring, ThreeTermRing
 from reference_model.systems import FloatArray
 
-# --- The discs whose friction is measured, how they move, and the laws that are compared.
+# --- Parameters of the discs, their motions and the contact laws.
 
 DISC = FIG11
 
@@ -27,54 +27,54 @@ SOURCE = "Fig. 11; how the disc moves is ours"
 SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are ours"
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
-"""U/W of the motions: not too near to U = W, where friction has no derivative."""
+"""Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
 
 SPEED = 0.3
-"""√(U² + W²) in m/s, ν̄_r of (22)."""
+"""Speed √(U² + W²) in m/s, ν̄_r of (22)."""
 
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Of these motions: where the disc's centre is in m, direction of its slip and angle of the disc in rad."""
+"""Position of the disc's centre as x + iy in m, direction of its slip in rad and angle of the disc in rad."""
 
 STEP = 2e-3
-"""In s, between the velocities whose differences give the acceleration at the start."""
+"""Time step in s of the velocities whose differences give the initial acceleration."""
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
     (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
 )
-"""Weights of the first derivative at the first of five times, of fourth and of third order."""
+"""Finite-difference weights of fourth and third order for the derivative at the first of five times."""
 
 R = FIG11.contact_radius
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""U/W at which the closed form is compared with the integral; 1 is among them."""
+"""Ratios U/W, including 1, at which the closed form is compared with the integral."""
 
 NUMBERS = (6, 12, 24)
-"""Of points on the ring."""
+"""Numbers of points on the ring."""
 
 ZOOMS = 30
-"""Halvings of the range in which the greatest error of points is searched."""
+"""Number of times the search range for the points' largest error is halved."""
 
 INNER = 2.0 / 3.0 * R
-"""Inner radius of the annulus in m, whose outer one is R."""
+"""Inner radius in m of the annulus with the outer radius R."""
 
 RESTING = (INNER, 0.75 * R, R)
-"""Radii of the annulus in m where a point is at rest while its convergence is observed."""
+"""Radii in m of the resting point of the annulus whose convergence is measured."""
 
 RINGS = (8, 9, 10, 11, 12)
-"""On either side of that radius: as many as leave the error well above rounding."""
+"""Numbers of rings on either side of that radius, few enough for errors well above rounding."""
 
 WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)
-"""Of thin annuli, in units of their mean radius."""
+"""Widths of thin annuli, in units of their mean radius."""
 
 
-# --- Friction on a ring of contact as (20) to (22) print it: by quadrature, as a sum of points, by the expansion.
-# Nothing here uses the closed forms of the reference, so that they can be compared with it. ``slip`` is that of the
-# disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. All forces are given as the array
-# (F_x, F_y, M), the forces per newton of μN and the moment per newton metre of μN·R.
+# --- Friction on a contact ring by (20) to (22): quadrature, sum over points, expansion.
+# These functions do not use the reference's closed forms, which claims compare with them. ``slip`` is the slip of the
+# disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x, F_y, M)
+# in units of μN and μN·R.
 
 EVEN = 16
-"""Angles whose mean is the integral of every trigonometric polynomial up to the order 15."""
+"""Number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15."""
 
 
 def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
@@ -91,12 +91,12 @@ def directions(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
     return np.stack((-x, -y, along)) / np.where(speed > 0.0, speed, 1.0)
 
 
-@functools.cache  # several claims ask for the same ones
+@functools.cache  # several claims use the same integrals
 def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
     """Return the integral (20) by adaptive quadrature, and its error."""
     from scipy.integrate import quad_vec
 
-    # The point that is the nearest to rest is at both ends, so that no range has its kink inside.
+    # Start at the point that slips slowest, so its kink is at the ends of the range.
     start = math.atan2(slip.imag, slip.real) - math.copysign(0.5 * math.pi, rim)
     value, error = quad_vec(
         lambda angle: directions(slip, rim, angle), start, start + 2.0 * math.pi, epsabs=1e-12, epsrel=0.0
@@ -105,14 +105,14 @@ def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
 
 
 def sum_of_points(slip: complex, rim: float, angle: float, number: int) -> FloatArray:
-    """Return the mean over points at φ + 2πi/n in place of the integral (20), φ being ``angle`` in rad."""
+    """Return the mean over points at φ + 2πi/n instead of the integral (20), with φ = ``angle`` in rad."""
     return np.asarray(
         np.mean(directions(slip, rim, angle + 2.0 * math.pi * np.arange(number) / number), axis=1)
     )
 
 
 def average_of_expansion(slip: complex, rim: float) -> FloatArray:
-    """Return the integral (20) with three terms of (22) in place of ν̄_r/|ν_r|, exactly."""
+    """Return the exact integral (20) with three terms of (22) instead of ν̄_r/|ν_r|."""
     angle = 2.0 * math.pi * np.arange(EVEN) / EVEN
     x, y, along = velocities(slip, rim, angle)
     mean_square = abs(slip) ** 2 + rim**2
@@ -124,20 +124,20 @@ def average_of_expansion(slip: complex, rim: float) -> FloatArray:
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 
 QUADRATURE = 1e-11
-"""Error of an integral: ten times what the quadrature is asked for."""
+"""Error of an integral, ten times the requested tolerance of the quadrature."""
 
 
 def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> FloatArray:
-    """Return (F_x, F_y, M) of ``law`` in the units and for the arguments of ``contact_integrals``."""
+    """Return (F_x, F_y, M) of ``law`` in units of μN and μN·R, for ``slip`` and ``rim`` in m/s."""
     force, moment = law.force_and_moment(slip, rim / R, angle)
     return np.array((force.real, force.imag, moment / R))
 
 
 @functools.cache
 def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
-    """Return for (23) U/W, size and error of the place of the greatest errors in force and in moment, shape (2, 3).
+    """Return the largest errors of (23) by integrals (20), with and without (22), and by closed forms.
 
-    First by the integral (20), and the same with the three terms of (22); then by the closed forms.
+    Both arrays contain U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
 
     def by_integrals(i: int) -> Callable[[float], float]:
@@ -155,10 +155,10 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
 
 
 def top(error: Callable[[float], float], noise: float) -> tuple[float, float, float]:
-    """Return U/W where ``error`` is the largest, how large it is there, and the error of the place.
+    """Return the U/W at which ``error`` is largest, its size, and the error of U/W.
 
-    On a parabola of curvature c, places within √(2·noise/c) of the top can't be told from it; nor does the search
-    aim at better than 1e-6.
+    On a parabola of curvature c, points within √(2·noise/c) cannot be distinguished from the maximum. The tolerance
+    of the search is 1e-6.
     """
     from scipy.optimize import minimize_scalar
 
@@ -176,15 +176,14 @@ def top(error: Callable[[float], float], noise: float) -> tuple[float, float, fl
 
 @functools.cache
 def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
-    """Return what ``worst`` does for each of ``numbers`` of points, in force and in moment, shape (n, 2, 4)."""
+    """Return the results of ``worst`` for all ``numbers`` of points, for force and moment, shape (n, 2, 4)."""
     return np.array([[worst(number, part) for part in (slice(2), slice(2, 3))] for number in numbers])
 
 
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
-    """Return where the error of ``number`` points is the largest, its size, and the errors of size and place.
+    """Return the U/W at which the error of ``number`` points is largest, its size, and the errors of size and U/W.
 
-    The place is U/W; ``part`` selects force or moment. The largest error is next to a jump, so that a search must not
-    use slopes.
+    ``part`` selects force or moment. The largest error is next to a jump, so the search does not use slopes.
     """
     law = PointsOnRing(R, number)
     centre, spans, history = np.zeros(2), np.array((math.log(20.0), math.pi / number)), []
@@ -205,8 +204,8 @@ def worst(number: int, part: slice) -> tuple[float, float, float, float]:
 
 
 def curves() -> Data:
-    """Return force along the slip and moment of all laws over U/W, of points the range over φ."""
-    # Beside U = W and not on it: there a point rests, which leaves less than its neighbourhood.
+    """Return force along the slip and moment of all laws over U/W, for points their range over φ."""
+    # Exclude U = W, where a point rests and the error is smaller than next to it.
     near = np.geomspace(1e-5, 0.1, 50)
     ratios = np.unique(np.concatenate((np.geomspace(0.05, 20.0, 240), 1.0 - near, 1.0 + near)))
     data = {"ratio": ratios}

@@ -1,4 +1,4 @@
-"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the friction force, and where it ends."""
+"""Fig. 8 and eqs. (24) to (26): position and spin of the self-centred disc over the friction force, and its end."""
 
 from compare.studies.disc.fig08.pictures import draw
 from compare.studies.disc.fig08.study import STUDY

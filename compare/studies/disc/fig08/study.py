@@ -1,4 +1,4 @@
-"""Fig. 8 and eq. 24 to 26: place and spin of the self-centred disc over the friction force, and where it ends."""
+"""Study of Fig. 8 and eqs. (24) to (26): position and spin of the self-centred disc, and its end."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ STUDY.provides(curves=theory.curves)
 
 @functools.lru_cache(maxsize=4)
 def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
-    """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), and one error of all."""
+    """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), with one common error."""
     found = refined(
         lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads],
         theory.TOLERANCE,
     )
-    # One number alone may be right by chance, and two runs may coincide to within the tolerance.
+    # A single number may be right by chance, and two runs may agree to within the tolerance.
     return Measurement(found.value, np.asarray(found.largest + theory.TOLERANCE * disc.offset))
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
-    """Return means of x, y and spin over the motion near to the place by (26), which is some per cent off."""
+    """Return the means of x, y and spin of the steady motion found from (26), which deviates by a few per cent."""
     place, *_ = places_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
@@ -62,7 +62,7 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the equilibria of the ring with root finding."""
+    """Compare the engine's equilibria on the ring with root finding."""
     found = means_of(engine, theory.RING, loads)
     return Measured(
         predicted=[theory.place_and_spin(with_load(theory.RING, load)) for load in loads],
@@ -84,10 +84,10 @@ def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     swept=("friction_force",),
 )
 def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Put the equilibria of the ring into the equation of the circle."""
+    """Compute the residual of (4) at the equilibria on the ring."""
     found = means_of(engine, theory.RING, loads)
     x, y, _ = found.value.T
-    # ∂(4)/∂(x, y) is twice the way from the circle's centre, so of length X0 on the circle.
+    # The gradient of (4) is twice the vector from the circle's centre, of length X0 on the circle.
     error = 2.0 * np.hypot(x - theory.RING.offset / 2.0, y) * found.error + found.error**2
     return Measured(
         predicted=np.zeros(len(loads)),
@@ -110,14 +110,14 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Meas
     swept=("friction_force",),
 )
 def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = theory.DECAYS) -> Measured:
-    """Compare the decay of displaced discs, by μN in N and span in s, with the slowest eigenvalue."""
+    """Compare the decay of displaced discs with the least damped eigenvalue; ``spans`` has μN in N and times in s."""
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
             functools.partial(_decay, engine, with_load(theory.RING, load), span), WORKING
         )
         measured.append(later)
-        # What is not linear falls with the deviation, so that of the later half less is left than the change shows.
+        # Nonlinear terms fall with the deviation, so they are smaller in the later half than the change shows.
         errors.append(np.max(error) + np.hypot(*(later - earlier)))
     return Measured(
         predicted=real_and_imaginary(
@@ -131,14 +131,14 @@ def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = 
 
 
 def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], tolerance: float) -> FloatArray:
-    """Return real and imaginary part in 1/s of the slowest mode's growth in both halves of ``span``, shape (2, 2)."""
+    """Return real and imaginary growth rate in 1/s of the least damped mode in both halves of ``span``, (2, 2)."""
     rest = equilibrium_of(disc).state
     start = np.array([disc.offset, 0.0, 0.0, 0.0, 0.0, disc.shaft_speed])
-    # Two samples a radian: the mode's frequency is below the natural one.
+    # Two samples per radian; the mode's frequency is below the natural frequency.
     intervals = 4 * round(0.5 * disc.natural_frequency * (span[1] - span[0]))
     times = np.linspace(*span, intervals + 1)
     states = engine.simulate(disc, start, [0.0, *times], tolerance=tolerance).states[1:]
-    # The left ones: of a sum of modes they see one.
+    # Left eigenvectors project onto a single mode.
     values, vectors = np.linalg.eig(jacobian_without_angle(disc, rest).T)
     slowest = vectors[:, max(range(len(values)), key=lambda i: (values[i].real, values[i].imag))]
     part = np.delete(states - rest, ANGLE, axis=1) @ slowest
@@ -160,7 +160,7 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     swept=("friction_force",),
 )
 def ends(engine: Engine) -> Measured:
-    """Extrapolate the friction forces of equilibria near the axis to the axis."""
+    """Compare μN of equilibria close to the axis, extrapolated to the axis, with the largest μN."""
     found = refined(
         lambda tolerance: [
             _means(engine, with_load(theory.RING, load), tolerance) for load in theory.END_LOADS
@@ -179,7 +179,7 @@ def ends(engine: Engine) -> Measured:
 
 
 def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
-    """Return μN in N of a disc on the axis, from those at several ``distances`` in m, if they differ."""
+    """Return μN in N at the axis, extrapolated from ``loads`` at ``distances`` in m; NaN unless these decrease."""
     if not np.all(np.diff(distances) < 0.0):
         return math.nan
     return float(KroghInterpolator(distances, np.array(loads))(0.0))
@@ -195,7 +195,7 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
     swept=("friction_force",),
 )
 def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> Measured:
-    """See at friction forces about the end of the equilibrium, in units of it, whether a disc on the axis sticks."""
+    """Check that a disc on the axis sticks above the end of the equilibrium; ``ratios`` are in units of its μN."""
     loads = np.array(ratios) * last_load(theory.RING)
     start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * theory.RING.disc_speed]
 
@@ -220,7 +220,7 @@ def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> 
     swept=("friction_force",),
 )
 def six_points(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the means of the motion on six points with those of the reference."""
+    """Compare the means of the motion on six points with the reference."""
     found = means_of(engine, theory.SIX, loads)
     beside_ring = np.abs(
         found.value - [theory.place_and_spin(with_load(theory.RING, load)) for load in loads]
@@ -252,7 +252,7 @@ def _six_points_of_reference(load: float) -> tuple[float, ...]:
     swept=("friction_force", "offset"),
 )
 def corrected_26() -> Measured:
-    """Compare places and spins of (26) with the equilibria of (23)."""
+    """Compare positions and spins by (26) with the equilibria of (23)."""
     discs = theory.grid()
     places = np.array([theory.by_26(disc) for disc in discs])
     moved = np.array(
@@ -276,7 +276,7 @@ def corrected_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def printed_26() -> Measured:
-    """Count the places of (26) at which the disc would rest."""
+    """Check the residual force at the positions by (26), corrected and as printed."""
     discs = theory.grid()
     corrected, printed = (
         np.array([theory.unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
@@ -298,7 +298,7 @@ def printed_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def end_of_26() -> Measured:
-    """Compare the friction force at which (26) ends with that at which friction (23) can hold the disc."""
+    """Compare the friction force at the end of (26) with the one at which friction (23) can hold the disc."""
     discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
     predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
     return Measured(

@@ -1,4 +1,4 @@
-"""Eq. 24 to 26 against the steady states of (23), and the curves of Fig. 8."""
+"""Steady states by eqs. (24) to (26) and by (23), and the curves of Fig. 8."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from reference_model.formulas.disc import (
 )
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The disc of Fig. 8, the friction forces at which it is measured, and the offsets that the paper leaves open.
+# --- Parameters of the disc, friction forces and offsets; the paper does not print the offset.
 
 RING = FIG8
-"""Fig. 8 on the continuous ring of (20)."""
+"""Disc of Fig. 8 on the continuous ring (20)."""
 
 SIX = replace(RING, contact_points=6)
-"""What the paper simulated."""
+"""Disc of the paper's simulations."""
 
 PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
-"""(23)."""
+"""Contact law (23)."""
 
 SOURCE = (
     "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper leaves out; the friction forces are our choice"
@@ -39,31 +39,31 @@ SOURCE = (
 SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper leaves out X0"
 
 LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
-"""μN in N. The paper prints no range; the equilibrium ends a little above C·X0 = 0.1 N."""
+"""Friction forces in N. The paper does not print a range; the equilibrium ends slightly above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
-"""μN in N, and in s the span in which the decay is measured: late enough for small deviations."""
+"""Friction force in N, and the time span in s in which the decay is measured, late enough for small deviations."""
 
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
-"""μN in N, near to where the equilibrium ends; there the distance from the axis falls to zero linearly."""
+"""Friction forces in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
 
 STICKING_RATIOS = (0.98, 1.02, 1.05)
-"""Friction forces about the last one with an equilibrium, in units of it."""
+"""Friction forces in units of the largest one with an equilibrium."""
 
 STICKING_TIME = 80.0
-"""In s: in that time friction takes a disc with 95 % of the speed of the master disc along, where it can."""
+"""Time in s within which friction can accelerate a disc from 95 % to the speed of the master disc."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
-"""X0 in m, which the paper leaves out; 0.1 is that of Figs. 4 to 6."""
+"""Offsets X0 in m; the paper does not print X0, 0.1 m is the value of Figs. 4 to 6."""
 
 TOLERANCE = WORKING / 10
-"""Of the motions to a rest, of which the claims resolve 1e-9."""
+"""Tolerance of motions to a position of rest, which the claims resolve to 1e-9."""
 
 BALANCED = 1e-9
-"""Of μN: a force below is rounding, and the bracket of (26) as printed leaves far more."""
+"""Largest residual force over μN due to rounding; (26) as printed leaves far more."""
 
 RESOLUTION = 1e-9
-"""Of places in m and spins in rad/s on the continuous ring."""
+"""Resolution of positions in m and spins in rad/s on the continuous ring."""
 
 
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:
@@ -73,7 +73,7 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs on which (26) is tried: all of ``OFFSETS`` under friction forces up to the last one by (23)."""
+    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23), to check (26)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))
@@ -83,13 +83,13 @@ def grid() -> list[DiscOnDisc]:
 
 
 def by_26(disc: DiscOnDisc) -> FloatArray:
-    """Return x and y in m and spin in rad/s of the corrected (26)."""
+    """Return x and y in m and spin in rad/s by the corrected (26)."""
     (place,) = places_by_26(disc)
     return np.array(place)
 
 
 def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
-    """Return the force over μN that springs and friction (23) leave at the place of (26)."""
+    """Return the residual force of springs and friction (23) over μN, at the position by (26)."""
     place, *_ = places_by_26(disc, as_printed=as_printed)
     z, omega = complex(place.x, place.y), disc.disc_speed
     friction, _ = PAPER_LAW.force_and_moment(-1j * omega * z, omega - place.spin, 0.0)
@@ -111,12 +111,12 @@ def last_load_by_26(disc: DiscOnDisc) -> float:
 
 
 def curves(count: int = 121) -> Data:
-    """Return spins and places over ``count`` values of μN, for Fig. 8 and all offsets, and their ends over X0."""
+    """Return spins and positions over ``count`` values of μN, for Fig. 8 and all offsets, and their ends over X0."""
     data: Data = {"offset": np.array(OFFSETS)}
     for offset in OFFSETS:
         disc = replace(RING, offset=offset)
         for name, law in (("ring", None), ("corrected", PAPER_LAW)):
-            # Closer to each other towards the end, where the spin rises steeply.
+            # Denser towards the end, where the spin rises steeply.
             loads = last_load(disc, law) * np.sin(np.linspace(0.0, 0.5 * np.pi, count))[:-1]
             data[f"{name} load {offset:g}"] = loads
             data[f"{name} {offset:g}"] = np.array(

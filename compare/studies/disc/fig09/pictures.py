@@ -1,4 +1,4 @@
-"""Figures of the branches of the disc: radius, spin, and where the motions end over the offset."""
+"""Figures of the disc's branches: radius, spin, and the ends of the motions over the offset."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SIX: dict[str, dict[str, Any]] = {
     "reference": {"marker": "h", "markersize": 7.5},
     "exudyn": {"marker": "+", "markersize": 6.5},
 }
-"""Marks of results on six points, which stand beside those on the ring."""
+"""Marks of results on six points, drawn next to results on the ring."""
 
 SIX_BESIDE = 1.5
 
@@ -47,7 +47,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_radius(data: ByEngine) -> Figure:
-    """Fig. 9 over logarithmic axes, and what lies near to the axis over linear ones."""
+    """Draw Fig. 9 with logarithmic axes, and the motions close to the axis with linear ones."""
     figure, (whole, near) = new_figure(ncols=2, width=11.0, height=5.0)
     if "theory" in data:
         _whirls(whole, data["theory"])
@@ -104,7 +104,7 @@ def _near_axis(panel: Axes, found: Data) -> None:
 
 
 def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
-    """Return the prefixes of the data on the ring and on six points that there are, with their marks."""
+    """Return the prefixes of the data that exist, for the ring and for six points, with their marks."""
     both = (
         ("", points(engine)),
         ("six ", points(engine, f"{engine}, six points", **SIX.get(engine, {"markersize": 3.5}))),
@@ -113,7 +113,7 @@ def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
 
 
 def draw_spin(data: ByEngine) -> Figure:
-    """Fig. 10, and the distance of the whirl's spin from its limit."""
+    """Draw Fig. 10, and the distance of the whirl's spin from its limit."""
     figure, (whole, distance) = new_figure(ncols=2, width=11.0, height=4.8)
     limit = spin_of_large_whirl(RING)
     if "theory" in data:
@@ -172,7 +172,7 @@ def _spin_by_theory(whole: Axes, distance: Axes, found: Data, limit: float) -> N
 
 
 def draw_ends(found: Data) -> Figure:
-    """Draw over the offset where each motion ends."""
+    """Draw the end of each motion over the offset."""
     figure, (panel,) = new_figure(width=7.0, height=4.4)
     offset, last, stable = found["offset"], found["last load"], found["last stable"]
     panel.fill_between(offset, last, 1.0, color=GREY, alpha=0.4, linewidth=0.0)

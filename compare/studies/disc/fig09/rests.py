@@ -1,4 +1,4 @@
-"""The self-centred disc, sticking, and six points of contact in place of the ring."""
+"""Claims on the self-centred disc, on sticking, and on six contact points instead of the ring."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measure
     swept=("friction_force",),
 )
 def deviations_grow(engine: Engine) -> Measured:
-    """Compare the growth of deviations from the equilibrium with its slowest eigenvalue."""
+    """Compare the growth of deviations from the equilibrium with its least damped eigenvalue."""
     loads = [load for load, _ in theory.GROWTHS]
     motions = [
         (with_load(theory.RING, load), theory.rest_of(load), duration) for load, duration in theory.GROWTHS
@@ -91,13 +91,13 @@ def deviations_grow(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def whirl_attracts(engine: Engine) -> Measured:
-    """Compare the decay of a deviation from the whirl with its slowest eigenvalue."""
+    """Compare the decay of a deviation from the whirl with its least damped eigenvalue."""
     load, duration = theory.DECAY
     circle = theory.circle_of(load, 0)
     larger = theory.DISPLACED * np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) * circle.state
     found = _growth(engine, [(with_load(theory.CENTRED, load), circle, duration)], [larger])
     return Measured(
-        predicted=real_and_imaginary([circle.eigenvalues[1]]),  # the first is that of a turn about the axis
+        predicted=real_and_imaginary([circle.eigenvalues[1]]),  # the first belongs to rotation about the axis
         value=found.value,
         error=found.error,
         at={"μN in N": [load]},
@@ -111,7 +111,10 @@ def _growth(
     motions: Sequence[tuple[DiscOnDisc, SpinningEquilibrium | SpinningWhirl, float]],
     displacements: Sequence[FloatArray],
 ) -> Measurement:
-    """Return real and imaginary part in 1/s of the growth of each displacement from a motion, followed so long."""
+    """Return real and imaginary part of each displacement's growth rate in 1/s, shape (n, 2).
+
+    ``motions`` contains disc, steady motion and duration in s.
+    """
 
     def rates(tolerance: float, scale: float = 1.0) -> FloatArray:
         return real_and_imaginary(
@@ -122,16 +125,16 @@ def _growth(
         )
 
     found = refined(rates, theory.ORBIT_TOLERANCE)
-    # Two flows may be the same to within the tolerance: an error of the deviation of that size.
+    # Two flows that agree to within the tolerance may hide an error of the deviation of that size.
     unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for _, _, duration in motions]
     with_larger = found.plus(np.abs(rates(theory.ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)
 
 
-# --- Discs that stick to the master disc: inside of the radius (9) for ever, outside until (7) lets them go.
+# --- Discs that stick to the master disc: permanently inside the radius (9), outside until the release time (7).
 
 REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
-"""In s: the period of what holds a disc that sticks."""
+"""Period in s of the force that holds a sticking disc."""
 
 
 @STUDY.claim(
@@ -146,7 +149,7 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
     swept=("friction_force",),
 )
 def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    """Follow discs that stick inside the radius (9) for a revolution."""
+    """Simulate discs that stick inside the radius (9) for one revolution."""
     discs = [with_load(theory.RING, load) for load in loads]
     starts = [theory.stuck_at(disc, theory.INSIDE)[0] for disc in discs]
 
@@ -172,7 +175,7 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
     return Measured(
         predicted=np.zeros(found.value.size + 1),
         value=np.append(found.value.ravel(), slips(theory.TOLERANCE)),
-        # Departures of zero have no scale of their own for rounding.
+        # Zero departures give no scale for the rounding error.
         error=np.append(found.largest + ROUNDING + np.zeros(found.value.size), change),
         components=[*(f"{part} at μN = {load:g} N" for load in loads for part in parts), "phases that slip"],
         data={
@@ -193,7 +196,7 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
     swept=("friction_force",),
 )
 def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    """Compare when discs outside of the radius (9) are let go with (7)."""
+    """Compare the release of discs outside the radius (9) with (7)."""
     cases = [(load, share) for load in loads for share in theory.OUTSIDE]
     starts = [
         (with_load(theory.RING, load), *theory.stuck_at(with_load(theory.RING, load), share))
@@ -221,7 +224,7 @@ def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Mea
     "all the time, for ten.",
 )
 def coexist(engine: Engine) -> Measured:
-    """See whether for the largest friction force a disc sticks for a revolution and whirls without sticking."""
+    """Check that at the largest friction force a disc can stick for a revolution, or whirl without sticking."""
     load = theory.STICK_LOADS[-1]
     start, _ = theory.stuck_at(with_load(theory.RING, load), 0.5)
     orbit = theory.orbit_of_reference(load, 0)
@@ -320,7 +323,7 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
 def six_releases(
     engine: Engine, loads: Sequence[float] = theory.STICK_LOADS, tolerance: float = theory.TOLERANCE
 ) -> Measured:
-    """Compare how far discs outside of the radius (9) have slipped on six points with the reference."""
+    """Compare the slip of discs on six points that start outside the radius (9) with the reference."""
     found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], tolerance)
     predicted = [_slipped_in_reference(load) for load in loads]
     return Measured(

@@ -1,4 +1,4 @@
-"""Formulas for Figs. 9 and 10: the branches of all motions over the friction force, and where each of them ends."""
+"""Formulas for Figs. 9 and 10: branches of all motions over the friction force, and their ends."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from reference_model.steady.stability import turning_frame_jacobian, whirl_eigen
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The disc of Figs. 9 and 10, its motions that are measured, and the ranges in which they are followed.
+# --- Parameters of the disc, the measured motions and the branches.
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
-"""Without offset, so that the whirl is a circle."""
+"""Disc without offset, whose whirl is a circle."""
 
 PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
-"""(23)."""
+"""Contact law (23)."""
 
 SOURCE = (
     'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
@@ -42,72 +42,72 @@ SOURCE = (
 SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
-"""μN in N, and which of the whirls without offset, the largest first: the second one is unstable."""
+"""Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
 ORDERS = slice(2, 5)
-"""Those among them whose friction force doubles, far from the fold."""
+"""Circles far from the fold, each with twice the friction force of the one before."""
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
-"""μN in N, and which of the whirls with the offset, the outer one first."""
+"""Friction forces in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
 
 HALVED_OFFSETS = (0.2, 0.1, 0.05)
 OFFSET_LOAD = 0.02
-"""X0 in m, and μN in N of the whirls that show how they depend on it."""
+"""Offsets X0 in m and friction force μN in N of the whirls that show the effect of X0."""
 
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""μN in N and radii, in units of (9), of discs that stick at the start."""
+"""Friction forces in N and initial radii, in units of (9), of sticking discs."""
 
 LATEST = 1.1
-"""How long a disc outside is watched, in units of the time that (7) predicts."""
+"""Duration of the simulation of a disc outside, in units of the release time (7)."""
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
-"""μN in N, and how long deviations from the whirl, and from the equilibrium, are followed in s."""
+"""Friction force in N and duration in s of deviations from the whirl, and from equilibria."""
 
 DISPLACED = 1e-4
-"""Of a deviation at its start, in units of the distance from the axis."""
+"""Initial size of a deviation, in units of the distance from the axis."""
 
 ORBIT_TOLERANCE = WORKING / 10
-"""Of periodic motions; those of the reference that they are compared with have a hundredth of it."""
+"""Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
 
 TOLERANCE = 3e-8
-"""Of motions that stick: moderate, since a regularised law costs the more the closer it comes to Coulomb's."""
+"""Tolerance of sticking motions; moderate, because a regularised law is expensive close to Coulomb's law."""
 
 LARGEST_LOAD = 0.2
-"""End of the axis in N: twice the friction force C·X0 about which sticking begins. The paper prints no range."""
+"""End of the axis in N: twice C·X0, about which sticking begins. The paper does not print a range."""
 
 BRANCH_START = 0.1
 BRANCH_END = 1.0
 BRANCH_STEP = 0.24
-"""μN of the first whirl of the branch in units of C·X0, its last crossing of the x axis in those of X0, and by which
-fraction the crossings fall."""
+"""First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the fraction by which
+successive crossings fall."""
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
-"""μN in N of whirls before the branch."""
+"""Friction forces in N of whirls before the branch."""
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""Friction force a little above that of the fold, in units of C·X0, and in N where that is larger."""
+"""Friction force slightly above the fold's, in units of C·X0, and its smallest value in N."""
 
 FOLD_STEP = 0.12
-"""Of the steps to the fold."""
+"""Relative step of the branch to the fold."""
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
-"""X0 in m for which the end of the whirl, and those of the other motions, are computed."""
+"""Offsets X0 in m at which the fold of the whirl and the ends of the other motions are computed."""
 
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
 def on_six_points(disc: DiscOnDisc) -> DiscOnDisc:
-    """Return ``disc`` on six points, as the paper simulated it."""
+    """Return ``disc`` on six contact points, as in the paper's simulations."""
     return replace(disc, contact_points=6)
 
 
 def circle_of(load: float, which: int) -> SpinningWhirl:
-    """Return a whirl of the ring without offset at μN = ``load`` in N, number ``which`` by falling size."""
+    """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` in N."""
     return whirls(with_load(CENTRED, load))[which]
 
 
@@ -117,7 +117,7 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
-    """Return the state of a disc that sticks at ``share`` of the radius (9), and when (7) lets go, in s."""
+    """Return the state of a disc that sticks at ``share`` of the radius (9), and its release time (7) in s."""
     pin = held_pin(replace(disc, contact_points=None))
     radius, angle = share * sticking_radius(pin), safest_angle(pin)
     state = np.insert(np.append(stuck(pin, radius, angle), disc.disc_speed), 2, 0.0)
@@ -126,13 +126,13 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 
 @functools.cache
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
-    """Return the reference's whirl with an offset, the outer one or the inner, unstable one."""
+    """Return the reference's whirl with an offset: the outer one, or the inner, unstable one if ``which`` is 1."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
 
 def extent(orbit: Orbit) -> FloatArray:
-    """Return the least and the greatest distance from the axis in m."""
+    """Return the smallest and largest distance from the axis in m."""
     radius = orbit.trajectory.radius
     return np.array([np.min(radius), np.max(radius)])
 
@@ -143,9 +143,9 @@ def radius_of_pin(load: float) -> float:
 
 
 def spin_of_large_whirl(disc: DiscOnDisc) -> float:
-    """Return the spin in rad/s to which that of the whirl tends for a large μN, where the rim slips by little.
+    """Return the limit in rad/s of the whirl's spin for large μN.
 
-    Then F = 1 and M = R²S/(2U), and U = (ω − k)·μN/(βk) grows with μN as the moment does: the torsional balance
+    Then RS is much smaller than U = (ω − k)·μN/(βk), so F = 1 and M = R²S/(2U). The torsional balance
     b(ω − Ω − S) = μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
     """
     k = disc.natural_frequency
@@ -155,11 +155,11 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 
 
 def first_order_shift(disc: DiscOnDisc) -> complex:
-    """Return the time mean of x + iy in m of a disc's whirl with a small offset, exact in first order of X0.
+    """Return the time mean of x + iy in m of a disc's whirl with a small offset, exact to first order in X0.
 
-    In the axes that turn with the circle the pull k²X0 of the offset turns backwards, and the deviation from the
-    circle answers with Re(a·exp(−iκt)), (−iκ − A)a = k²X0·(0, 0, 1, −i, 0), A the Jacobian. The part of it that turns
-    backwards too, (a_x + i·a_y)/2, is at rest in space.
+    In axes that turn with the circle the acceleration k²X0 due to the offset turns backwards. The deviation from the
+    circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component,
+    (a_x + i·a_y)/2, is fixed in space.
     """
     circle = whirls(replace(disc, offset=0.0))[0]
     jacobian = turning_frame_jacobian(replace(disc, offset=0.0), circle.state)
@@ -169,13 +169,13 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls from the μN of ``disc`` on, by falling size, through the fold to the inner, unstable ones."""
+    """Yield whirls by falling size, from the μN of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
 
 def inner_orbit(disc: DiscOnDisc) -> Orbit:
-    """Return the first orbit beyond the fold at a larger friction force than that of ``disc``."""
+    """Return the first orbit beyond the fold with a larger friction force than ``disc``."""
     orbits = to_inner_orbits(disc)
     next(orbits)
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
@@ -185,7 +185,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
-    """Return μN in N up to which the self-centred equilibrium is stable; that of its end if it always is."""
+    """Return the largest μN in N at which the self-centred equilibrium is stable; its end if it is always stable."""
     end = last_load(disc)
 
     def growth(logarithm: float) -> float:
@@ -199,7 +199,7 @@ def last_stable_load(disc: DiscOnDisc) -> float:
 
 
 def smallest_load(disc: DiscOnDisc) -> float:
-    """Return μN in N of the whirl at the fold, the vertex of a parabola through the orbits about it."""
+    """Return μN in N at the whirl's fold, the vertex of a parabola through the orbits next to it."""
     sizes: list[float] = []
     loads: list[float] = []
     start = max(FOLD_START * disc.stiffness * disc.offset, LEAST_FOLD_START)
@@ -213,12 +213,12 @@ def smallest_load(disc: DiscOnDisc) -> float:
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
-    """Return the friction force in N at which the equilibrium loses its stability, in first order of β.
+    """Return the friction force in N at which the equilibrium loses its stability, to first order in β.
 
-    Small loads leave the centre at X0, where the master disc slips by U = ωX0 below it and S = ω − Ω. Friction
-    resists slip across it with μN·F/U and along it with μN·F', F' = ∂F/∂U, and slip is u = ż − iωz. A motion ~
-    exp((ik + δ)t) has (s + μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k², where s = 2mδ + β: so s = μN·σ, and δ = 0 at μN
-    = β/σ. A pin has F' = 0, thus σ = 0.
+    Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Small additional slip u = ż − iωz is
+    resisted by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies
+    (s + μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ. A pin has
+    F' = 0 and therefore σ = 0.
     """
     slip = disc.disc_speed * disc.offset
     law = contact_of(disc)
@@ -236,7 +236,7 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
 
 
 def marginal_ratio(law: IsotropicContact | None) -> float:
-    """Return the angle α of the whirl, tan α = R|S| : U, at which an eigenvalue but that of the phase is zero."""
+    """Return the α of the whirl, tan α = R|S|/U, at which an eigenvalue other than the phase's is zero."""
 
     def growth(alpha: float) -> float:
         whirl = whirl_at(CENTRED, alpha, law)
@@ -251,12 +251,12 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return the branches of all motions over μN, and where they end over X0: the whirl at ``fold_offsets``."""
+    """Return the branches of all motions over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
     return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
-    """Return friction force, radius, spin of whirls without offset by the ring and by (23), from the largest on."""
+    """Return friction force, radius and spin of whirls without offset on the ring and by (23), largest first."""
     angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
     data: Data = {}
     laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}
@@ -267,7 +267,7 @@ def circles() -> Data:
 
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
-    """Return whirls with offset by falling size, from the largest μN through the fold to the equilibrium."""
+    """Return whirls with the offset by falling size, from the largest μN through the fold to the equilibrium."""
     outer = [
         whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
     ]
@@ -275,10 +275,10 @@ def orbits() -> tuple[Orbit, ...]:
 
 
 def smooth(found: Sequence[Orbit]) -> Data:
-    """Return μN, least and greatest radius, and mean spin of the ``found`` orbits and of those between them.
+    """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
-    Interpolated are the places, which change smoothly where the extremes do not because the orbit passes the axis.
-    Beyond the last orbit its shape shrinks onto the equilibrium, its square linear in the load.
+    Positions are interpolated, because the smallest radius is not smooth where the orbit passes the axis. Beyond the
+    last orbit its shape shrinks onto the equilibrium; the square of its size is linear in the load.
     """
     limit = spin_of_large_whirl(RING)
     load = np.array([orbit.system.friction_force for orbit in found])
@@ -316,9 +316,9 @@ def smooth(found: Sequence[Orbit]) -> Data:
 
 
 def rests() -> Data:
-    """Return μN, radius and spin of the equilibria, and μN from which on they are unstable."""
+    """Return μN, radius and spin of the equilibria, and the largest μN at which they are stable."""
     end = last_load(RING)
-    loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep
+    loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer if the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
     return {
         "rests": np.array(
@@ -329,7 +329,7 @@ def rests() -> Data:
 
 
 def sticking() -> Data:
-    """Return friction forces from where sticking begins, and the radius (9)."""
+    """Return friction forces at which the disc can stick, and the radius (9)."""
     loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
     return {
         "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])
@@ -337,7 +337,7 @@ def sticking() -> Data:
 
 
 def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
-    """Return over the offset where equilibrium and whirl end, and where the equilibrium loses its stability."""
+    """Return, over the offset, μN of the equilibrium's end, its loss of stability and the whirl's fold."""
     discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]
@@ -349,7 +349,7 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     }
 
 
-# --- The study of Figs. 9 and 10, to which the modules beside this one add its claims.
+# --- The study; the other modules of this package add its claims.
 
 STUDY = Study.beside(
     __file__,

@@ -1,4 +1,4 @@
-"""The whirls of Figs. 9 and 10: circles without offset, and orbits with one."""
+"""Claims on the whirls of Figs. 9 and 10: circles without offset, periodic orbits with one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- What an engine brings back near to a steady motion, on ring or on points, and the orders of small gaps.
+# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps.
 
 
 @functools.lru_cache(maxsize=4)
@@ -34,7 +34,7 @@ def circles_of(
 
 
 def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance: float) -> FloatArray:
-    """Return the same of one circle, no numbers where none comes back."""
+    """Return mean radius, frequency and spin of one circle as ``circles_of`` does, NaN if none is found."""
     motion = steady_motion(engine, with_load(disc, load), theory.circle_of(load, which).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
@@ -48,7 +48,7 @@ def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance:
 
 
 def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
-    """Return the means of x, y and spin at rest in units of X0 and ω, shape (n, 3)."""
+    """Return the means of x, y and spin at the equilibrium in units of X0 and ω, shape (n, 3)."""
     found = refined(
         lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], theory.ORBIT_TOLERANCE
     )
@@ -56,7 +56,7 @@ def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
 
 
 def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
-    """Return the same at one friction force, no numbers where no rest comes back."""
+    """Return the means at one friction force as ``rests_of`` does, NaN if no equilibrium is found."""
     motion = steady_motion(engine, with_load(disc, load), theory.rest_of(load).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
@@ -64,10 +64,10 @@ def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> Flo
 
 
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
-    """Return motions found by shooting, shape (n, m), with an error for all numbers of a motion.
+    """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    One number alone may be right by chance, and two flows may be the same to within the tolerance, which the motion
-    shows ``amplified``.
+    A single number may be right by chance. The motions add the tolerance times ``amplified``, because two flows may
+    agree to within the tolerance.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -75,10 +75,10 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
 
 
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-    """Return the order of ``gaps``, shape (3, m), at a halved variable, its numerical and its model error.
+    """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
-    They are series in every other power, so that the order observed between neighbours tends to its limit like the
-    square of the variable. ``error`` is that of the gaps, of shape (3, 1).
+    The gaps are series in every second power, so the order between neighbours converges like the square of the
+    variable. ``error`` is the error of the gaps, shape (3, 1).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
@@ -89,7 +89,7 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
     return order, known(order, numerical), float(np.nan_to_num(np.max(np.abs(step))))
 
 
-# --- The whirl without offset, which is a circle in axes that turn with it.
+# --- The whirl without offset: a circle.
 
 LOADS = [load for load, _ in theory.CIRCLES]
 
@@ -112,7 +112,7 @@ OBSERVED = (
     swept=("friction_force",),
 )
 def circles(engine: Engine) -> Measured:
-    """Compare the circles that come back with the three balances."""
+    """Compare the engine's circles with the three balances."""
     found = circles_of(engine, theory.CENTRED)
     exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
     return Measured(
@@ -144,7 +144,7 @@ def circles(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def error_of_23(engine: Engine) -> Measured:
-    """Observe how the whirl differs from that of (23), at friction forces each twice the one before."""
+    """Measure the orders of the whirl's distance from the whirl of (23), at doubled friction forces."""
     by_23 = [
         (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
     ]
@@ -165,13 +165,13 @@ def error_of_23(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def limit_of_large_loads(engine: Engine) -> Measured:
-    """Observe how the whirl tends to its limit, at friction forces each twice the one before."""
+    """Measure the orders of the whirl's distance from its limit, at doubled friction forces."""
     limit = (1.0, theory.spin_of_large_whirl(theory.RING) / theory.RING.disc_speed)
     return _orders(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
 
 
 def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
-    """Compare ``orders`` in the friction force with those in which radius and spin come near to ``others``."""
+    """Compare ``orders`` in the friction force with the orders at which radius and spin converge to ``others``."""
     found = circles_of(engine, theory.CENTRED)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
     observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])
@@ -186,7 +186,7 @@ def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[flo
     )
 
 
-# --- Whirls with an offset, which are periodic orbits, and how the offset shifts and changes them.
+# --- Whirls with an offset: periodic orbits, shifted and changed by the offset.
 
 EXTRAPOLATED = (
     f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated; model error: the "
@@ -205,14 +205,14 @@ EXTRAPOLATED = (
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
-    """Compare the engine's periodic orbits, by μN in N and number, with those of the reference."""
+    """Compare the engine's periodic orbits with the reference's; ``whirls`` contains μN in N and number of each."""
     exact = [theory.orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
         lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls],
         theory.ORBIT_TOLERANCE,
     )
-    # The multiplier of a shift in time is 1; the one next to it tells by how much an error of the flow is amplified.
+    # The multiplier of a shift in time is 1; the next closest one shows how much errors of the flow are amplified.
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
     found = with_tolerance(found, predicted[:, 2] / np.array(distances)[:, 1])
     loads = [load for load, _ in whirls]
@@ -236,7 +236,7 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) 
 def orbit_of(
     engine: Engine, load: float, which: int, tolerance: float, offset: float = theory.RING.offset
 ) -> Orbit:
-    """Return the same whirl as the engine has it."""
+    """Return a whirl found by shooting with the engine, from the reference's."""
     guess = theory.orbit_of_reference(load, which, offset)
     return whirl_orbit(
         guess.system,
@@ -249,14 +249,14 @@ def orbit_of(
 
 
 def sizes_of(orbit: Orbit) -> FloatArray:
-    """Return period, least and greatest radius, least, greatest and mean spin, in s, m and rad/s."""
+    """Return period, smallest and largest radius, smallest, largest and mean spin, in s, m and rad/s."""
     spin = orbit.trajectory.states[:-1, -1]
     return np.array([orbit.period, *theory.extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 
 
 @functools.lru_cache(maxsize=4)
 def parts(engine: Engine) -> Measurement:
-    """Return centre, amplitude of the first harmonic, mean spin of whirls with ``HALVED_OFFSETS``, shape (3, 4)."""
+    """Return x, y of the centre, amplitude of the first harmonic, mean spin at ``HALVED_OFFSETS``, shape (3, 4)."""
 
     def found(tolerance: float) -> FloatArray:
         whirls = [
@@ -285,7 +285,7 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
     swept=("offset",),
 )
 def offset_shifts(engine: Engine) -> Measured:
-    """Observe the order of what the first-order response leaves of the shift."""
+    """Measure the order of the shift's distance from the first-order response."""
     found = parts(engine)
     discs = [
         with_load(replace(theory.RING, offset=offset), theory.OFFSET_LOAD) for offset in theory.HALVED_OFFSETS
@@ -306,7 +306,7 @@ def offset_shifts(engine: Engine) -> Measured:
     swept=("offset",),
 )
 def offset_changes_size(engine: Engine) -> Measured:
-    """Observe the orders of the changes against the circle without offset."""
+    """Measure the orders of the changes from the circle without offset."""
     found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
     _, _, radius, spin = found.value[1]
     return replace(

@@ -1,4 +1,4 @@
-"""Fig. 11: the whirl whose radius and spin swell and shrink, how it comes about, and for which offsets."""
+"""Fig. 11: the modulated cycle of the whirl, its origin, and the offsets at which it exists."""
 
 # ruff: noqa: I001 - the order of the report
 from compare.studies.disc.fig11 import whirl, offsets, of_theory

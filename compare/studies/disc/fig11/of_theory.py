@@ -1,4 +1,4 @@
-"""What follows without an engine: which law of friction has the whirl unstable, and what the motion settles on."""
+"""Claims without an engine: stability of the whirl under each contact law, and the motion's limit cycle."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from reference_model.systems import FloatArray
     "settles.",
 )
 def shooting() -> Measured:
-    """Compare the modulated cycle as a relative periodic orbit with the motion that has settled."""
+    """Compare the modulated cycle found by shooting with the settled motion."""
     predicted, error = predicted_modulation()
     guess = simulate(RING, START, parameters.TIMES, tolerance=1e-7)
 
@@ -61,7 +61,7 @@ def shooting() -> Measured:
     swept=("contact_points",),
 )
 def unstable() -> Measured:
-    """Look at the sign of the largest real part of an eigenvalue under each law."""
+    """Check the sign of the largest real part of the eigenvalues under each law."""
     whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, parameters.EXPANSION)]
     return answers_of(
         np.array((1.0, 1.0, -1.0)) * [whirl.eigenvalue.real for whirl in whirls_of],
@@ -80,7 +80,7 @@ def unstable() -> Measured:
     basis="reference",
 )
 def dies_out_by_23() -> Measured:
-    """Compare a deviation from the whirl of (23), simulated with it, with its eigenvalues."""
+    """Compare a deviation from the whirl of (23), simulated with (23), with the whirl's eigenvalues."""
     exact = steady_whirl(RING, parameters.EXPANSION).eigenvalue
     reference = Engine(
         "reference by (23)", functools.partial(simulate, contact=parameters.EXPANSION), ("ring",)
@@ -105,7 +105,7 @@ def dies_out_by_23() -> Measured:
     basis="reference",
 )
 def both_stable() -> Measured:
-    """Take the multipliers of the whirl, and follow the modulated motion, at the same X0."""
+    """Check the multipliers of the whirl and simulate the modulated motion at the same X0."""
     orbit = whirl_orbit(disc_at(parameters.BOTH_STABLE), tolerance=WORKING)
     reference = Engine("reference", simulate, ("ring",))
 

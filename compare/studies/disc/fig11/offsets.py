@@ -1,4 +1,4 @@
-"""The whirl of Fig. 11 with an offset, and on six points."""
+"""Claims on the motion of Fig. 11 with an offset, and on six points."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
 from reference_model import Orbit, Trajectory, simulate
 from reference_model.systems import FloatArray
 
-# --- For which offset the modulated cycle of Fig. 11 exists: between steady whirl and self-centred equilibrium.
+# --- Ends of the motion over the offset: modulated cycle, steady whirl or self-centred equilibrium.
 
 
 @STUDY.claim(
@@ -44,20 +44,20 @@ from reference_model.systems import FloatArray
     swept=("offset",),
 )
 def critical(engine: Engine) -> Measured:
-    """Compare the critical X0 by the multipliers of the engine's own whirl with that by exact ones."""
+    """Compare the critical X0 by multipliers of the engine's whirl with the critical X0 by exact multipliers."""
     predicted, found = critical_of(engine)
     return Measured(predicted=predicted, value=found.value, error=found.error, source=SOURCE)
 
 
 @functools.lru_cache(maxsize=4)
 def critical_of(engine: Engine) -> tuple[float, Measurement]:
-    """Return the critical X0 in m by exact multipliers and by the engine's own; no numbers where there is none."""
+    """Return the critical X0 in m by exact multipliers and by the engine's, NaN if there is none."""
     found = functools.cache(lambda tolerance: critical_offset(engine, tolerance))
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0])
         _, interpolation, slope, near = found(WORKING)
         exact = multipliers_by_variation(disc_at(float(measured)), near)
-    except RuntimeError:  # no whirl, or none that could be critical
+    except RuntimeError:  # no whirl, or no critical one
         return math.nan, Measurement(np.array(math.nan), np.array(0.0))
     error = error + interpolation + error_of_monodromy(near) / abs(slope)
     predicted = float(measured) - (pair_modulus(exact) - 1.0) / slope
@@ -65,10 +65,10 @@ def critical_of(engine: Engine) -> tuple[float, Measurement]:
 
 
 def error_of_monodromy(orbit: Orbit) -> float:
-    """Return about how wrong the linearised return map is: it should leave a shift in time as it is."""
+    """Return an estimated relative error of the linearised return map, which should preserve a shift in time."""
     shift = np.array(rates(disc_at(orbit.system.offset), orbit.state))[parameters.WITHOUT_ANGLE]
     change = orbit.monodromy @ shift - shift
-    # One direction of as many as there are states.
+    # The shift is one of len(shift) directions.
     return math.sqrt(len(shift)) * float(np.linalg.norm(change) / np.linalg.norm(shift))
 
 
@@ -83,7 +83,7 @@ def error_of_monodromy(orbit: Orbit) -> float:
     swept=("offset",),
 )
 def ends(engine: Engine, offsets: Sequence[float] = parameters.OFFSETS) -> Measured:
-    """See what the motion ends in at ``offsets`` in m."""
+    """Compare the final motions at ``offsets`` in m with the predicted kinds."""
     critical, _ = critical_of(engine)
     predicted = [2 if offset < critical else 1 if offset < rest_offset() else 0 for offset in offsets]
     extents: dict[float, list[list[float]]] = {}
@@ -109,7 +109,7 @@ def end_of(
     start: tuple[float, ...] = START,
     tolerance: float = parameters.ENDS_TOLERANCE,
 ) -> tuple[list[float], str]:
-    """Return least and greatest radius and spin in the end, and its kind, one of ``KINDS``."""
+    """Return smallest and largest final radius in m and spin in rad/s, and the kind, one of ``KINDS``."""
     step = 2.0 * math.pi / RING.natural_frequency / parameters.SAMPLES_A_TURN
     run = engine.simulate(
         disc_at(offset), start, np.arange(0.0, parameters.ENDS_UNTIL, step), tolerance=tolerance
@@ -129,7 +129,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, of which single ones come to rest.
+# --- The modulated motion on six points, where single points come to rest.
 
 NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
@@ -143,7 +143,7 @@ NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
     note=f"{NOTE} A rest too many or too few shows as a missing number.",
 )
 def points_rest(engine: Engine) -> Measured:
-    """Compare when single points come to rest and let go with when they do in the reference."""
+    """Compare the times at which single points come to rest and slip again with the reference."""
     if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
         raise UnsupportedSystemError(f"{engine.name} does not tell when single points rest")
     predicted = rests_of_points(_reference())
@@ -175,7 +175,7 @@ def points_rest(engine: Engine) -> Measured:
     note=NOTE,
 )
 def extremes_on_six_points(engine: Engine) -> Measured:
-    """Compare the extremes over one modulation with those of the reference."""
+    """Compare the extremes over one modulation with the reference."""
     found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), parameters.OF_RESTS, alike=False)
     return Measured(
         predicted=extremes_of(_reference()),
@@ -187,7 +187,7 @@ def extremes_on_six_points(engine: Engine) -> Measured:
 
 
 def rests_of_points(trajectory: Trajectory) -> FloatArray:
-    """Return when single points come to rest and let go, in s, one after the other, shape (2·rests,)."""
+    """Return start and end in s of each rest of a single point, in order of time, shape (2·rests,)."""
     return np.ravel([(phase.start, phase.end) for phase in trajectory.phases if phase.kind == "pivot"])
 
 

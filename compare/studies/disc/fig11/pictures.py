@@ -1,4 +1,4 @@
-"""Figures of the modulated cycle: histories, spectrum and section, growth out of the whirl, and the offsets."""
+"""Figures of the modulated cycle: histories, spectrum and section, growth from the whirl, and the offsets."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ K = RING.natural_frequency
 EXPANDED = "(23)"
 
 ENLARGED = 20.0
-"""By which the paper's figure enlarges x."""
+"""Factor on x in the paper's figure."""
 
 SIDE_BANDS = 5
 
 SETTLED = 230.0
-"""In s: sections and spectra are taken after it."""
+"""Time in s from which sections and spectra are computed."""
 
 X0_AXIS = 0.025
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there."""
+    """Draw the figures that have data."""
     figures = {"fig11-history": draw_histories(data)} if data else {}
     if any(words in data[engine] for engine in engines_in(data) for words in DISCS):
         figures["fig11-section"] = draw_section(data)
@@ -53,12 +53,12 @@ def draw(data: ByEngine) -> Figures:
 
 
 def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
-    """Return the states of the disc on that contact by who computed them."""
+    """Return the states of the disc on contact ``words``, by engine (or theory)."""
     return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
 
 
 def draw_histories(data: ByEngine) -> Figure:
-    """Draw spin and position over time as in the paper's figure, and the spin alone enlarged."""
+    """Draw spin and x over time as in the paper's figure, and the spin alone enlarged."""
     figure, panels = new_figure(
         ncols=3, nrows=2, width=13.0, height=6.0, sharex=True, sharey="row", height_ratios=(3, 2)
     )
@@ -128,7 +128,7 @@ def draw_section(data: ByEngine) -> Figure:
 
 
 def draw_spectrum(panel: Axes, data: ByEngine) -> None:
-    """Draw the lines of the cycle on the ring over the spectrum of six points."""
+    """Draw the spectral lines of the cycle on the ring over the spectrum on six points."""
     floor = 1e-4
     for name, states in histories(data, "six points").items():
         frequency, amplitude = spectrum(states[TIMES > SETTLED])
@@ -185,7 +185,7 @@ def draw_spectrum(panel: Axes, data: ByEngine) -> None:
 
 
 def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return angular frequencies in rad/s and amplitudes of x + iy in m, of lines in a Hann window."""
+    """Return angular frequencies in rad/s near k and amplitudes of x + iy in m, with a Hann window."""
     window = np.hanning(len(states))
     padded = 8 * len(states)
     amplitude = np.abs(np.fft.fft(window * (states[:, 0] + 1j * states[:, 1]), padded)) / np.sum(window)
@@ -198,7 +198,7 @@ def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
     """Return the amplitudes in m of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
 
-    In axes that turn with the carrier the cycle is periodic: the lines are its Fourier coefficients.
+    They are the Fourier coefficients of the cycle in axes that turn with the carrier, where it is periodic.
     """
     times = TIMES[-1] - period + period * np.arange(4096) / 4096.0
     z = CubicSpline(TIMES, states[:, 0] + 1j * states[:, 1])(times) * np.exp(-1j * carrier * times)
@@ -207,7 +207,7 @@ def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
 
 
 def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, FloatArray]:
-    """Return radius in m and spin in rad/s whenever the centre crosses the positive x axis after ``after`` s."""
+    """Return radius in m and spin in rad/s at each crossing of the positive x axis later than ``after`` in s."""
     x, y, spin = (CubicSpline(TIMES, states[:, i]) for i in (0, 1, 5))
     crossings = y.roots(extrapolate=False)
     crossings = crossings[(x(crossings) > 0.0) & (crossings > after)]
@@ -215,7 +215,7 @@ def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, Flo
 
 
 def draw_growth(data: ByEngine) -> Figure:
-    """Draw how a deviation grows until it is the modulated cycle, beside the exponential of the eigenvalue."""
+    """Draw the growth of a deviation to the modulated cycle, and the exponential of the eigenvalue."""
     figure, panels = new_figure(ncols=2, width=10.5, height=3.8, sharey=True)
     for row, (panel, words) in enumerate(zip(panels, DISCS, strict=True)):
         for name in engines_in(data):
@@ -244,7 +244,7 @@ def draw_growth(data: ByEngine) -> Figure:
 
 
 def draw_offsets(data: ByEngine) -> Figure:
-    """Draw radius and spin in the end over the offset, with the branches of whirl and equilibrium."""
+    """Draw final radius and spin over the offset, with the branches of whirl and equilibrium."""
     figure, panels = new_figure(ncols=2, width=11.5, height=4.2)
     theory = data["theory"]
     critical, rest = float(theory["critical offset"]), float(theory["rest offset"])

@@ -1,4 +1,4 @@
-"""Fig. 11 without an engine: the whirl and its modes, the modulated cycle, and the branches over the offset."""
+"""Theory of Fig. 11: the whirl and its modes, the modulated cycle, and the branches over the offset."""
 
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ from reference_model.contact.contact_law import IsotropicContact
 from reference_model.steady.stability import jacobian_without_angle, turning_frame_jacobian
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-# ---------------------------------------------------------------- the whirl and the modes by which it is left
+# ---------------------------------------------------------------- the whirl and its critical modes
 
 
 @dataclass(frozen=True, eq=False)
 class SteadyWhirl:
-    """A whirl that comes back turned after each period, and the pair of modes by which it is left.
+    """A whirl that is periodic up to a rotation, and its least damped pair of modes.
 
-    On the continuous ring it is a circle, which comes back at any time. On n points it has a ripple besides, which
-    repeats whenever the disc has turned by 2π/n against the line from the axis to its centre.
+    On the continuous ring the whirl is a circle. On n points it also has a ripple, which repeats each time the disc
+    has turned by 2π/n relative to the line from the axis to its centre.
 
     Parameters
     ----------
     state : array of shape (6,)
         A state on the whirl.
     period : float
-        In s.
+        Period in s.
     turn, advance : float
-        Angle in rad by which all has turned about the axis in a period, and by which the disc has turned further.
+        Rotation of the whirl about the axis in a period, in rad, and the disc's additional rotation.
     eigenvalue : complex
-        Growth rate and frequency in 1/s of the pair that decays slowest, with the positive frequency.
+        Growth rate and frequency (> 0) in 1/s of the least damped pair.
     mode, projection : complex array of shape (6,)
-        Right and left eigenvector, with a product of 1: of a deviation d, in the axes that turn with the whirl, the
-        share projection·d grows with the eigenvalue.
+        Right and left eigenvector, with product 1. The share projection·d of a deviation d, in axes that turn with
+        the whirl, grows with the eigenvalue.
 
     """
 
@@ -62,7 +62,7 @@ class SteadyWhirl:
 
     @property
     def radius(self) -> float:
-        """Of the circle on which the centre starts, in m."""
+        """Initial distance of the centre from the axis, in m."""
         return math.hypot(*self.state[:2])
 
     def displaced(self, amplitude: float) -> FloatArray:
@@ -72,9 +72,9 @@ class SteadyWhirl:
 
 @functools.cache
 def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
-    """Return the whirl of ``disc`` without offset under its own law or that of ``contact``.
+    """Return the whirl of ``disc`` without offset under its own contact law or under ``contact``.
 
-    On points it is the one next to the circle of the continuous ring.
+    On points it is the whirl closest to the circle of the continuous ring.
     """
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
@@ -83,7 +83,7 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     values, right = np.linalg.eig(turning_frame_jacobian(ring, circle.state, contact))
     mode, projection = _growing(values, right)
     period = 2.0 * math.pi / circle.frequency
-    # The angle, of which nothing depends, does not take part.
+    # The equations do not depend on the angle, so its components are 0.
     return SteadyWhirl(
         circle.state,
         period,
@@ -96,7 +96,7 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
 
 
 def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
-    """Return the whirl on points near to the state ``guess``, with its linearised return map by differences."""
+    """Return the whirl on points close to ``guess``, with modes of the return map linearised by differences."""
     reference = Engine("reference", simulate, ("points",))
     motion = steady_motion(reference, disc, guess, TRUTH)
     if motion is None:
@@ -120,12 +120,12 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
 
 
 def _pair(values: ComplexArray) -> complex:
-    """Return the eigenvalue of the slowest pair, with the positive imaginary part."""
+    """Return the eigenvalue of the least damped pair with positive imaginary part."""
     return complex(max((value for value in values if value.imag > 0.0), key=lambda value: value.real))
 
 
 def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-    """Return both eigenvectors of the slowest pair, the right one with its place of length 1."""
+    """Return right and left eigenvector of the least damped pair; the right one's (x, y) has length 1."""
     which = int(np.argmin(np.abs(values - _pair(values))))
     left = np.linalg.inv(right)[which]
     size = np.linalg.norm(right[:2, which])
@@ -136,9 +136,10 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 
 
 def modulations(states: FloatArray) -> FloatArray:
-    """Return period, turn, least and greatest radius and spin of each modulation at ``TIMES``, shape (n, 6).
+    """Return period, turn, smallest and largest radius and spin of each modulation, shape (n, 6).
 
-    In s, rad, m and rad/s, from one maximum of the radius to the next; no rows where there are no two.
+    Units are s, rad, m and rad/s. ``states`` are those at ``TIMES``. A modulation is the interval between successive
+    maxima of the radius.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(parameters.TIMES, np.hypot(x, y)), CubicSpline(parameters.TIMES, states[:, 5])
@@ -156,7 +157,7 @@ def modulations(states: FloatArray) -> FloatArray:
 
 
 def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the last row of :func:`modulations` and its change from the one before, no numbers without them."""
+    """Return the last row of :func:`modulations` and its change from the previous one, NaN without two rows."""
     found = modulations(states)
     if len(found) < 2:
         return np.full(6, np.nan), np.full(6, np.nan)
@@ -165,7 +166,7 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @functools.cache
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
-    """Return the last modulation of (19), integrated as it stands, and its error, both of shape (6,)."""
+    """Return the last modulation by direct integration of (19), and its error, both of shape (6,)."""
     fine, rough = (
         last_modulation(integrated(RING, START, parameters.UNTIL, len(parameters.TIMES), tolerance))
         for tolerance in (1e-12, 1e-11)
@@ -174,7 +175,7 @@ def predicted_modulation() -> tuple[FloatArray, FloatArray]:
 
 
 def extremes_of(trajectory: Trajectory) -> FloatArray:
-    """Return least and greatest radius in m and spin in rad/s, shape (4,)."""
+    """Return smallest and largest radius in m and spin in rad/s of a spline, shape (4,)."""
     found = []
     for values in (trajectory.radius, trajectory.states[:, 5]):
         curve = CubicSpline(trajectory.times, values)
@@ -192,16 +193,16 @@ def disc_at(offset: float) -> DiscOnDisc:
 
 
 def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
-    """Return the modulus of the largest pair of conjugate multipliers; no number if there is none."""
+    """Return the modulus of the largest conjugate pair of multipliers, NaN if there is none."""
     return max((abs(value) for value in multipliers if value.imag > 0.0), default=math.nan)
 
 
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
-    """Return X0 in m of modulus 1, its error, the slope in 1/m, and the whirl in the middle of ``TRIED``.
+    """Return the critical X0 in m, its error, the slope of the modulus in 1/m, and the middle whirl of ``TRIED``.
 
-    From a parabola through the moduli at ``TRIED``; the error is the change by a straight line through the two that
-    are next to it, which is more than a term of third degree makes. Raises ``RuntimeError`` where there is no such
-    whirl, or none that is nearly critical.
+    A parabola through the moduli at ``TRIED`` gives the X0 of modulus 1. The error is the change with a straight line
+    through the two nearest points, which exceeds the effect of a cubic term. Raises ``RuntimeError`` if there is no
+    whirl, or if it is not nearly critical.
     """
     orbits: list[Orbit] = []
     for offset in parameters.TRIED:
@@ -224,7 +225,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
-    # So far from where it was laid a parabola says nothing any more.
+    # Far from its points the parabola is not valid.
     roots = [root.real for root in parabola.roots() if root.imag == 0.0 and abs(root.real) < 0.1 * middle]
     if not roots:
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
@@ -236,21 +237,21 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 
 @functools.cache
 def _whirl_of_reference() -> Orbit:
-    """Return where shooting starts: the whirl at the first X0 of ``TRIED``."""
+    """Return the reference's whirl at the first X0 of ``TRIED``, the first guess for shooting."""
     return whirl_orbit(disc_at(parameters.TRIED[0]), tolerance=1e-8, samples=parameters.SAMPLES_A_TURN)
 
 
 @functools.cache
 def critical_offset_of_reference() -> float:
-    """Return the critical X0 in m, from the reference."""
+    """Return the critical X0 in m by the reference."""
     return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
 
 
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
-    """Return the multipliers, shape (5,), of the whirl of ``disc`` next to the orbit ``near``.
+    """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    The orbit is found anew, by Newton's method with the exact derivative of the flow: (19) and its linearisation
-    are integrated together.
+    Newton's method finds the orbit with the exact derivative of the flow, by integrating (19) together with its
+    linearisation. Raises ``RuntimeError`` if it does not converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:
@@ -275,9 +276,9 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
 
 @functools.cache
 def rest_offset() -> float:
-    """Return X0 in m at which the self-centred equilibrium becomes stable.
+    """Return the X0 in m above which the self-centred equilibrium is stable.
 
-    The whirl goes on beyond, by a quarter of a per cent of X0.
+    The whirl exists up to an X0 that is 0.25 % larger.
     """
 
     def rate(offset: float) -> float:
@@ -287,16 +288,16 @@ def rest_offset() -> float:
 
 
 def extents(run: Trajectory, last: int = 0) -> list[float]:
-    """Return least and greatest radius in m and spin in rad/s, of the ``last`` samples or of all."""
+    """Return smallest and largest radius in m and spin in rad/s of the ``last`` samples, or of all."""
     radius, spin = run.radius[-last:], run.states[-last:, 5]
     return [radius.min(), radius.max(), spin.min(), spin.max()]
 
 
-# ---------------------------------------------------------------- what the figures show
+# ---------------------------------------------------------------- data of the figures
 
 
 def curves(whirling: ArrayLike = parameters.BRANCH) -> Data:
-    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset: of whirls at ``whirling`` in m."""
+    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` in m."""
     whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, parameters.EXPANSION)]
     return {
         "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in whirls_of]),
@@ -309,7 +310,7 @@ def curves(whirling: ArrayLike = parameters.BRANCH) -> Data:
 
 
 def branches(whirling: ArrayLike) -> Data:
-    """Follow whirl and equilibrium over X0; the critical X0 is added."""
+    """Return whirl and equilibrium over X0, with the critical X0 added to ``whirling``."""
     orbits: list[Orbit] = []
     offsets = np.sort(np.append(whirling, critical_offset_of_reference()))
     for offset in offsets:

@@ -1,4 +1,4 @@
-"""Sliding for a while, and how small deviations from the whirl of Fig. 11 grow, on ring and on single points."""
+"""Claims on sliding motions, the growth of small deviations from the whirl, and the modulated cycle of Fig. 11."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ NOTE = (
     each=tuple(DISCS),
 )
 def slides(engine: Engine, contact: str) -> Measured:
-    """Compare the trajectory of a disc that slides all the time with an integration of (19) as it stands."""
+    """Compare the trajectory of a disc that slides all the time with a direct integration of (19)."""
     disc = DISCS[contact]
     predicted, rougher = (
         integrated(disc, parameters.SLIDING_START, parameters.SLIDING[-1], len(parameters.SLIDING), tolerance)
@@ -69,7 +69,7 @@ def slides(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
-    """Compare the growth of a deviation with the real part of the slowest pair of eigenvalues."""
+    """Compare the growth of a deviation with the real part of the least damped pair of eigenvalues."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     times, sizes = departure(engine, DISCS[contact], whirl, parameters.FOLLOWED)
     return Measured(
@@ -94,7 +94,7 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def frequency_of_growth(engine: Engine, contact: str) -> Measured:
-    """Compare the frequency of a deviation with the imaginary part of the slowest pair of eigenvalues."""
+    """Compare the frequency of a deviation with the imaginary part of the least damped pair of eigenvalues."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     return Measured(
         predicted=whirl.eigenvalue.imag,
@@ -119,10 +119,10 @@ def _linearised(disc: DiscOnDisc) -> str:
 
 @functools.lru_cache(maxsize=4)
 def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
-    """Return growth rate and frequency in 1/s of a deviation from the whirl under a law of ``contact``, shape (2,).
+    """Return growth rate and frequency in 1/s of a deviation from the whirl under the law ``contact``, shape (2,).
 
-    Straight lines through ln|q| and the phase of q over time. The error is the 95 % interval that the scatter about
-    them gives, the change with a deviation twice as large and that at a smaller tolerance.
+    They are the slopes of straight lines through ln|q| and the phase of q over time. The error is the 95 % interval
+    of the fit plus the changes with twice the deviation and at a smaller tolerance.
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
@@ -138,7 +138,8 @@ def deviation(
 ) -> tuple[FloatArray, ComplexArray]:
     """Return times in s, once a period, and the share of the pair in a deviation, 1 at the start.
 
-    Half the difference of two simulations that start on opposite sides of the whirl: its even powers drop out.
+    The deviation is half the difference of two simulations that start on opposite sides of the whirl, which removes
+    even powers.
     """
     turns = np.arange(round(parameters.DURATION / whirl.period) + 1)
     times = turns * whirl.period
@@ -149,13 +150,13 @@ def deviation(
         )
         for sign in (1.0, -1.0)
     )
-    # The start is the real part of the mode: half of it, and half of its conjugate.
+    # The real part of the mode contains half of it, so the whole difference has the share 1 at the start.
     share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
     return np.asarray(times, dtype=float), np.asarray(share)
 
 
 def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArray]:
-    """Return the slopes of ln|q| and of the phase of q, and what the scatter leaves open of them."""
+    """Return the slopes of ln|q| and of the phase of q, and their 95 % intervals, shape (2,) each."""
     logarithms = np.column_stack((np.log(np.abs(share)), np.unwrap(np.angle(share))))
     matrix = np.column_stack((np.ones_like(times), times))
     inverse = np.linalg.pinv(matrix)
@@ -171,7 +172,7 @@ def departure(
 ) -> tuple[FloatArray, FloatArray]:
     """Return times in s, once a period, and the size of the pair's share in units of the radius.
 
-    The deviation starts ten times as large as that of :func:`deviation`, and is followed beyond where it is small.
+    The deviation starts ten times larger than in :func:`deviation` and grows beyond the linear range.
     """
     turns = np.arange(round(until / whirl.period) + 1)
     times = turns * whirl.period
@@ -182,7 +183,7 @@ def departure(
     return np.asarray(times, dtype=float), np.asarray(sizes)
 
 
-# --- The modulated cycle itself on the continuous ring: its period, its turn about the axis and its extremes.
+# --- The modulated cycle on the continuous ring: period, turn about the axis and extremes.
 
 CYCLE_NOTE = (
     f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
@@ -201,7 +202,7 @@ CYCLE_NOTE = (
     named={"period of the modulation": 0, "turn in it": 1},
 )
 def period_and_turn(engine: Engine) -> Measured:
-    """Compare period and turn of the last modulation with those of an integration of (19) as it stands."""
+    """Compare period and turn of the last modulation with a direct integration of (19)."""
     found = modulation(engine)
     return Measured(
         predicted=predicted_modulation()[0][:2],
@@ -221,7 +222,7 @@ def period_and_turn(engine: Engine) -> Measured:
     note=CYCLE_NOTE,
 )
 def extremes(engine: Engine) -> Measured:
-    """Compare the extremes of the last modulation with those of an integration of (19) as it stands."""
+    """Compare the extremes of the last modulation with a direct integration of (19)."""
     found = modulation(engine)
     return Measured(
         predicted=predicted_modulation()[0][2:],
@@ -233,7 +234,7 @@ def extremes(engine: Engine) -> Measured:
 
 @functools.lru_cache(maxsize=4)
 def modulation(engine: Engine) -> Measurement:
-    """Return the last modulation of the motion, as ``last_modulation`` does, with the error of both sides."""
+    """Return the engine's ``last_modulation``, with the errors of the engine and the prediction."""
     found = refined(
         lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], parameters.OF_CYCLE, alike=False
     )

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     pass
 
 LEAST_DEVIATION = 1e-8
-"""|ln U/W| below which an engine's tolerance is drawn and not the motion."""
+"""Smallest |ln U/W| in the figure; smaller values show an engine's tolerance, not the motion."""
 
 
 def draw(data: ByEngine) -> Figures:

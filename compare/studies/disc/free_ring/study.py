@@ -1,4 +1,4 @@
-"""The study of the free ring, to which the modules beside this one add its claims."""
+"""Study of the free ring and its claims."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
-# --- How sliding and spinning end: at once, and in a ratio that forgets the start.
+# --- The end of sliding and spinning: at the same time, in a ratio independent of the start.
 
 
 @STUDY.claim(
@@ -38,11 +38,11 @@ STUDY.provides(curves=theory.curves)
 def end_together(
     engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
 ) -> Measured:
-    """Extrapolate both speeds to zero."""
+    """Compare the times at which both speeds, extrapolated, reach zero."""
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
-        """Return by how much the rest of the centre is later than that of the rim, from two pairs of samples."""
+        """Return the delay of the centre's rest after the rim's, over the time to rest, from two pairs of samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - theory.REMAINING[:3])
@@ -52,9 +52,9 @@ def end_together(
         return np.array(found)
 
     found = refined(apart, theory.TOLERANCE)
-    # A line through two speeds is zero to within three errors of a speed over its slope, which is above 0.4·g here.
+    # The zero of a line through two speeds has an error of three errors of a speed over its slope, > 0.4·g here.
     noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
-    # Speeds in a ratio that still changes are no straight lines: from farther away that is seen better.
+    # While the ratio still changes, the speeds are not straight lines; earlier samples show this more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
     return Measured(
         system=theory.TABLE,
@@ -67,7 +67,7 @@ def end_together(
 
 
 def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
-    """Return where straight lines through neighbours, the last first, are zero."""
+    """Return the zeros of straight lines through neighbouring samples, last pair first."""
     return times[:-1] + speeds[:-1] * (times[:-1] - times[1:]) / (speeds[1:] - speeds[:-1])
 
 
@@ -79,7 +79,7 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
     "and the change at a smaller one. Model error: what the approach to 1 leaves.",
 )
 def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
-    """Compare the ratio at the last of the times with 1."""
+    """Compare the ratio at the latest sample with 1."""
 
     def ratio(tolerance: float) -> FloatArray:
         speeds = [
@@ -103,7 +103,7 @@ def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> 
 
 
 def ratio_noise(left: ArrayLike) -> FloatArray:
-    """Return the error of ln U/W that the tolerance of both speeds makes when so much time (s) is left, for c = 1."""
+    """Return the error of ln U/W due to the tolerance of both speeds, ``left`` s before rest, for c = 1."""
     speed = 2.0 / math.pi * theory.DECELERATION * np.asarray(left)
     return np.asarray(2.0 * theory.TOLERANCE / speed)
 
@@ -130,13 +130,13 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
         return np.array(found)
 
     found = refined(constants, theory.TOLERANCE)
-    there = np.isfinite(found.error)  # what comes and goes with the tolerance makes nothing else open
+    there = np.isfinite(found.error)  # a sample that depends on the tolerance leaves the others conclusive
     largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
     predicted = np.array([theory.expected_approach(throw) for throw in throws])
-    # An error of δ changes L by as much, relative to δ.
+    # dL = −dδ/δ.
     left = predicted[:, np.newaxis] / np.array(theory.NEARNESSES)
     noise = left * ratio_noise(left) / theory.deviation(theory.NEARNESSES)
-    # The law of the approach is that of small δ: the integrals tell what it leaves out at the δ of the measurement.
+    # The law of the approach is valid for small δ; integrals to the measured δ give its error.
     left_out = [
         abs(
             theory.expected_approach(throw, float(theory.deviation(theory.NEARNESSES[0])))
@@ -157,7 +157,7 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
 
 
 def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
-    """Return both speeds in m/s, and A over the remaining time, from the start to rest."""
+    """Return the figure's data: both speeds in m/s, and A over the remaining time, from the start to rest."""
     speeds, approaches = [], []
     for throw in throws:
         trajectory, times = (
@@ -181,7 +181,7 @@ def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLik
     swept=("polar_inertia",),
 )
 def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
-    """Extrapolate the ratio of other moments of inertia to the end."""
+    """Compare the ratio for other moments of inertia, extrapolated to the end, with the balance."""
 
     def ratios(tolerance: float) -> FloatArray:
         found = []
@@ -203,7 +203,7 @@ def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS)
 
 
 def _limit(last: float, middle: float, first: float) -> float:
-    """Return the limit of a sequence that approaches it like a geometric one (Aitken)."""
+    """Return the limit of a geometrically convergent sequence (Aitken)."""
     return float(last - (last - middle) ** 2 / ((last - middle) - (middle - first)))
 
 
@@ -216,7 +216,7 @@ def _limit(last: float, middle: float, first: float) -> float:
     swept=("polar_inertia",),
 )
 def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> Measured:
-    """Fit the power with which the ratio goes to zero or to infinity."""
+    """Fit the power of the ratio that tends to zero."""
     predicted, found = [], []
     for throw in throws:
         slow = throw.inertia < 0.5
@@ -243,7 +243,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     )
 
 
-# --- When and where a ring comes to rest, and what its energy becomes.
+# --- Time and position of rest, and the energy balance.
 
 
 @STUDY.claim(
@@ -256,7 +256,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     swept=("polar_inertia",),
 )
 def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
-    """Compare rest and ways with the integrals."""
+    """Compare time and position of rest with the integrals."""
     found = stops_of(engine, throws)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
@@ -272,7 +272,7 @@ def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) ->
 
 
 def stops_of(engine: Engine, throws: Sequence[theory.Throw]) -> Measurement:
-    """Return the time to rest in s, and x, y in m and the angle in rad there, shape (n, 4)."""
+    """Return the time to rest in s, and x, y in m and the angle in rad at rest, shape (n, 4)."""
 
     def found(tolerance: float) -> FloatArray:
         trajectories = [theory.thrown(engine, throw, tolerance) for throw in throws]
@@ -298,10 +298,10 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
     basis="reference",
 )
 def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
-    """Compare the energy that is lost with the integral of the friction power."""
+    """Compare the lost energy with the integral of the friction power."""
 
     def imbalance(tolerance: float) -> FloatArray:
-        """Return the largest difference in time, as a fraction of all energy, by all samples and by every second."""
+        """Return the largest difference over the initial energy, by all samples and by every second one."""
         found = []
         for throw in throws:
             times = theory.uniform_times(engine, throw)
@@ -327,7 +327,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     )
 
 
-# --- For which bodies there is a terminal ratio, and that of a disc, which is published.
+# --- Existence of a terminal ratio, and the published ratio of a disc.
 
 
 @STUDY.claim(
@@ -337,7 +337,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
-    """Look for a balance of both decelerations."""
+    """Check for which J a balance of both decelerations exists."""
 
     def has_ratio(inertia: float) -> bool:
         slowing = Slowing(inertia)
@@ -357,11 +357,11 @@ def ratio_exists() -> Measured:
     "error: half of the last digit that is published.",
 )
 def published_ratio() -> Measured:
-    """Compare the balance of an annulus without a hole with the literature."""
+    """Compare the balance of a full disc with the literature."""
     face = Annulus(0.0, 1.0, rings=16)
 
     def unevenness(ratio: float) -> float:
-        """Return q for J = mR²/2."""
+        """Return the difference of both relative decelerations for J = mR²/2."""
         resistance, moment = face.shares(ratio, 1.0)
         return resistance / ratio - moment / 0.5
 
@@ -369,6 +369,6 @@ def published_ratio() -> Measured:
         predicted=0.653,
         value=brentq(unevenness, 0.1, 0.9, xtol=1e-12),
         error=1e-10,
-        model=5e-4,  # the digits that are published
+        model=5e-4,  # half of the last published digit
         source="Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007",
     )

@@ -1,11 +1,12 @@
-"""A ring thrown on a table at rest: the limits of its motion, beside the integrals of ``toolkit.free_bodies``.
+"""A ring thrown on a table at rest: limits of its motion, which supplement the integrals of ``toolkit.free_bodies``.
 
-Near to the ratio 1 of c = 1 the slopes of friction grow like a logarithm: Wδ' = −(2/π)·g·δ·L, L = ln(8/|δ|) − 2, and
-W = (2/π)·g·t with the remaining time t, so that L = A/t: |δ| = 8·e^(−2)·exp(−A/t), faster than any power.
+For c = 1 the slopes of friction grow logarithmically close to the ratio 1: Wδ' = −(2/π)·g·δ·L with
+L = ln(8/|δ|) − 2, and W = (2/π)·g·t with the remaining time t. Therefore L = A/t and |δ| = 8·e^(−2)·exp(−A/t), which
+decays faster than any power.
 
-There is a δ* for 1/2 < c < 2. For c < 1/2 spinning dies away before sliding, W/U ~ t^(1/(2c) − 1) with the remaining
-time t, because F → 1 and G → W/(2U); for c > 2 sliding does, U/W ~ t^(c/2 − 1). At the limits themselves the ratio
-goes there too, but more slowly than any power.
+A terminal δ* exists for 1/2 < c < 2. For c < 1/2 spinning dies out faster than sliding, W/U ~ t^(1/(2c) − 1), because
+F → 1 and G → W/(2U). For c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio has the
+same limits but converges more slowly than any power.
 
 Symbols and units are those of ``toolkit.free_bodies``.
 """
@@ -27,7 +28,7 @@ from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- A ring thrown on a table: how it is thrown, and when it is looked at.
+# --- Parameters of the ring, the throws and the samples.
 
 TABLE = replace(
     FIG8,
@@ -43,10 +44,10 @@ TABLE = replace(
 """The ring of Fig. 8 without springs, dampers and shaft on a master disc at rest, J = mR²."""
 
 DECELERATION = TABLE.friction_force / TABLE.mass
-"""g of a ring that only slides, in m/s²."""
+"""Deceleration g in m/s² of a ring that only slides."""
 
 SPEED = 0.3
-"""√(U² + W²) at the start in m/s, U of the centre and W of the rim."""
+"""Initial √(U² + W²) in m/s, with the speeds U of the centre and W of the rim."""
 
 HEADING = 0.7
 """Direction of the throw in rad from the x axis."""
@@ -54,14 +55,14 @@ HEADING = 0.7
 
 @dataclass(frozen=True)
 class Throw:
-    """How a ring is thrown.
+    """Initial conditions of a ring.
 
     Parameters
     ----------
     inertia : float
         c = J/(mR²).
     degrees : float
-        atan(W/U) at the start: 0 only slides, 90 only spins; negative is a spin in the other sense.
+        Initial atan(W/U) in degrees: 0 only slides, 90 only spins; a negative value reverses the spin.
 
     """
 
@@ -70,28 +71,28 @@ class Throw:
 
     @property
     def disc(self) -> DiscOnDisc:
-        """The parameters."""
+        """Parameters of the disc."""
         return replace(TABLE, polar_inertia=self.inertia * TABLE.mass * TABLE.contact_radius**2)
 
     @property
     def sliding(self) -> float:
-        """U at the start in m/s."""
+        """Initial U in m/s."""
         return 0.0 if abs(self.degrees) == 90.0 else SPEED * math.cos(math.radians(self.degrees))
 
     @property
     def rim(self) -> float:
-        """W at the start in m/s, with its sign."""
+        """Initial W in m/s, with the sign of the spin."""
         return SPEED * math.sin(math.radians(self.degrees))
 
     @property
     def state(self) -> FloatArray:
-        """The state at the start, shape (6,)."""
+        """Initial state, shape (6,)."""
         velocity = cmath.rect(self.sliding, HEADING)
         return np.array([0.0, 0.0, 0.0, velocity.real, velocity.imag, self.rim / TABLE.contact_radius])
 
     @property
     def name(self) -> str:
-        """Both parameters in words."""
+        """Label with both parameters."""
         return f"J/mR² = {self.inertia:g}, atan(W/U) = {self.degrees:g}°"
 
 
@@ -99,73 +100,73 @@ DEGREES = (8.0, -33.0, 57.0, -70.0)
 RINGS = tuple(Throw(1.0, degrees) for degrees in DEGREES)
 
 OTHERS = tuple(Throw(inertia, degrees) for inertia in (0.7, 1.4) for degrees in (15.0, -75.0))
-"""Bodies on a ring of contact with a terminal ratio that is another than 1, from both sides of it."""
+"""Throws with a terminal ratio other than 1, from both sides of the ratio."""
 
 INTEGRATED = (*RINGS, *OTHERS)
 
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
-"""Beyond the limits of 1/2 and 2."""
+"""Throws with J/(mR²) outside 1/2 to 2."""
 
 INTERVALS = 400
-"""Of the time to rest, for the heat and the figure."""
+"""Number of intervals of the time to rest, for the heat and the figure."""
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
-"""Remaining times at which the end is looked at, as fractions of the whole."""
+"""Remaining times of the samples close to rest, as fractions of the time to rest."""
 
 NEARNESSES = (7.0, 9.0)
-"""A/t at which the approach to the ratio 1 is looked at."""
+"""Values of A/t of the samples of the approach to the ratio 1."""
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times of a power law, as fractions of the whole."""
+"""Remaining times for the fit of a power law, as fractions of the time to rest."""
 
 TOLERANCE = WORKING / 10
-"""Ratios at the end are of what is left of a motion, down to a thousandth of it."""
+"""Tolerance for ratios close to rest, where less than a thousandth of the initial speed is left."""
 
 SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and starts are our choice"
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)
-"""J/(mR²) for which it is asked whether there is a terminal ratio."""
+"""Values of J/(mR²) for which the existence of a terminal ratio is checked."""
 
 
 def nearness(delta: ArrayLike) -> FloatArray:
-    """Return L = ln(8/|δ|) − 2, how near δ has come to zero."""
+    """Return L = ln(8/|δ|) − 2, which increases as δ tends to zero."""
     with np.errstate(divide="ignore"):  # an engine may reach zero to rounding
         return np.asarray(math.log(8.0) - 2.0 - np.log(np.abs(delta)))
 
 
 def deviation(nearness: ArrayLike) -> FloatArray:
-    """Return |δ| of a ``nearness``."""
+    """Return |δ| at the ``nearness`` L, the inverse of :func:`nearness`."""
     return np.asarray(8.0 * np.exp(-2.0 - np.asarray(nearness)))
 
 
 def approach_constant(sliding: float, rim: float, near: float = NEAR) -> float:
-    """Return A in s of the approach to the ratio 1 for c = 1, from U > 0 and W > 0 in m/s; taken at |δ| = near."""
+    """Return A in s, for g = 1 m/s² and c = 1, from U > 0 and W > 0 in m/s, evaluated at |δ| = ``near``."""
     return float(Slowing(1.0).stop(sliding, rim, near).left * nearness(near))
 
 
 @functools.cache
 def expected_approach(throw: Throw, near: float = NEAR) -> float:
-    """Return A in s."""
+    """Return A in s for a throw."""
     return approach_constant(throw.sliding, abs(throw.rim), near) / DECELERATION
 
 
 def curves() -> Data:
-    """Return the terminal ratio over J/(mR²), between the limits."""
+    """Return the terminal ratio over J/(mR²) between 1/2 and 2."""
     inertias = 0.5 * 4.0 ** np.linspace(0.002, 0.998, 101)
     ratios = [math.exp(Slowing(float(inertia)).terminal) for inertia in inertias]
     return {"inertia": inertias, "ratio": np.array(ratios)}
 
 
-# --- The motion of a ring that an engine throws, and what is seen of it.
+# --- Simulated throws and their samples.
 
 
 @functools.cache
 def roughly_rest(engine: Engine, throw: Throw) -> float:
-    """Return when the ring of ``engine`` rests, in s, which sets the times that the claims sample.
+    """Return the time in s at which the ring comes to rest in ``engine``, which determines the sample times.
 
-    It is of the claims' own tolerance. A smaller one then moves the rest against these times by about their error,
-    so that the change of what a claim measures covers that error.
+    It has the tolerance of the claims. At a smaller tolerance the rest moves relative to the samples by about the
+    error of the sample times, so the change of a measured value includes this error.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
@@ -174,7 +175,7 @@ def roughly_rest(engine: Engine, throw: Throw) -> float:
 
 @functools.cache
 def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
-    """Return the motion of a throw, at all times at which it is looked at."""
+    """Return the trajectory of a throw at all sample times."""
     rest = roughly_rest(engine, throw)
     times = [
         *uniform_times(engine, throw),
@@ -193,17 +194,17 @@ def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
 
 
 def approach_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return when the remaining time is A over each of the nearnesses, in s."""
+    """Return the times in s at which A over the remaining time equals ``NEARNESSES``."""
     return roughly_rest(engine, throw) - expected_approach(throw) / np.array(NEARNESSES)
 
 
 def rest_of(trajectory: Trajectory) -> float:
-    """Return when the ring comes to rest in s, no number if it does not."""
+    """Return the time in s at which the ring comes to rest, NaN if it does not."""
     return trajectory.phases[-1].start if trajectory.phases[-1].kind == "stick" else math.nan
 
 
 def speeds_at(trajectory: Trajectory, times: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return U and W in m/s at ``times``, which are among those of the trajectory."""
+    """Return U and W in m/s at ``times``, which must be times of the trajectory."""
     states = trajectory.states[[int(np.argmin(np.abs(trajectory.times - time))) for time in np.ravel(times)]]
     return np.hypot(states[:, 3], states[:, 4]), TABLE.contact_radius * np.abs(states[:, 5])
 
@@ -211,5 +212,5 @@ def speeds_at(trajectory: Trajectory, times: ArrayLike) -> tuple[FloatArray, Flo
 def speeds_before_rest(
     engine: Engine, throw: Throw, tolerance: float, left: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return U and W in m/s when fractions ``left`` of the time to rest are left, which are among those looked at."""
+    """Return U and W in m/s when the fractions ``left`` of the time to rest remain; they must be sample times."""
     return speeds_at(thrown(engine, throw, tolerance), roughly_rest(engine, throw) * (1.0 - np.asarray(left)))

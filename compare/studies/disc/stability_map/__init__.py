@@ -1,4 +1,4 @@
-"""Where steady motions of the centred disc are stable, and where the modulated cycle of Fig. 11 takes their place."""
+"""Map of the regions where steady motions of the centred disc are stable, or the modulated cycle replaces them."""
 
 # ruff: noqa: I001 - the order of the report
 from compare.studies.disc.stability_map import regions, borders

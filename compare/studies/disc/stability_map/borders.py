@@ -1,4 +1,4 @@
-"""The borders of the map, and how they move with the contact law."""
+"""Claims on the borders of the map and their dependence on the contact law."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from reference_model.steady.stability import equilibrium_eigenvalues, onset_load
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
-# --- The curves of the map against eigenvalues that take no part in their tracing, and what they say of Fig. 11.
+# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11.
 
 CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
     f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
@@ -46,7 +46,7 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
     f"the tracing. {CURVES}. Error: rounding, by the condition of the eigenvalues.",
 )
 def marginal(curves: theory.Traced | None = None) -> Measured:
-    """Take the pair's real part at all points of ``curves``, or of the map."""
+    """Compute the pair's real part over its frequency at all points of ``curves``, or of the map."""
     found = _spectra_on_map("Hopf") if curves is None else theory.spectra("Hopf", curves)
     frequencies = np.array([abs(values[0].imag) for values, _ in found])
     return Measured(
@@ -62,7 +62,7 @@ def marginal(curves: theory.Traced | None = None) -> Measured:
     note="Whether the real parts of all other eigenvalues are negative.",
 )
 def no_other_grows() -> Measured:
-    """Look at the other eigenvalues at all points of the Hopf curves."""
+    """Check the other eigenvalues at all points of the Hopf curves."""
     found = _spectra_on_map("Hopf")
     return answers_of(
         -np.array([value.real for values, _ in found for value in values[2:]]),
@@ -79,7 +79,7 @@ def no_other_grows() -> Measured:
     "where a second one becomes zero.",
 )
 def folds() -> Measured:
-    """Take the least eigenvalue at all points of the fold curves."""
+    """Compute the smallest eigenvalue over k at all points of the fold curves."""
     found = _spectra_on_map("fold")
     return Measured(
         predicted=np.zeros(len(found)),
@@ -98,7 +98,7 @@ def folds() -> Measured:
     swept=("friction_force",),
 )
 def crosses_line() -> Measured:
-    """Compare where the traced curves cross the line of Fig. 11's speed with a search on that line alone."""
+    """Compare the crossings of the curves with the line of Fig. 11's speed with a search along that line."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []
@@ -123,7 +123,7 @@ def crosses_line() -> Measured:
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    """Compare μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
+    """Compare the μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
         for speed in theory.ONSET_SPEEDS:
@@ -156,7 +156,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
     "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
 }
-"""The disc with a share of one of its parameters, and a share beyond the onset."""
+"""Discs by the share of one parameter of Fig. 11, and a share at which the rotation is stable."""
 
 
 @STUDY.claim(
@@ -168,7 +168,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
 )
 def remedies() -> Measured:
-    """Compare the share of each parameter that makes the centred rotation stable with the onset's closed form."""
+    """Compare the share of each parameter at which the centred rotation becomes stable with the closed form."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []
@@ -195,7 +195,7 @@ def remedies() -> Measured:
     resolution=1e-8,
 )
 def by_whirls() -> Measured:
-    """Compare where the whirls' largest real part changes its sign along each parameter with the map."""
+    """Compare the zeros of the whirls' largest real part along each parameter with the map."""
     predicted: list[float] = []
     found: list[tuple[float, float]] = []
     names: list[str] = []
@@ -232,7 +232,7 @@ def by_whirls() -> Measured:
     f"point of the Hopf curves that is farther than {theory.FAR_FROM_KINK:g} from U = W in U : W.",
 )
 def jumps() -> Measured:
-    """Take the sign of the first Lyapunov coefficient along the Hopf curves."""
+    """Compute the sign of the first Lyapunov coefficient along the Hopf curves."""
     data: dict[str, FloatArray] = {}
     on_ring: list[float] = []
     for (plane, law, kind), curves in theory.traced().items():
@@ -248,14 +248,14 @@ def jumps() -> Measured:
     return answers_of(on_ring, data=data)
 
 
-# --- What the ring, (23) and a pin say of the whirl of Fig. 11, each by itself.
+# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin.
 
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 
 SIGN = "Sign of the largest real part."
 
 SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
-"""β in N s/m and ω in rad/s between which pins are looked at."""
+"""Speeds ω of the pins in rad/s; their β is between ``LOW`` and ``HIGH`` in N s/m."""
 
 
 @STUDY.claim(
@@ -264,7 +264,7 @@ SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
     note=SIGN,
 )
 def unstable_on_ring() -> Measured:
-    """See on which side of the imaginary axis the whirl of the ring is."""
+    """Check the sign of the largest real part of the ring's whirl."""
     return _side("ring", 1.0)
 
 
@@ -274,12 +274,12 @@ def unstable_on_ring() -> Measured:
     note=SIGN,
 )
 def stable_by_23() -> Measured:
-    """See on which side of the imaginary axis the whirl of (23) is."""
+    """Check the sign of the largest real part of the whirl of (23)."""
     return _side("(23)", -1.0)
 
 
 def _side(law: str, sign: float) -> Measured:
-    """See whether the largest real part of the whirl of Fig. 11 by ``law`` has this ``sign``."""
+    """Check that the largest real part of Fig. 11's whirl by ``law`` has this ``sign``."""
     (whirl,) = whirls(theory.DISC, LAWS[law])
     values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
     near = theory.nearest(
@@ -303,7 +303,7 @@ def _side(law: str, sign: float) -> Measured:
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:
-    """Count at how many points (16), the border of the pin's whirl, is violated where the whirl exists."""
+    """Check (16), the border of the pin's whirl, and the eigenvalues on a grid of ω and β."""
     pins = [
         PinOnDisc(
             mass=theory.DISC.mass,
@@ -324,7 +324,7 @@ def pin_is_stable() -> Measured:
     basis="reference",
 )
 def collapses_by_23() -> Measured:
-    """See what motions under (23) end as where its whirl is unstable, simulated by the reference."""
+    """Simulate motions under (23) where its whirl is unstable, by the reference, and classify their ends."""
     law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
     (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
     starts = []

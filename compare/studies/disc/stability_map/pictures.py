@@ -29,7 +29,7 @@ from reference_model.systems import FloatArray
 
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl die out": "v"}
-"""Marks for what was simulated."""
+"""Labels and marks of simulated results."""
 
 COLOURS = {"ring": GREEN, "(23)": PURPLE}
 DASHES: dict[str, Any] = {"ring": "-", "(23)": (0.0, (5.0, 2.0))}
@@ -40,7 +40,7 @@ K = FIG11.natural_frequency
 
 
 class Region(NamedTuple):
-    """Where the name of a region stands, and the place at which an arrow points if it does not fit in."""
+    """Name of a region and its position; ``at`` is the tip of an arrow if the name does not fit into the region."""
 
     across: float
     up: float
@@ -50,9 +50,9 @@ class Region(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """A plane as it is drawn.
+    """Names, labels, ranges and regions of a plane.
 
-    ``outward`` is +1 where the second coordinate grows from the onset to the large whirls, and -1 where it falls.
+    ``outward`` is +1 if the second coordinate increases from the onset to the large whirls, and -1 if it decreases.
     """
 
     names: tuple[str, str]
@@ -120,7 +120,7 @@ PANELS = {
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there: the map in four planes, and the motions over μN at the speeds of Fig. 11."""
+    """Draw the map in four planes, and the motions over μN at the speeds of Fig. 11, if their data exist."""
     figures = {}
     if "theory" in data:
         figures["stability-map"] = draw_map(data)
@@ -130,7 +130,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_map(data: ByEngine) -> Figure:
-    """Draw the four planes with the boundaries of both laws, and the motions that engines simulated."""
+    """Draw the four planes with the curves of both laws and the simulated results."""
     from matplotlib.lines import Line2D
 
     figure, axes = new_figure(ncols=2, nrows=2, width=10.6, height=8.8)
@@ -151,7 +151,7 @@ def draw_map(data: ByEngine) -> Figure:
 
 
 def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
-    """Draw one plane."""
+    """Draw the curves, regions and results in one plane."""
     theory = data["theory"]
     x = np.linspace(*panel.x, 800)
     small, large = (hopf_curve(theory, name, x, side) for side in (1.0, -1.0))
@@ -207,9 +207,9 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
 
 
 def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
-    """Draw whether deviations grew beside the curves and what motions ended as, as ``engine`` simulated them.
+    """Draw an engine's results: growth of deviations on the left of their points, ends on the right.
 
-    Ends stand on the right, where ``rank`` is how many engines stand before; growth stands on the left.
+    ``rank`` is the number of engines already drawn.
     """
     none = np.empty((0, 3))
     sides, ends = found.get(f"sides/{name}", none), found.get(f"ends/{name}", none)
@@ -225,20 +225,20 @@ def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> Non
 
 
 def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray]:
-    """Yield the points of the curves of a kind, each of shape (n, 2)."""
+    """Yield the points and α of the curves of one kind, each of shape (n, 3)."""
     for name, found in theory.items():
         if name.startswith(f"{plane}/{law}/{kind}/"):
             yield found
 
 
 def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the coordinates in which ``points`` (shape (n, 2 or more)) are drawn: Ω as ω − Ω."""
+    """Return the coordinates of ``points`` (shape (n, 2 or more)) in the figure, which shows ω − Ω instead of Ω."""
     first, second = points[:, 0], points[:, 1]
     return (first, first - second) if plane == "speeds" else (first, second)
 
 
 def hopf_curve(theory: Data, plane: str, x: FloatArray, side: float) -> FloatArray:
-    """Return the second coordinate over ``x`` of the ring's Hopf curve on one side of U = W, NaN where it is not.
+    """Return the second coordinate over ``x`` of the ring's Hopf curve on one side of U = W, NaN outside its range.
 
     ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large ones.
     """

@@ -1,4 +1,4 @@
-"""What the whirl does beside the borders of the map and in its regions."""
+"""Simulations in the regions of the map and next to its borders."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 # --- Small deviations from the whirl on both sides of the Hopf curves.
 
 Lines = Sequence[tuple[str, str, float]]
-"""Plane, the parameter that is fixed, and its value."""
+"""Plane, fixed parameter and its value, for each line."""
 
 BESIDE_CURVES = (
     f"Discs {100.0 * theory.ASIDE:g} % from the curves to either side. Start on the whirl and a little off it "
@@ -33,7 +33,7 @@ BESIDE_CURVES = (
 
 
 class Deviation(NamedTuple):
-    """A disc in a plane, and λ in 1/s of the slow pair of its whirl: by the Jacobian, as measured, with its error."""
+    """A disc in a plane, and λ in 1/s of its whirl's slow pair: by the Jacobian, as measured, and the error."""
 
     plane: str
     disc: DiscOnDisc
@@ -51,7 +51,7 @@ class Deviation(NamedTuple):
     basis="reference",
 )
 def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Compare growth and frequency of deviations with the pair of eigenvalues."""
+    """Compare the growth rate and frequency of deviations with the pair of eigenvalues."""
     found = deviations(engine, lines)
     return Measured(
         predicted=real_and_imaginary([one.predicted for one in found]),
@@ -70,7 +70,7 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     implied_by=rates,
 )
 def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """See on which side of the curves deviations grow."""
+    """Check on which side of the curves deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
     for one in found:
@@ -89,7 +89,7 @@ def _place(one: Deviation) -> str:
 
 @functools.lru_cache(maxsize=4)
 def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
-    """Follow a small deviation from the whirl on both sides of the Hopf curves of the ring that ``lines`` cross."""
+    """Simulate a small deviation from the whirl on both sides of the ring's Hopf curves that ``lines`` cross."""
     found = []
     for plane, disc in discs_beside(lines):
         whirl = min(whirls(disc), key=lambda whirl: abs(whirl.eigenvalues[1].real))
@@ -98,7 +98,7 @@ def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
 
 
 def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
-    """Yield plane and disc on both sides of the Hopf curves of the ring that the lines cross."""
+    """Yield plane and disc on both sides of the ring's Hopf curves that the lines cross."""
     for name, fixed, value in lines:
         plane = PLANES[name]
         along = plane.names[1 - plane.names.index(fixed)]
@@ -108,10 +108,10 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
 
 
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
-    """Return λ in 1/s with which a small deviation in the plane of the slow pair grows, and its error.
+    """Return the growth rate λ in 1/s of a small deviation in the plane of the slow pair, and its error.
 
-    Half the difference of two motions that start on either side of the whirl, seen in the frame that turns with it,
-    is multiplied by exp(λt) in that plane: its part there is told from the rest by the left eigenvector.
+    Two motions start on either side of the whirl. Half their difference, in the frame that turns with the whirl and
+    projected onto the plane by the left eigenvector, grows by exp(λt).
     """
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
     which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
@@ -137,14 +137,14 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     return found, math.hypot(*error) + abs(rate(2.0 * theory.DEVIATION, theory.FLOW_TOLERANCE) - found)
 
 
-# --- What motions end as in each region of the map, and beside its borders.
+# --- Final motions in each region of the map and next to its borders.
 
 
 @STUDY.claim(
     "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
 )
 def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
-    """See what motions end as; None for those of ``starts_in_regions``."""
+    """Compare the final motions with the expected ones, by default from ``starts_in_regions``."""
     starts = starts_in_regions() if starts is None else starts
     ends, measured = theory.ends_of(engine.simulate, starts)
     return replace(measured, data=ends_by_plane(starts, ends))
@@ -158,16 +158,16 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 def coexist(
     engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
 ) -> Measured:
-    """See what motions end as outside of the Hopf curves; None for those of ``coexisting``.
+    """Compare the final motions outside the Hopf curves with the expected ones, by default from ``coexisting``.
 
-    ``loads`` in N are those of the motions that are drawn over the load.
+    ``loads`` in N are the friction forces of the motions in the bifurcation diagram.
     """
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 
 
 def starts_in_regions() -> tuple[theory.Start, ...]:
-    """Return motions in all regions of the map: what they are to end as, by the curves of the ring."""
+    """Return motions in all regions of the map, with the ends expected from the ring's curves."""
     at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
@@ -192,7 +192,7 @@ def starts_in_regions() -> tuple[theory.Start, ...]:
 
 
 def coexisting() -> tuple[theory.Start, ...]:
-    """Return motions outside of both Hopf curves: near to them one from whirl and cycle each, and farther off."""
+    """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off."""
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
     starts = []
     for border, outward, settled in ((lower, -1.0, theory.SLOWLY_SETTLED), (upper, 1.0, theory.SETTLED)):
@@ -210,7 +210,7 @@ def coexisting() -> tuple[theory.Start, ...]:
 
 
 def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
-    """Return the two parameters and the end, as its place in ``ENDS``, of all motions that a plane shows."""
+    """Return, for each plane, both parameters and the index in ``ENDS`` of the motions in it, shape (n, 3)."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     for name, plane in PLANES.items():
         for start, end in zip(starts, ends, strict=True):
@@ -221,7 +221,7 @@ def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
 
 
 def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
-    """Return friction force in N, smallest and largest radius in m after a long time, shape (n, 3)."""
+    """Return friction force in N and smallest and largest final radius in m, shape (n, 3)."""
 
     def extent(load: float) -> tuple[float, float]:
         settled = theory.SLOWLY_SETTLED if load in theory.SLOW_LOADS else theory.SETTLED

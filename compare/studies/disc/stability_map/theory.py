@@ -1,4 +1,4 @@
-"""The stability map in theory: its curves, the eigenvalues that they are checked by, and what the figures show."""
+"""Curves of the stability map, eigenvalues that check them, and data for the figures."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from reference_model.steady.stability import (
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The disc whose surroundings are mapped, what is simulated there, and how closely the curves are looked at.
+# --- Parameters of the disc, the simulations and the checks.
 
 DISC = FIG11
 K = DISC.natural_frequency
@@ -37,7 +37,7 @@ SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are ours"
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
 BOTH_LAWS = "(19), (20), (23)"
-"""Equations of what is claimed of the ring and of (23)."""
+"""Equations of claims on both the ring and (23)."""
 
 LINES = (
     ("load", "disc_speed", 1.5),
@@ -45,59 +45,59 @@ LINES = (
     ("speeds", "disc_speed", 1.3),
     ("inertia", "polar_inertia", 0.4),
 )
-"""Lines in planes on which both sides of the Hopf curves of the ring are simulated."""
+"""Lines on which discs on both sides of the ring's Hopf curves are simulated: plane, fixed parameter, its value."""
 
 ASIDE = 0.01
-"""How far from the curves, relative."""
+"""Relative distance of these simulations from the curves."""
 
 DEVIATION = 0.02
-"""Of the whirl at the start, in units of the distance to where a point of the ring rests."""
+"""Initial deviation from the whirl, as a share of the distance to U = W, where a point of the ring comes to rest."""
 
 FLOW_TOLERANCE = 100 * WORKING
-"""Of the simulations that are subtracted from each other: their differences are small."""
+"""Tolerance of simulations whose small differences are evaluated."""
 
 STUCK = 60.0
-"""In s, for which a disc that sticks on the axis is watched: nothing changes there, but for an engine's creep."""
+"""Duration in s of the simulation of a disc that sticks on the axis, where nothing changes except by creep."""
 
 OUTSIDE, BEYOND = 0.003, 0.02
-"""How far from the Hopf curves, relative, the modulated cycle is beside the whirl, and is gone."""
+"""Relative distances outside the Hopf curves at which the modulated cycle coexists with the whirl, and has gone."""
 
 BESIDE = (1.002, 1.0, 1.0, 1.0, 1.002, 1.0)
-"""Factors on x, y, angle, vx, vy, spin of a whirl that lead a little off it."""
+"""Factors on x, y, angle, vx, vy, spin of a whirl for a state close to it."""
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
-"""State x, y, angle, vx, vy, spin near to where the radius of the modulated cycle is largest."""
+"""State x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""
 
 LOADS = (
     *(0.0195, 0.0208, 0.0211, 0.0214, 0.0217, 0.0221, 0.0225),
     *(0.0232, 0.024, 0.0247, 0.0251, 0.0255, 0.028),
 )
-"""In N, of the bifurcation diagram."""
+"""Friction forces in N in the bifurcation diagram."""
 
 SLOW_LOADS = (0.0208, 0.0211)
-"""Those at which the whirl is stable, but disturbances of it fall slowly."""
+"""Friction forces in N at which the whirl is stable but disturbances decay slowly."""
 
 FAR_FROM_KINK = 0.02
-"""Of |U/W − 1|: nearer to where a point of the ring rests, the expansion about the whirl says nothing."""
+"""Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
 
 ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
-"""ω in rad/s at which the onset is found by its eigenvalues."""
+"""Speeds ω in rad/s at which eigenvalues determine the onset."""
 
 NEAR = 1e-3
-"""Relative distance from a border at which stability is that of either side."""
+"""Relative distance from a border at which the whirl has the stability of that side."""
 
 STATE_ROUNDING = 4.0 * np.finfo(float).eps
-"""Relative, of the spin of a whirl that is given by its α."""
+"""Relative rounding error of the spin of a whirl computed from its α."""
 
 UNSTABLE_LOADS = (0.3, 0.7)
-"""Friction forces between the fold and the Hopf point of (23), as fractions."""
+"""Friction forces as fractions of the interval from the fold to the Hopf point of (23)."""
 
 BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
-"""Factors on the state of the larger whirl there."""
+"""Factors on the state of the larger whirl at these forces."""
 
 
 def at(**changes: Any) -> DiscOnDisc:
-    """Return the disc of Fig. 11 with some other parameters."""
+    """Return the disc of Fig. 11 with some parameters changed."""
     return replace(DISC, **changes)
 
 
@@ -120,7 +120,7 @@ def state_at(disc: DiscOnDisc, alpha: float, law: IsotropicContact) -> FloatArra
 
 
 def points_of(traced: Traced, kind: Kind) -> Iterator[tuple[str, DiscOnDisc, float]]:
-    """Yield law, disc and α for every point of the curves of a kind."""
+    """Yield law, disc and α for every point of the curves of one kind."""
     for (plane, law, found), curves in traced.items():
         for curve in curves if found == kind else ():
             for values, alpha in zip(curve.parameters, curve.alpha.tolist(), strict=True):
@@ -130,10 +130,10 @@ def points_of(traced: Traced, kind: Kind) -> Iterator[tuple[str, DiscOnDisc, flo
 def critical_eigenvalues(
     disc: DiscOnDisc, state: FloatArray, law: IsotropicContact
 ) -> tuple[ComplexArray, float]:
-    """Return the eigenvalues of a whirl but for the phase, the critical ones first, and the rounding of those in 1/s.
+    """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error in 1/s.
 
-    That is the rounding of the matrix, by the condition of the eigenvalue, and that of the state: where U and W are
-    nearly the same, the slopes of friction depend on what little differs.
+    The error is that of the matrix, by the condition of the eigenvalue, plus that of the state: if U and W are nearly
+    equal, the slopes of friction depend on their small difference.
     """
     neighbour = state * (1.0 + STATE_ROUNDING * (np.arange(6) == 5))
     values, shifted = (
@@ -146,7 +146,7 @@ def critical_eigenvalues(
 
 
 def spectra(kind: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
-    """Return the eigenvalues of the whirls at all points of the curves of a kind."""
+    """Return the ``critical_eigenvalues`` of the whirls at all points of the curves of one kind."""
     return [
         critical_eigenvalues(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
         for law, disc, alpha in points_of(curves, kind)
@@ -154,7 +154,7 @@ def spectra(kind: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
 
 
 def crossed(curves: Sequence[Boundary], value: float) -> FloatArray:
-    """Return the second parameter where curves cross a value of the first, in increasing order."""
+    """Return the second parameter, in increasing order, where the curves cross a value of the first."""
     found = []
     for curve in curves:
         steps = np.diff(curve.parameters / np.max(np.abs(curve.parameters), axis=0), axis=0)
@@ -170,12 +170,12 @@ def growth_of_rotation(disc: DiscOnDisc) -> float:
 
 
 def sticking_load(disc: DiscOnDisc) -> float:
-    """Return b|ω − Ω|/R in N, from which on the centred disc sticks to the master disc for ever."""
+    """Return b|ω − Ω|/R, the smallest μN in N at which the centred disc can stick permanently."""
     return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed) / disc.contact_radius
 
 
 def rotation(disc: DiscOnDisc) -> FloatArray:
-    """Return the state of the centred rotation, shape (6,): the shaft overcomes the friction of the spinning ring."""
+    """Return the state of the centred rotation, in which the shaft overcomes friction, shape (6,)."""
     against = disc.disc_speed - disc.shaft_speed
     relative_spin = against - math.copysign(
         disc.friction_force * disc.contact_radius / disc.shaft_damping, against
@@ -184,9 +184,9 @@ def rotation(disc: DiscOnDisc) -> FloatArray:
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
-    """Return the value of a parameter near which the pair of a whirl crosses the imaginary axis, and its error.
+    """Return the parameter value at which a pair of the whirl crosses the imaginary axis, and its error.
 
-    Not a number where none does.
+    The value is NaN if no pair crosses within ``NEAR`` (relative) of ``near``.
     """
 
     def crossing_pair(value: float) -> tuple[float, float]:
@@ -204,7 +204,7 @@ def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[
 
 
 def nearest(values: Sequence[float], to: float) -> list[float]:
-    """Return the largest of ``values`` below and the smallest above."""
+    """Return the largest of ``values`` below ``to`` and the smallest above it, if they exist."""
     below, above = [value for value in values if value < to], [value for value in values if value > to]
     return [*below[-1:], *above[:1]]
 
@@ -219,7 +219,7 @@ def curves() -> Data:
 
 
 def section() -> Data:
-    """Return friction force, radius and largest real part of the whirls of Fig. 11 over their α, for each law."""
+    """Return friction force in N, radius in m and growth rate in 1/s of Fig. 11's whirls over α, for each law."""
     data: Data = {}
     alphas = np.linspace(0.45, np.pi / 2.0 - 1e-3, 240)
     for name, law in LAWS.items():
@@ -232,14 +232,14 @@ def section() -> Data:
     return data
 
 
-# --- What motions of the centred disc end as.
+# --- Final motions of the centred disc.
 
 SETTLED = 600.0
 WATCHED = 350.0
-"""In s: how long motions are given to settle, and over how long before the end they are looked at."""
+"""Time in s after which motions have settled, and length in s of the final interval that is evaluated."""
 
 SLOWLY_SETTLED = 2400.0
-"""In s: what takes longer near to where a cycle has just gone, as disturbances fall at less than 0.01 1/s there."""
+"""Settling time in s just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
 
 SETTLING_TOLERANCE = 1e-5
 
@@ -247,15 +247,15 @@ AXIS = 1e-3
 """Radius in units of R below which a motion counts as rotation about the axis."""
 
 MODULATED = 0.05
-"""Of (largest − smallest)/(largest + smallest) radius, above which a motion counts as modulated."""
+"""Smallest (largest − smallest)/(largest + smallest) radius of a motion that counts as modulated."""
 
 
 ENDS = ("rotation", "whirl", "modulated cycle", "sticking")
-"""What motions end as."""
+"""Kinds of final motion; figures' data contain their indices."""
 
 
 class Start(NamedTuple):
-    """A disc, the state from which it starts, what it is to end as, and after how many seconds."""
+    """A disc, its initial state, the expected final motion (in ``ENDS``) and the duration in s."""
 
     disc: DiscOnDisc
     state: tuple[float, ...]
@@ -266,7 +266,7 @@ class Start(NamedTuple):
 def kind_of_end(
     simulate: Simulate, start: Start, tolerance: float = SETTLING_TOLERANCE
 ) -> tuple[str, float, float]:
-    """Return what a motion ends as, and the smallest and the largest radius in m of its last part."""
+    """Return the kind of final motion, and its smallest and largest radius in m."""
     times = [0.0, *np.linspace(max(start.duration - WATCHED, 0.5 * start.duration), start.duration, 801)]
     run = simulate(start.disc, start.state, times, tolerance=tolerance)
     radius = run.radius[1:]
@@ -279,7 +279,7 @@ def kind_of_end(
 
 
 def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
-    """Return what motions end as, and in how many that is what they are said to."""
+    """Return the kinds of final motion, and answers whether they are the expected ones."""
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:
@@ -303,24 +303,24 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
 
 
 def changes(disc: DiscOnDisc) -> str:
-    """Return in words what of Fig. 11's parameters is different."""
+    """Return the parameters that differ from those of Fig. 11, as text."""
     differing = [
         f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
     return ", ".join(differing) or "Fig. 11"
 
 
-# --- The study of the stability map, to which the modules beside this one add its claims.
+# --- The study; the other modules of this package add its claims.
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:
-    """Return the quote of a border in one parameter, "lower friction_force", and how far that is from Fig. 11."""
+    """Return a template that quotes a border, such as "lower friction_force", and its distance from Fig. 11 in %."""
     here = getattr(DISC, name.split()[1])
     return f"{{{name}, {digits} digits}} {unit} ({{{name}, % from {here!r}, 2 digits}} %)"
 
 
 def borders(parameter: str, unit: str, digits: int = 3) -> str:
-    """Return the quotes of both borders in one parameter."""
+    """Return templates that quote both borders in one parameter."""
     return " and ".join(border(f"{side} {parameter}", unit, digits) for side in ("lower", "upper"))
 
 

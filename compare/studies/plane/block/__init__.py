@@ -1,4 +1,4 @@
-"""A block on a plane at rest: thrown, held, let go, on a spring, and pulled."""
+"""A block on a plane at rest: thrown, held, released, on a spring, and pulled."""
 
 from compare.studies.plane.block.pictures import draw
 from compare.studies.plane.block.study import STUDY

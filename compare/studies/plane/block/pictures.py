@@ -1,4 +1,4 @@
-"""Figure of the block: where it stops, how it swings to rest, and what a pull across makes of its velocity."""
+"""Figure of the block: its stopping positions, its swings to rest, and its velocity under a transverse pull."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from compare.studies.plane.block.study import HEADINGS, SPEED, STOPPING_DISTANCE
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the stops of throws, the swings on a spring, and the velocity across a pull."""
+    """Draw the stopping positions of throws, the swings on a spring, and the velocity under a transverse pull."""
     if not data:
         return {}
     figure, (plane, swings, velocity) = new_figure(ncols=3, width=13.2, height=4.2)
@@ -21,7 +21,7 @@ def draw(data: ByEngine) -> Figures:
     for heading in HEADINGS:
         along = direction(heading)
         plane.plot(*_line(STOPPING_DISTANCE * along), color=BLACK, linewidth=0.6)
-        boxed = STOPPING_DISTANCE * np.array([along.real, along.imag]) ** 2  # each axis stops by itself
+        boxed = STOPPING_DISTANCE * np.array([along.real, along.imag]) ** 2  # each axis stops independently
         plane.plot(*boxed, color=GREY, marker="+", linestyle="none", label="" if heading else "box")
     swings.axhspan(-1.0, 1.0, color="#eeeeee", zorder=0.5)
     if "theory" in data:

@@ -1,4 +1,4 @@
-"""A block on a plane at rest: thrown, held, let go, on a spring, and pulled."""
+"""Study of a block on a plane at rest: thrown, held, released, on a spring, and pulled."""
 
 from __future__ import annotations
 
@@ -17,68 +17,68 @@ from compare.claims.parameters import at_each
 from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- A block of 1 kg with friction of 1 N, how it is thrown and pulled, and how sharply it is looked at.
+# --- Parameters of the block, its throws and pulls, and the sample times.
 
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
 BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
-"""Free, on a plane at rest."""
+"""Free block on a plane at rest."""
 
 FRICTION = BLOCK.friction_force
 DECELERATION = FRICTION / BLOCK.mass
-"""g in m/s² of a block that only friction acts on."""
+"""Deceleration g in m/s² by friction alone."""
 
 HEADINGS = (0.0, 22.5, 45.0, 67.5)
-"""In degrees from the x axis: sides, corners and neither of squares and octagons, however these lie."""
+"""Headings in degrees from the x axis: sides, corners and neither of squares and octagons in any orientation."""
 
 SPEED = 1.0
-"""v₀ of a throw in m/s."""
+"""Initial speed v₀ of a throw in m/s."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
-"""When a thrown block is looked at, as fractions of the time in which it stops."""
+"""Sample times of a thrown block, as fractions of the time to rest."""
 
 AT_REST = 1.5
-"""When it rests, as such a fraction: a law that is smoothed has come to rest by then too."""
+"""Sample time after rest, as such a fraction, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
-"""On a spring that is stretched by 10 m where it pulls as friction does: its pull changes slowly on the way."""
+"""Block on a spring that pulls with μN when stretched by 10 m, so its pull changes slowly during the motion."""
 
 LOADS = (0.1, 0.5, 0.9, 0.99)
-"""Pulls that friction holds, over μN."""
+"""Pulls over μN that friction holds."""
 
 BEYOND = 1.01
-"""A pull that it does not hold, over μN."""
+"""Pull over μN that friction does not hold."""
 
 HELD = 10.0
-"""How long a block is held, in s: as long as it slides beyond the cone."""
+"""Duration in s of a hold, equal to the duration of a slide beyond the cone."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
-"""Way in m from which on it counts as moved: half of how far it slides beyond the cone."""
+"""Smallest displacement in m of a block that counts as moved, half of its slide beyond the cone."""
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
-"""Where the block on this spring is let go, over μN/C: half swings to 6.5, 4.5, 2.5 and 0.5, and there it rests."""
+"""Position of release over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
-"""Half swings up to rest."""
+"""Number of half swings to rest."""
 
 DIAGONAL = 45.0
-"""Heading of the swings in degrees: between the axes."""
+"""Heading of the swings in degrees, between the axes."""
 
 PULL = 1.5
-"""Of a spring from afar on a block that is thrown along it, over μN."""
+"""Initial pull over μN of a distant spring on a block thrown along it."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
-"""Its spring is stretched by 150 m at the start. Any farther, and places have fewer digits than the motion needs."""
+"""Block with a spring stretched by 150 m at the start; at larger distances positions have too few digits."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
-"""In s."""
+"""Sample times in s of the block thrown along the pull."""
 
 ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
-"""The block at the origin is pulled with μN along x, by a spring whose pull is constant to some 1e-6 of itself."""
+"""Block at the origin that a spring pulls with μN along x; the pull is constant to about 1e-6."""
 
 TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
-"""When a block that is thrown across the pull is looked at, in s: in the end it has all but turned."""
+"""Sample times in s of a block thrown across the pull; in the end it moves almost along the pull."""
 
 
 def direction(degrees: float) -> complex:
@@ -92,23 +92,23 @@ def state_of(place: complex, velocity: complex = 0j) -> FloatArray:
 
 
 # --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip.
-# Lengths are in m, speeds in m/s, times in s; s is the way along a line, and v = ds/dt.
+# Lengths are in m, speeds in m/s, times in s; s is the distance along a line, and v = ds/dt.
 
 STOPPING_TIME = SPEED / DECELERATION
 STOPPING_DISTANCE = 0.5 * SPEED**2 / DECELERATION
 
 
 def thrown(times: ArrayLike) -> FloatArray:
-    """Return s and v of a block that only friction acts on, shape (n, 2): s = v₀t − gt²/2 until it rests."""
+    """Return s and v of a block under friction alone, shape (n, 2): s = v₀t − gt²/2 until it rests."""
     t = np.minimum(times, STOPPING_TIME)
     return np.column_stack((SPEED * t - 0.5 * DECELERATION * t**2, SPEED - DECELERATION * t))
 
 
 def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
-    """Return s and v, shape (n, 2), of a block that is let go at rest at s = ``start`` > 0, s = 0 without a pull.
+    """Return s and v, shape (n, 2), of a block released at s = ``start`` > f = μN/C, with the spring relaxed at 0.
 
-    It does not rest there: start > f = μN/C. In half swing n (from 0) it moves as cos kt about (−1)^n·f, with the
-    amplitude start − (2n + 1)·f; it rests where the next amplitude would not be > 0.
+    In half swing n (from 0) the block moves like cos kt about (−1)^n·f with the amplitude start − (2n + 1)·f. It
+    rests when the next amplitude would not be > 0.
     """
     k, f = pin.natural_frequency, pin.friction_force / pin.stiffness
     last = math.ceil(0.5 * (start / f - 1.0))
@@ -119,9 +119,9 @@ def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
 
 
 def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> FloatArray:
-    """Return s and v, shape (n, 2), of a block that slides towards the end of a spring stretched by ``stretch``.
+    """Return s and v, shape (n, 2), of a block that slides along the pull of a spring stretched by ``stretch``.
 
-    s = a·(1 − cos kt) + (v₀/k)·sin kt with a = stretch − μN/C, as long as it slides on.
+    s = a·(1 − cos kt) + (v₀/k)·sin kt with a = stretch − μN/C, valid while the block slides.
     """
     k, t = pin.natural_frequency, np.asarray(times, dtype=float)
     a = stretch - pin.friction_force / pin.stiffness
@@ -130,28 +130,27 @@ def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> Fl
 
 
 def across(times: ArrayLike) -> FloatArray:
-    """Return the velocity along and across a constant pull μN, of a block thrown across it, shape (n, 2).
+    """Return the velocity along and across a constant pull μN of a block thrown across it, shape (n, 2).
 
-    Speed and velocity along the pull have a constant sum v₀, since friction takes from the one what the pull gives to
-    the other. With the angle θ between both velocities and w = tan²(θ/2) they are v₀(1 ± w)/2, across there is
-    v₀√w, and Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
+    The sum of the speed and the velocity along the pull is v₀, because pull and friction change both at opposite
+    rates. With the angle θ between pull and velocity and w = tan²(θ/2) they are v₀(1 ± w)/2, and the velocity across
+    is v₀√w. Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
     """
     w = lambertw(np.exp(1.0 - 4.0 * DECELERATION * np.asarray(times, dtype=float) / SPEED)).real
     return np.column_stack((0.5 * SPEED * (1.0 - w), SPEED * np.sqrt(w)))
 
 
 def bend_by_spring(times: FloatArray) -> float:
-    """Return how far in m/s the velocity of ``across`` can be off, since the spring's pull changes on the way.
+    """Return the largest error in m/s of ``across`` due to the change of the spring's pull along the path.
 
-    The pull changes by C·r, r being the way in space. Friction brings two motions no farther apart, since it grows
-    against a larger slip, or turns with it: the difference of their velocities grows by no more than C·r/m, and r by
-    no more than v₀.
+    The pull changes by C·r after a distance r. Friction is monotone in the slip, so it does not increase the
+    difference of two velocities: this grows at most at the rate C·r/m, with r ≤ v₀t.
     """
     return float(0.5 * ACROSS.stiffness / ACROSS.mass * SPEED * times[-1] ** 2)
 
 
 def curves() -> Data:
-    """Return swings in units of μN/C over kt/π, and velocities across a pull over time."""
+    """Return swings in units of μN/C over kt/π, and the velocity of ``across`` over time."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     swings, times = np.linspace(0.0, SWINGS + 1.0, 401), np.linspace(0.0, 2.0, 201)
     return {
@@ -183,9 +182,10 @@ def moved(
     start: tuple[complex, complex],
     times: FloatArray,
 ) -> Measurement:
-    """Return the states at ``times`` but the first, seen along and across each heading, shape (headings, n, 4).
+    """Return the states at all ``times`` but the first, along and across each heading, shape (headings, n, 4).
 
-    ``start`` is place and velocity as seen that way; places are from (X0, 0), where the spring is relaxed.
+    ``start`` is position and velocity, along + i·across. Positions are relative to (X0, 0), where the spring is
+    relaxed.
     """
 
     def states(tolerance: float) -> FloatArray:
@@ -206,21 +206,21 @@ def moved(
 
 
 def on_a_line(motion: FloatArray, headings: Sequence[float]) -> FloatArray:
-    """Return the states of s and v, shape (n, 2), along each heading: nothing moves across, (headings, n, 4)."""
+    """Return the states of s and v, shape (n, 2), along each heading and zero across, shape (headings, n, 4)."""
     states = np.zeros((len(headings), len(motion), 4))
     states[..., ::2] = motion
     return states
 
 
 def largest_by_component(found: Measurement) -> FloatArray:
-    """Return the largest error of each component of a state: a single number may be right by chance."""
+    """Return the largest error of each component, because a single number may be right by chance."""
     return np.asarray(np.max(found.error, axis=tuple(range(found.error.ndim - 1))))
 
 
 def along(
     found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
 ) -> Measured:
-    """Return states ``found`` beside ``way``, s and v at ``times`` (n, 2), along headings; ``more`` of Measured."""
+    """Compare the states ``found`` with ``way``, s and v at ``times`` (n, 2), along all headings."""
     return Measured(
         predicted=on_a_line(way, headings),
         value=found.value,
@@ -238,7 +238,7 @@ def along(
     note="s = v₀t − μN·t²/2m.",
 )
 def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Follow throws up to nine tenths of the time in which they stop."""
+    """Compare throws with uniform deceleration up to 90 % of the time to rest."""
     times = STOPPING_TIME * WHILE_SLIDING
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
     return along(found, thrown(times[1:]), headings, times[1:])
@@ -250,7 +250,7 @@ def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     resolution=1e-6,
 )
 def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Look at throws when they rest."""
+    """Compare the positions at which throws stop with the closed form."""
     times = STOPPING_TIME * np.array([0.0, AT_REST])
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
     rest, stops = np.array([[STOPPING_DISTANCE, 0.0]]), found.value[:, 0, :2]
@@ -266,7 +266,7 @@ def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     swept=("stiffness",),
 )
 def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Leave a block on a stretched spring alone."""
+    """Measure the creep of a block on a stretched spring."""
     stretch, rate = FRICTION / SPRING.stiffness, FRICTION / math.sqrt(SPRING.mass * SPRING.stiffness)
     times = np.array([0.0, HELD])
     crept, errors = [], []
@@ -292,7 +292,7 @@ def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     "swing.",
 )
 def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Look at a block that is let go in the middle of its way, and when it is held again."""
+    """Compare a released block with the closed form halfway and after it sticks again."""
     stretch = BEYOND * FRICTION / SPRING.stiffness
     times = np.array([0.0, 0.5, 1.25]) * math.pi / SPRING.natural_frequency
     found = moved(engine, SPRING, headings, (-stretch + 0j, 0j), times)
@@ -306,7 +306,7 @@ def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     f"far it slides at 101 %; {at_each('heading', HEADINGS)} degrees.",
 )
 def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Ask on which side of the cone a block is, at eight places beside it."""
+    """Check at eight positions close to the friction cone whether a block moves."""
 
     def margins(tolerance: float) -> FloatArray:
         places = [
@@ -331,7 +331,7 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     "quarter of a swing.",
 )
 def swings(engine: Engine) -> Measured:
-    """Follow a block on a stiff spring to rest, and a little on."""
+    """Compare a block on a stiff spring with the closed form until after it rests."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     quarters = np.arange(2.0 * SWINGS + 2.0)
     times = np.asarray(0.5 * math.pi / k * quarters)
@@ -357,7 +357,7 @@ def swings(engine: Engine) -> Measured:
     "evenly to within a hundredth.",
 )
 def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Throw a block along the pull."""
+    """Compare a block thrown along the pull with the closed form."""
     stretch = PULL * FRICTION / AFAR.stiffness
     found = moved(engine, AFAR, headings, (-stretch + 0j, SPEED + 0j), PULLED)
     way = pulled(AFAR, SPEED, stretch, PULLED[1:])
@@ -373,7 +373,7 @@ def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measur
     "with the velocity. Model error: what the spring's pull changes on the way.",
 )
 def pulled_across(engine: Engine) -> Measured:
-    """Throw a block along y, which is pulled along x."""
+    """Compare a block thrown along y and pulled along x with the closed form."""
     start = state_of(0j, SPEED * 1j)
 
     def velocities(tolerance: float) -> FloatArray:
