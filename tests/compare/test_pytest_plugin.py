@@ -135,7 +135,7 @@ def test_the_status_says_what_was_not_measured_also_without_a_terminal(names, op
 FAILING = {
     "mine:not_a_number": "s is not finite: [nan, ",
     "exiting:simulate": "engine 'exiting:simulate' cannot be imported: SystemExit: 0",
-    "mine:dying": "its process came to a sudden end (exit status 3)",
+    "mine:dying": "its process ended unexpectedly (exit status 3)",
     "mine:missing": "engine 'mine:missing' cannot be imported: module 'mine' has no attribute 'missing'",
 }
 
