@@ -115,11 +115,11 @@ class Car:
             },
             stored=[self.shaft_energy],
         )
+        options = {"storeInternal": True, "writeToFile": False}
+        self.modes = {name: contact.add_sensor("mode", **options) for name, contact in self.contacts.items()}
         rates = exu.OutputVariableType.Coordinates_t
         self.speeds = {
-            name: mbs.AddSensor(
-                SensorNode(nodeNumber=node, outputVariableType=rates, storeInternal=True, writeToFile=False)
-            )
+            name: mbs.AddSensor(SensorNode(nodeNumber=node, outputVariableType=rates, **options))
             for name, node in self.nodes.items()
         }
         mbs.Assemble()
@@ -167,15 +167,12 @@ def draw(car, path):
         top.plot(times, factor * speeds, label=name if factor == 1.0 else f"{name} × {factor:g}")
     top.set(ylabel="speed in rad/s")
     top.legend(frameon=False, ncols=2)
-    for row, contact in enumerate(car.contacts.values()):
-        begin, mode = 0.0, None
-        rows = [change for change in car.changes if change.contact == int(contact.item)]
-        for change in [*rows, None]:
-            mode = change.before if change else (rows[-1].after if rows else 0)
-            end = change.time if change else UNTIL
-            colour = {0: "C2", 2: "0.85"}.get(int(mode), "C3")
-            middle.barh(row, end - begin, left=begin, color=colour, height=0.7)
-            begin = end
+    for row, sensor in enumerate(car.modes.values()):
+        times, modes = car.mbs.GetSensorStoredData(sensor).T
+        for mode, colour in ((0, "C2"), (1, "C3"), (-1, "C3"), (2, "0.85")):
+            middle.fill_between(
+                times, row - 0.35, row + 0.35, modes == mode, step="post", color=colour, linewidth=0
+            )
     middle.set(yticks=range(len(car.contacts)), yticklabels=list(car.contacts))
     middle.set_title("green: locked, red: slips, grey: open", fontsize="small")
     balance = car.read_balance()

@@ -205,6 +205,18 @@ def test_a_dual_clutch_changes_gear_and_heats_as_the_equations_say():
     assert second == pytest.approx(example["RATIOS"][1] * wheels, rel=1e-4)
 
 
+def test_a_car_starts_on_a_slope_changes_gear_and_holds():
+    """Each clutch and the second synchroniser lock once, and the brakes hold at the beginning and at the end."""
+    example = run("13_car_on_a_slope.py")
+    car, balance = example["car"], example["balance"]
+    assert np.max(np.abs(balance.residual)) < 2e-6 * balance.turnover  # 1.3e-6, of second order in the step
+    names = {int(contact.item): name for name, contact in car.contacts.items()}
+    locked = [names[change.contact] for change in car.changes if change.after == 0]
+    assert sorted(locked) == ["clutch 1", "clutch 2", "left brake", "right brake", "synchroniser 2"]
+    assert car.speed("left wheel") == pytest.approx(0.0, abs=1e-12)
+    assert abs(car.speed("car")) < 1e-6
+
+
 def test_the_engine_of_the_documents_is_that_of_the_example():
     (code,) = [code for code in code_of("docs/judge-your-engine.md") if "def simulate(pin" in code]
     assert code[code.index("def simulate") :] in (ROOT / "examples" / "05_your_own_engine.py").read_text()
