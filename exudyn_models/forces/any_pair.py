@@ -46,15 +46,51 @@ def friction_derivatives_on_nodes(
     They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
     both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
-    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
-    ux, uy, spin = _slip(to_slip, velocities)
-    angle = math.atan2(sine, cosine)
+    to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
+    ux, uy, spin = slip_of_nodes(to_slip, velocities)
+    angle = math.atan2(turned[1], turned[0])
     force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
     # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; P does not change if slip and disc are rotated together.
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
+    by_nodes, motion_by_nodes, forces = derivatives_on_nodes(
+        kinds,
+        coordinates,
+        velocities,
+        position_factor,
+        velocity_factor,
+        to_slip,
+        turned,
+        force,
+        by_slip,
+        slope,
+    )
+    return by_nodes, motion_by_nodes, (forces, math.sqrt(x * x + y * y), speed, spin)
+
+
+@compiled
+def derivatives_on_nodes(
+    kinds: Kinds,
+    coordinates: FloatArray,
+    velocities: FloatArray,
+    position_factor: float,
+    velocity_factor: float,
+    to_slip: FloatArray,
+    turned: tuple[float, float],
+    force: tuple[float, float, float],
+    by_slip: FloatArray,
+    slope: float,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return derivatives on the nodes of friction that is given over the slip, and the forces on the nodes.
+
+    The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` are results of
+    ``slip_jacobian``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
+    gradient of P is ``slope`` times the force.
+    """
+    cosine, sine = turned
+    ux, uy, _ = slip_of_nodes(to_slip, velocities)
     size = len(coordinates)
     by_nodes, motion_by_nodes = np.zeros((size, size)), np.zeros((3, size))
     map_change, slip_change = np.zeros((3, size)), np.zeros(3)
@@ -86,7 +122,7 @@ def friction_derivatives_on_nodes(
     for k in range(size):
         for i in range(3):
             forces[k] += force[i] * to_slip[i, k]
-    return by_nodes, motion_by_nodes, (forces, math.sqrt(x * x + y * y), speed, spin)
+    return by_nodes, motion_by_nodes, forces
 
 
 @compiled
@@ -118,7 +154,7 @@ def _forces(
 ) -> FloatArray:
     contact, kinds, coordinates, velocities = _state(parameters, mounts, q, q_t)
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
-    ux, uy, spin = _slip(to_slip, velocities)
+    ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
     if law is not None:
@@ -132,7 +168,7 @@ def _forces(
 
 
 @compiled
-def _slip(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
+def slip_of_nodes(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
     """Return their product; for such a small one a library would take longer."""
     ux = uy = spin = 0.0
     for k in range(len(velocities)):
@@ -203,8 +239,8 @@ def slip_in_step(
     """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
-    ux, uy, spin = _slip(to_slip, end_rates)
-    vx, vy, before = _slip(slip_jacobian(kinds, start)[0], rates)
+    ux, uy, spin = slip_of_nodes(to_slip, end_rates)
+    vx, vy, before = slip_of_nodes(slip_jacobian(kinds, start)[0], rates)
     return (
         slip_potential_of_contact(vx, vy, before, angle, contact),
         slip_potential_of_contact(ux, uy, spin, angle, contact),

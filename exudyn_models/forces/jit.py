@@ -53,12 +53,6 @@ extending.register_model(Floats)(extending.models.UniTupleModel)
 extending.unbox(Floats)(_tuple_of_list)
 
 
-def taking(function: Callable[..., Any], *examples: Any) -> Callable[..., Any]:
-    """Return ``function`` compiled for arguments of the types of ``examples``, and kept on disk."""
-    types = tuple(map(numba.typeof, examples))
-    return cast(Callable[..., Any], compiled_for(types, cast(Any, function).py_func, SOURCES))
-
-
 @cache
 def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
     """Return a compiled function of tuples as a function of lists of floats, without numba's dispatch by type.
@@ -77,7 +71,10 @@ def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any
 
 
 class KeptOnDisk:
-    """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types."""
+    """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types.
+
+    It tries its compiled functions, because numba would spend 20 to 50 μs on the types of nested tuples.
+    """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = cast(Any, function).py_func

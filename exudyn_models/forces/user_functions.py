@@ -22,13 +22,15 @@ from exudyn_models.forces.any_pair import (
 )
 from exudyn_models.forces.axial_pairs import functions_on_axis, on_one_axis
 from exudyn_models.forces.friction_laws import CONTACT_SIZE, Contact
-from exudyn_models.forces.jit import taking, taking_lists
+from exudyn_models.forces.jit import KeptOnDisk, taking_lists
 from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import LAWS
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
 from exudyn_models.forces.stick_dampers import StickDampers
 from reference_model.systems import FloatArray
+
+derivatives_on_nodes = KeptOnDisk(friction_derivatives_on_nodes)
 
 ForceFunction = Callable[[Any, float, int, Floats, Floats], Floats]
 JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], FloatArray]
@@ -88,10 +90,6 @@ def _numbers(first: Floats, contact: Contact, rest: Floats) -> list[float]:
 
 
 def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> JacobianFunction:
-    @cache  # compiled when first needed
-    def derive() -> Callable[..., Any]:
-        return taking(friction_derivatives_on_nodes, kinds, reference, reference, 1.0, 1.0, factors.geometry)
-
     def jacobian(
         mbs: Any,
         t: float,
@@ -101,7 +99,7 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        derivatives, motion_derivatives, (forces, *motion) = derive()(
+        derivatives, motion_derivatives, (forces, *motion) = derivatives_on_nodes(
             kinds, reference + q, np.array(q_t), position_factor, velocity_factor, factors.geometry
         )
         derivatives *= factors.friction_force(t, *motion)

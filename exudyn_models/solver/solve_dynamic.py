@@ -9,6 +9,7 @@ from typing import Any
 
 import exudyn as exu
 
+from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
@@ -94,15 +95,25 @@ def solve_dynamic(
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
     contacts, changes = sticking_contacts(mbs), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
+        modes: list[Mode] = []
         for goes_on in parts:
-            changes += _solve(mbs, simulationSettings, solver, goes_on, contacts)
+            changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
+            modes = [contact.stick.visible_mode for contact in contacts]
     return changes
 
 
 def _solve(
-    mbs: Any, simulationSettings: Any, solver: Any, updateInitialValues: bool, contacts: list[StickingContact]
+    mbs: Any,
+    simulationSettings: Any,
+    solver: Any,
+    updateInitialValues: bool,
+    contacts: list[StickingContact],
+    modes: list[Mode],
 ) -> list[ModeChange]:
-    """Run an assembled model without a break; return the changes of modes of ``contacts``."""
+    """Run an assembled model without a break; return the changes of modes of ``contacts``.
+
+    ``modes`` are the modes at the end of the previous part. They are empty in the first part.
+    """
     data = mbs.systemData
     options = simulationSettings.timeIntegration
     start = reached = options.startTime
@@ -147,7 +158,7 @@ def _solve(
                     repairs.enter_context(restored_accelerations(mbs))
                 jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
             if contacts:
-                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues)
+                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:

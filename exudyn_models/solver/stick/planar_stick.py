@@ -25,7 +25,6 @@ from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     jacobian_of_slip,
     linear_friction,
-    potential,
     resisted_slip,
     slip_motion,
     unit_friction,
@@ -107,7 +106,7 @@ class PlanarStick(AxialStick):
 
     def potential_of(self, slip: FloatArray) -> float:
         """Return P in m/s of a ``slip``, shape (3,)."""
-        return float(potential(slip, self.factors.geometry))
+        return float(-np.array(unit_friction(slip, self.factors.geometry)) @ slip)
 
     def held_wrench(self, mbs: Any) -> FloatArray:
         """Return force (N) and moment (N m) of the constraints on the disc, in the master's axes, shape (3,)."""
@@ -129,7 +128,7 @@ class PlanarStick(AxialStick):
             slip = columns[:, 0] * math.copysign(1.0, load @ columns[:, 0])
         else:
             slip = resisted_slip(load, np.ascontiguousarray(columns), contact)
-        slip = slip / potential(slip, contact)
+        slip = slip / self.potential_of(slip)
         return float(load @ slip) / friction, slip
 
     def holding_force(self, t: float) -> float:
@@ -163,7 +162,7 @@ class PlanarStick(AxialStick):
             return [0.0] * len(q)
         if not self.predicts and not self.frozen:
             return self.sliding[0](mbs, t, item, q, q_t)
-        return self._linear(t, q, q_t)[0].tolist()
+        return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
 
     def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
         """Prepare the first iteration of a step that starts at these coordinates and velocities."""
@@ -171,13 +170,28 @@ class PlanarStick(AxialStick):
         if self.predicts:
             self._start = self.motion(q, q_t, np.zeros(len(q)))
 
-    def _linear(self, t: float, q: Sequence[float], q_t: Sequence[float]) -> Any:
+    def _linear(
+        self,
+        t: float,
+        q: Sequence[float],
+        q_t: Sequence[float],
+        position_factor: float,
+        velocity_factor: float,
+    ) -> Any:
         """Return friction that is linear in the slip since the start of the step, and its derivatives."""
-        start, contact = self._start, self.factors.geometry
+        start = self._start
         friction = self.factors.friction_force(t, start.radius, start.potential, float(start.slip[2]))
-        coordinates = self.reference + q
-        slope = 0.0 if self.frozen else 1.0
-        return linear_friction(self.kinds, contact, coordinates, np.array(q_t), start.slip, friction, slope)
+        return linear_friction(
+            self.kinds,
+            self.factors.geometry,
+            self.reference + q,
+            np.array(q_t),
+            start.slip,
+            friction,
+            0.0 if self.frozen else 1.0,
+            position_factor,
+            velocity_factor,
+        )
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
         """Return the force and moment on the disc that slides at the time t (s), in the master's axes, shape (3,)."""
@@ -201,8 +215,7 @@ class PlanarStick(AxialStick):
             return np.zeros((len(q), len(q)))
         if self.predicts or self.frozen:
             self.predicts = False
-            _, by_position, by_velocity = self._linear(t, q, q_t)
-            return np.asarray(-position_factor * by_position - velocity_factor * by_velocity)
+            return np.asarray(self._linear(t, q, q_t, -position_factor, -velocity_factor)[1])
         found: FloatArray = self.sliding[1](mbs, t, item, q, q_t, position_factor, velocity_factor)
         return found
 

@@ -7,7 +7,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import Contact, derivatives_by_slip, friction_of_slip
+from exudyn_models.forces.any_pair import derivatives_on_nodes, slip_of_nodes
+from exudyn_models.forces.friction_laws import (
+    Contact,
+    derivatives_by_slip,
+    friction_of_slip,
+    slip_potential_of_contact,
+)
 from exudyn_models.forces.jit import KeptOnDisk, compiled
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
@@ -46,7 +52,7 @@ class SlipMotion(NamedTuple):
     rate_potential : float
         P of the rate, in m/s².
     largest_term : float
-        Largest speed in m/s whose differences are the slip, which determines its rounding error.
+        Largest speed in m/s that enters the slip. The rounding error of the slip is proportional to it.
 
     """
 
@@ -69,14 +75,14 @@ class SlipMotion(NamedTuple):
         falling = -float(self.gradient @ self.rate)
         return self.potential / falling if falling > 0.0 else math.inf
 
-    def rests_within(self, time: float) -> bool:
-        """Return whether the slip decreases and vanishes within a ``time`` (s), or is as small as its rounding error.
+    @property
+    def is_resolved(self) -> bool:
+        """True if the direction of the slip is accurate enough for Newton's method."""
+        return self.potential >= RESOLVED * self.largest_term > 0.0
 
-        The direction of friction must be accurate enough for Newton's method.
-        """
-        return self.remaining < time or (
-            self.remaining < math.inf and self.potential < RESOLVED * self.largest_term
-        )
+    def rests_within(self, time: float) -> bool:
+        """Return whether the slip decreases and vanishes within a ``time`` (s), or is no longer resolved."""
+        return self.remaining < time or (self.remaining < math.inf and not self.is_resolved)
 
 
 @compiled
@@ -103,7 +109,8 @@ def _slip_motion(
     friction = _unit_friction(slip, contact)
     for i in range(3):
         gradient[i] = -friction[i]
-    return slip, rate, bias, gradient, math.sqrt(x * x + y * y), _potential(rate, contact), largest
+    rate_potential = slip_potential_of_contact(rate[0], rate[1], rate[2], 0.0, contact)
+    return slip, rate, bias, gradient, math.sqrt(x * x + y * y), rate_potential, largest
 
 
 @compiled
@@ -115,41 +122,28 @@ def _linear_friction(
     start: FloatArray,
     friction: float,
     slope: float,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives by q and q_t.
+    position_factor: float,
+    velocity_factor: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives, shape (n, n).
 
-    ``slope`` is 1, or 0 for forces that do not depend on the slip.
+    The derivatives are weighted sums of those by coordinates and by velocities. ``slope`` is 1, or 0 for forces that
+    do not depend on the slip.
     """
-    size = len(q)
-    to_slip = slip_jacobian(kinds, q)[0]
-    by_slip = slope * friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
+    to_slip, _, turned = slip_jacobian(kinds, q)
+    slip = slip_of_nodes(to_slip, q_t)
     unit = _unit_friction(start, contact)
-    wrench, slip_by_q = np.zeros(3), np.zeros((3, size))
+    by_slip = slope * friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]
+    wrench = np.zeros(3)
     for i in range(3):
         wrench[i] = friction * unit[i]
         for j in range(3):
-            slip = -start[j]
-            for k in range(size):
-                slip += to_slip[j, k] * q_t[k]
-            wrench[i] += by_slip[i, j] * slip
-    by_q, by_q_t = np.zeros((size, size)), np.zeros((size, size))
-    forces = np.zeros(size)
-    for n in range(size):
-        stepped = q.astype(np.complex128)
-        stepped[n] += 1j * IMAGINARY_STEP
-        change = slip_jacobian(kinds, stepped)[0]
-        for i in range(3):
-            forces[n] += to_slip[i, n] * wrench[i]
-            for k in range(size):
-                slip_by_q[i, n] += change[i, k].imag / IMAGINARY_STEP * q_t[k]
-                by_q[k, n] += change[i, k].imag / IMAGINARY_STEP * wrench[i]
-    for k in range(size):
-        for n in range(size):
-            for i in range(3):
-                for j in range(3):
-                    by_q[k, n] += to_slip[i, k] * by_slip[i, j] * slip_by_q[j, n]
-                    by_q_t[k, n] += to_slip[i, k] * by_slip[i, j] * to_slip[j, n]
-    return forces, by_q, by_q_t
+            wrench[i] += by_slip[i, j] * (slip[j] - start[j])
+    force = (wrench[0], wrench[1], wrench[2])
+    derivatives, _, forces = derivatives_on_nodes(
+        kinds, q, q_t, position_factor, velocity_factor, to_slip, turned, force, by_slip, 0.0
+    )
+    return forces, derivatives
 
 
 @compiled
@@ -183,13 +177,6 @@ def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, fl
 
 
 @compiled
-def _potential(slip: FloatArray, contact: Contact) -> float:
-    fx, fy, moment = _unit_friction(slip, contact)
-    power: float = -(fx * slip[0] + fy * slip[1] + moment * slip[2])
-    return power
-
-
-@compiled
 def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
     """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
 
@@ -220,5 +207,5 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
 
 
 slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
-unit_friction, potential = KeptOnDisk(_unit_friction), KeptOnDisk(_potential)
-resisted_slip, jacobian_of_slip = KeptOnDisk(_resisted_slip), KeptOnDisk(slip_jacobian)
+unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
+jacobian_of_slip = KeptOnDisk(slip_jacobian)

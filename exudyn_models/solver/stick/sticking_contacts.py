@@ -27,7 +27,7 @@ class ModeChange:
     Parameters
     ----------
     time : float
-        In s.
+        Time in s.
     contact : int
         Object number of the contact's connector.
     before, after : Mode
@@ -61,7 +61,7 @@ class StickingContact:
     places: NDArray[Any]
 
     rest_share: ClassVar[float] = 1e-9
-    """Share of a step within which friction stops a contact that counts as resting."""
+    """Time, as a share of the step, within which a contact stops that counts as resting."""
 
     @property
     def mode(self) -> Mode:
@@ -124,8 +124,13 @@ class StickingContact:
 
     def slip(self, mbs: Any, ahead: float = 0.0, configuration: Any = CURRENT) -> float:
         """Return S in rad/s, now or a short time ``ahead`` (s)."""
-        q, q_t, q_tt = self._state(mbs, configuration)
-        return self.stick.slip(q + ahead * q_t, q_t + ahead * q_tt)
+        data = mbs.systemData
+        q = data.GetODE2Coordinates(configuration)[self.places]
+        q_t = data.GetODE2Coordinates_t(configuration)[self.places]
+        if ahead > 0.0:
+            q += ahead * q_t
+            q_t += ahead * data.GetODE2Coordinates_tt(configuration)[self.places]
+        return self.stick.slip(q, q_t)
 
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
@@ -149,7 +154,7 @@ class StickingContact:
         return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
 
     def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a ``time`` (s) so short that it rests."""
+        """Return whether a sliding contact stops within a short ``time`` (s)."""
         if not self.stick.slides:
             return False
         return int(self.mode) * self.slip(mbs, time) < 0.0
@@ -232,23 +237,26 @@ class PlanarContact(StickingContact):
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        That is 1 minus the share of the load that a locked contact holds, and ±1 where load or coefficient is zero.
-        A sliding contact does not end here but at a step of its own.
+        It is the unused share of the capacity of a locked contact, or ±1 if load or coefficient is zero. A sliding
+        contact has no margin, because ``sliding_steps`` finds its end.
         """
-        if (self.planar.holding_force(t) == 0.0) != (self.mode == Mode.OPEN):
+        holding = self.planar.holding_force(t)
+        if (holding == 0.0) != (self.mode == Mode.OPEN):
             return -1.0
-        return 1.0 if self.mode != Mode.LOCKED else 1.0 - self.stick.capacity_share(mbs, t)
+        if self.mode != Mode.LOCKED:
+            return 1.0
+        return 1.0 - self.planar.load_share(self.planar.held_wrench(mbs), holding)[0]
 
     def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a ``time`` (s) so short that it rests."""
+        """Return whether a sliding contact stops within a short ``time`` (s)."""
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
-        """Return the mode of a contact that has not been locked."""
+        """Return the mode of a contact that has not been locked; without a direction of slip it may stick."""
         if self.planar.holding_force(t) == 0.0:
             return Mode.OPEN
         motion = self.motion(mbs, configuration)
-        return _sliding_mode(motion.slip) if motion.potential > 0.0 else Mode.LOCKED
+        return _sliding_mode(motion.slip) if motion.is_resolved else Mode.LOCKED
 
 
 def _sliding_mode(slip: FloatArray) -> Mode:

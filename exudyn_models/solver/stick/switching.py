@@ -45,20 +45,26 @@ MOST_CHANGES = 100
 
 
 def run_switching(
-    mbs: Any, settings: Any, solver: Any, contacts: list[StickingContact], update_initial_values: bool
+    mbs: Any,
+    settings: Any,
+    solver: Any,
+    contacts: list[StickingContact],
+    update_initial_values: bool,
+    before: Sequence[Mode] = (),
 ) -> list[ModeChange]:
     """Run an implicit ``solver`` over an assembled model; return the changes of modes of its ``contacts``.
 
-    They have their first modes. Raises ``SimulationError`` if the modes change without end at one time.
+    They have their first modes. ``before`` are the modes at the end of the preceding run, and are empty if there is
+    none. Raises ``SimulationError`` if the modes change without end at one time.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
-    before = data.GetSystemState(initial)
+    state = data.GetSystemState(initial)
     run = _Run(mbs, settings, solver, contacts)
     try:
-        run.run()
+        run.run(before)
     finally:
         if not update_initial_values:
-            data.SetSystemState(before, initial)
+            data.SetSystemState(state, initial)
     return run.changes
 
 
@@ -75,31 +81,39 @@ class _Run:
         self._reached, self._stopped, self._begun = self._start, False, False
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._locked = LockedContacts(mbs, self._start, contacts)
-        self._starting: tuple[FloatArray, FloatArray] | None = None
+        self._accelerations = np.empty(0)  # at the start of the present step
+        self._starting = np.empty(0), np.empty(0)  # accelerations and constraint forces of the next part
         self._slides = SlidingSteps(mbs, self._planar, self._step)
         self._look: Callable[[float], bool] = lambda t: True
         #: All changes of modes so far.
         self.changes: list[ModeChange] = []
 
-    def run(self) -> None:
-        """Run from the start to the end of the settings; leave the end as the initial values."""
+    def run(self, before: Sequence[Mode]) -> None:
+        """Run from the start to the end of the settings; leave the end as the initial values.
+
+        ``before`` are the modes at the end of the preceding run. They are empty if there is none.
+        """
         mbs = self._mbs
         with (
             self._kept_settings(),
             user_function(mbs, "PreStep", self._before_step),
             user_function(mbs, "PostStep", self._after_step),
         ):
+            for contact in self._planar:
+                if contact.mode == Mode.LOCKED:
+                    self._locked.set_slip(contact, np.zeros(3))
             self._settle()
+            self._note(before)
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:
                 passed = self._go_on()
                 if passed is not None or self._slides.rests:
-                    before = [contact.stick.visible_mode for contact in self._contacts]
+                    modes = [contact.stick.visible_mode for contact in self._contacts]
                     if passed is not None:
                         self._land(*passed)
                     else:
                         self._stop()
                     self._settle()
-                    self._note(before)
+                    self._note(modes)
 
     @contextmanager
     def _kept_settings(self) -> Iterator[None]:
@@ -200,7 +214,9 @@ class _Run:
             if passed is not None or not self._slides.resolves(t - self._reached):
                 self._take_back()
                 return False
-            margins, self._accelerations = now, data.GetODE2Coordinates_tt()
+            margins = now
+            if self._planar:
+                self._accelerations = data.GetODE2Coordinates_tt()
             self._sensors.switch(self._sensors.is_due(t) or t >= self._end - ON_GRID * self._step)
             return True
 
@@ -255,10 +271,14 @@ class _Run:
             else:
                 low, above, below, side = t, now, below if side >= 0 else below / 2.0, -1
 
-        self._part(high, 1, lambda t: True, write=False, keep=True)
-        for contact, margin in zip(self._contacts, below, strict=True):
-            if margin < 0.0:
-                self._leave(contact, high)
+        self._step_to(high)
+        leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
+        following = [contact.following(self._mbs, high) for contact in leaving]  # loads of this step
+        self._survey_locks()
+        for contact, mode in zip(leaving, following, strict=True):
+            was_locked = contact.mode == Mode.LOCKED and mode != Mode.OPEN
+            if not (was_locked and self._locked.support(contact)):
+                self._enter(contact, mode)
 
     def _stop(self) -> None:
         """Step under constant friction until contacts in the plane rest, and lock them."""
@@ -269,24 +289,29 @@ class _Run:
             if motion.rests_within(contact.rest_share * self._step)
         ]
         time = min(remaining for _, remaining in resting)
-        for contact, _ in resting:
-            contact.planar.frozen = True
         if self._reached + time > self._reached:
-            self._part(self._reached + time, 1, lambda t: True, write=False, keep=True)
+            for contact, _ in resting:
+                contact.planar.frozen = True
+            try:
+                self._step_to(self._reached + time)
+            finally:
+                for contact, _ in resting:
+                    contact.planar.frozen = False
+        self._survey_locks()
         for contact, _ in resting:
-            contact.planar.frozen = False
             self._enter(contact, Mode.LOCKED)
 
-    def _leave(self, contact: StickingContact, t: float) -> None:
-        """Switch a contact to the mode that follows if no other contact changes at the time t (s)."""
-        was_locked, mode = contact.mode == Mode.LOCKED, contact.following(self._mbs, t)
-        if not (was_locked and mode != Mode.OPEN and self._locked.support(contact)):
-            self._enter(contact, mode)
+    def _step_to(self, t: float) -> None:
+        """Step to the time t (s) of a change."""
+        self._part(t, 1, lambda time: True, write=False, keep=True)
+
+    def _survey_locks(self) -> None:
+        """Find the directions of slip that joints and locks hold; this changes the current constraint forces."""
+        if self._planar:  # on one axis the directions of slip stay
+            self._locked = LockedContacts(self._mbs, self._reached, self._contacts)
 
     def _settle(self) -> None:
         """Choose modes that let all contacts obey Coulomb's law from the present time on."""
-        if self._planar:
-            self._locked = LockedContacts(self._mbs, self._reached, self._contacts)
         for contact in self._contacts:
             contact.stick.idle = False
             if contact.mode == Mode.LOCKED and self._locked.is_held(contact):
@@ -299,7 +324,7 @@ class _Run:
             if chosen is None:
                 for contact in self._contacts:
                     contact.stick.idle = contact.stick.slides and self._locked.is_held(contact)
-                if self._planar and self._starting is not None:
+                if self._planar:
                     accelerations, forces = self._starting
                     data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
                     data.SetODE2Coordinates_tt(accelerations, initial)
@@ -371,7 +396,7 @@ class _Run:
 
     def _note(self, before: Sequence[Mode]) -> None:
         """Add the changes at the time reached; raise ``SimulationError`` if they do not end."""
-        for contact, mode in zip(self._contacts, before, strict=True):
+        for contact, mode in zip(self._contacts, before, strict=bool(before)):
             after = contact.stick.visible_mode
             if after != mode:
                 self.changes.append(ModeChange(self._reached, contact.item, mode, after))

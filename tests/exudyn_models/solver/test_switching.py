@@ -270,6 +270,18 @@ def test_runs_can_go_on_and_loads_can_change_between_them():
     assert mbs.systemData.GetODE2Coordinates_t(exu.ConfigurationType.Initial)[0] == speed
 
 
+def test_changes_at_a_break_are_among_the_changes():
+    """The brake closes at 0.2 s, where a break takes the jump of its load, and stops the wheel."""
+    mbs = new_model()
+    wheel = rotor(mbs, INERTIA, 2.0)
+    law = BRAKE | {"normal_load": lambda time: 800.0 if time > 0.2 else 0.0}
+    item = int(add_ring_friction(mbs, None, wheel, **law).item)
+    assert run(mbs, 0.5, 1e-2, breaks=[0.2]) == [
+        (pytest.approx(0.2, abs=1e-9), item, 2, 1),
+        (pytest.approx(0.2 + 2.0 * INERTIA / SLIDING, abs=1e-9), item, 1, 0),
+    ]
+
+
 def test_explicit_solvers_and_points_on_bodies_that_can_slide_sideways_are_refused():
     mbs, _ = braked(2.0, lambda t: 0.0)
     mbs.Assemble()

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from compare.claims import ByEngine, Figures
 from compare.output.figures import GREY, curve, engines_in, new_figure, points
 from compare.studies.disc.free_ring.theory import deviation
-
-if TYPE_CHECKING:
-    pass
 
 LEAST_DEVIATION = 1e-8
 """Smallest |ln U/W| in the figure; smaller values show an engine's tolerance, not the motion."""
