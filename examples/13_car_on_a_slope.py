@@ -183,7 +183,7 @@ def draw(car, path):
 
 car = Car()
 begin = time.perf_counter()
-car.changes = car.run(1e-3)
+car.changes = car.run(8e-4)
 duration = time.perf_counter() - begin
 balance = car.read_balance()
 

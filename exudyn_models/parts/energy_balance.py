@@ -6,6 +6,7 @@ The solver integrates powers to works along with all other coordinates, so works
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -26,6 +27,10 @@ Power: TypeAlias = Callable[[Any, float], float]
 
 Energy: TypeAlias = Callable[[Any], float]
 """Takes the ``mbs``; returns an energy in J of the current motion."""
+
+
+CLOSED = 1e-6
+"""Residual, as a share of the energy turned over, above which a balance issues a warning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +67,18 @@ class EnergyBalance:
         parts = [*self.gains.values(), *self.losses.values(), self.stored - self.stored[0]]
         return float(max(np.max(np.abs(part)) for part in parts))
 
+    @property
+    def imbalance(self) -> str:
+        """Sentence about the largest residual, or "" if it is below ``CLOSED`` of the turnover."""
+        worst = int(np.argmax(np.abs(self.residual)))
+        size, turnover = abs(float(self.residual[worst])), self.turnover
+        if size <= CLOSED * turnover:
+            return ""
+        return (
+            f"the energy balance is off by {size:.2g} J at t = {self.times[worst]:.6g} s, {size / turnover:.1e} of "
+            "the energy turned over; use a smaller step or tolerance, or add the missing source, sink or spring"
+        )
+
 
 def add_energy_balance(
     mbs: Any,
@@ -73,8 +90,9 @@ def add_energy_balance(
 ) -> Callable[[], EnergyBalance]:
     """Add an energy balance to ``mbs``; return a function that reads it after a run.
 
-    The kinetic energy of all bodies is included automatically. Use ``spring_energy`` for native connectors with an
-    output ``PotentialEnergy``.
+    The function issues a ``RuntimeWarning`` if the residual exceeds 1e-6 of the energy turned over. The kinetic
+    energy of all bodies is included automatically. Use ``spring_energy`` for native connectors with an output
+    ``PotentialEnergy``.
 
     Parameters
     ----------
@@ -105,12 +123,15 @@ def add_energy_balance(
     def read() -> EnergyBalance:
         times, *works = mbs.GetSensorStoredData(works_sensor).T
         parts = dict(zip((*gains, *losses), (unit * work for work in works), strict=True))
-        return EnergyBalance(
+        balance = EnergyBalance(
             times,
             {name: parts[name] for name in gains},
             {name: parts[name] for name in losses},
             mbs.GetSensorStoredData(energy_sensor)[:, 1],
         )
+        if text := balance.imbalance:
+            warnings.warn(text, RuntimeWarning, stacklevel=2)
+        return balance
 
     return read
 

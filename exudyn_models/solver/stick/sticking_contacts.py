@@ -77,15 +77,23 @@ class StickingContact:
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
         slip = self.slip(mbs, configuration=exu.ConfigurationType.Initial)
-        self.enter(mbs, Mode.OPEN if self.stick.holding_moment(t) == 0.0 else Mode(int(np.sign(slip))))
+        self.enter(mbs, Mode.OPEN if self.holding(t) == 0.0 else Mode(int(np.sign(slip))))
 
     def following(self, mbs: Any, t: float) -> Mode:
         """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
-        if self.stick.holding_moment(t) == 0.0:
+        if self.holding(t) == 0.0:
             return Mode.OPEN
         if self.mode == Mode.OPEN:
             return Mode(int(np.sign(self.slip(mbs))))
         return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
+
+    def holding(self, t: float) -> float:
+        """Return the static friction at the time t (s), a moment in N m."""
+        return self.stick.holding_moment(t)
+
+    def opens_or_closes(self, holding: float) -> bool:
+        """Return whether the static friction ``holding`` has vanished, or acts on an open contact."""
+        return (holding == 0.0) != (self.mode == Mode.OPEN)
 
     def driven(self, mbs: Any) -> Mode:
         """Return the mode of sliding into which the load drives a locked contact."""
@@ -138,12 +146,10 @@ class StickingContact:
         It is the slip in the direction of sliding (rad/s), the unused moment of a locked contact (N m), or ±1 if load
         or coefficient is zero.
         """
-        holding = self.stick.holding_moment(t)
-        if (holding == 0.0) != (self.mode == Mode.OPEN):
+        holding = self.holding(t)
+        if self.opens_or_closes(holding):
             return -1.0
-        if self.mode == Mode.OPEN:
-            return 1.0
-        if self.stick.idle:
+        if self.mode == Mode.OPEN or self.stick.idle:
             return 1.0
         if self.mode == Mode.LOCKED:
             return holding - abs(self.stick.held_moment(mbs))
@@ -200,9 +206,13 @@ class PlanarContact(StickingContact):
 
     def following(self, mbs: Any, t: float) -> Mode:
         """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
-        if self.mode == Mode.LOCKED and self.planar.holding_force(t) > 0.0:
+        if self.mode == Mode.LOCKED and self.holding(t) > 0.0:
             return self.driven(mbs)
         return self._free_mode(mbs, t, CURRENT)
+
+    def holding(self, t: float) -> float:
+        """Return the static friction at the time t (s), in N."""
+        return self.planar.holding_force(t)
 
     def driven(self, mbs: Any) -> Mode:
         """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
@@ -240,8 +250,8 @@ class PlanarContact(StickingContact):
         It is the unused share of the capacity of a locked contact, or ±1 if load or coefficient is zero. A sliding
         contact has no margin, because ``sliding_steps`` finds its end.
         """
-        holding = self.planar.holding_force(t)
-        if (holding == 0.0) != (self.mode == Mode.OPEN):
+        holding = self.holding(t)
+        if self.opens_or_closes(holding):
             return -1.0
         if self.mode != Mode.LOCKED:
             return 1.0
@@ -253,7 +263,7 @@ class PlanarContact(StickingContact):
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
         """Return the mode of a contact that has not been locked; without a direction of slip it may stick."""
-        if self.planar.holding_force(t) == 0.0:
+        if self.holding(t) == 0.0:
             return Mode.OPEN
         motion = self.motion(mbs, configuration)
         return _sliding_mode(motion.slip) if motion.is_resolved else Mode.LOCKED

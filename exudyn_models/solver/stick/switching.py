@@ -1,10 +1,8 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
 Between two changes the equations of motion are smooth. The driver takes back a step that passes a change and repeats
-it with a length that ends at the change. There it chooses modes that let all contacts obey Coulomb's law at once: a
-locked contact transmits no more than it can hold, and a sliding one does not reverse. ``sliding_steps`` chooses the
-steps of contacts that slide in the plane. Such a contact begins to slide normal to the limit surface, with the slip
-that its load reaches within a millionth of a step.
+it with a length that ends at the change. There ``mode_choice`` chooses modes that let all contacts obey Coulomb's law
+at once. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
 from __future__ import annotations
@@ -20,10 +18,9 @@ import numpy as np
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.starting_rates import starting_rates
-from exudyn_models.solver.stick.locked_contacts import LockedContacts
+from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
 from exudyn_models.solver.stick.sensor_rows import ON_GRID, SensorRows
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
-from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import ModeChange, PlanarContact, StickingContact
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -31,17 +28,14 @@ from reference_model.trajectory import SimulationError
 LOCATED = 1e-12
 """Share of a step within which the time of a change is found."""
 
-ROUNDING = 1e-12
-"""Relative rounding error of the load of a locked contact."""
-
 FORCES = 1e-12
 """Relative residual of Newton's method for contacts in the plane.
 
 Errors of velocities enter constraint forces divided by the step, and these decide when a contact is released.
 """
 
-MOST_CHANGES = 100
-"""Largest number of changes at one time."""
+ITERATIONS = 200
+"""Least limit of Newton's iterations; many are needed if a load depends on forces, since the Jacobian omits this."""
 
 
 def run_switching(
@@ -80,10 +74,9 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._locked = LockedContacts(mbs, self._start, contacts)
         self._accelerations = np.empty(0)  # at the start of the present step
-        self._starting = np.empty(0), np.empty(0)  # accelerations and constraint forces of the next part
         self._slides = SlidingSteps(mbs, self._planar, self._step)
+        self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step, self._at_start)
         self._look: Callable[[float], bool] = lambda t: True
         #: All changes of modes so far.
         self.changes: list[ModeChange] = []
@@ -99,10 +92,8 @@ class _Run:
             user_function(mbs, "PreStep", self._before_step),
             user_function(mbs, "PostStep", self._after_step),
         ):
-            for contact in self._planar:
-                if contact.mode == Mode.LOCKED:
-                    self._locked.set_slip(contact, np.zeros(3))
-            self._settle()
+            self._modes.begin()
+            self._modes.settle(self._reached)
             self._note(before)
             while self._reached < self._end - ON_GRID * self._step and not self._stopped:
                 passed = self._go_on()
@@ -112,7 +103,7 @@ class _Run:
                         self._land(*passed)
                     else:
                         self._stop()
-                    self._settle()
+                    self._modes.settle(self._reached)
                     self._note(modes)
 
     @contextmanager
@@ -122,6 +113,8 @@ class _Run:
         kept = file.append, sensors.append, file.writeInitialValues
         computes = alpha.computeInitialAccelerations
         modified, tolerance = newton.useModifiedNewton, newton.relativeTolerance
+        iterations = newton.maxIterations
+        newton.maxIterations = max(iterations, ITERATIONS)
         if self._planar:
             newton.useModifiedNewton = False  # the direction of friction turns too fast for an old Jacobian
             self._tolerances = tolerance, min(tolerance, FORCES)
@@ -132,6 +125,7 @@ class _Run:
             file.append, sensors.append, file.writeInitialValues = kept
             alpha.computeInitialAccelerations = computes
             newton.useModifiedNewton, newton.relativeTolerance = modified, tolerance
+            newton.maxIterations = iterations
             file.write = self._writes_file
             self._sensors.restore()
 
@@ -234,6 +228,15 @@ class _Run:
         data.SetTime(self._reached)
         self._sensors.switch(False)
 
+    def _at_start(self, look: Callable[[float], None]) -> None:
+        """Compute the initial accelerations and call ``look`` with the time (s) before the first step."""
+
+        def end(t: float) -> bool:
+            look(t)
+            return False
+
+        self._part(self._reached + self._step, 1, end, write=False, keep=False, settles=True)
+
     def _margins_at(self, t: float) -> FloatArray:
         return np.array([contact.margin(self._mbs, t) for contact in self._contacts])
 
@@ -274,11 +277,9 @@ class _Run:
         self._step_to(high)
         leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
         following = [contact.following(self._mbs, high) for contact in leaving]  # loads of this step
-        self._survey_locks()
+        self._modes.survey(high)
         for contact, mode in zip(leaving, following, strict=True):
-            was_locked = contact.mode == Mode.LOCKED and mode != Mode.OPEN
-            if not (was_locked and self._locked.support(contact)):
-                self._enter(contact, mode)
+            self._modes.leave(contact, mode)
 
     def _stop(self) -> None:
         """Step under constant friction until contacts in the plane rest, and lock them."""
@@ -297,102 +298,13 @@ class _Run:
             finally:
                 for contact, _ in resting:
                     contact.planar.frozen = False
-        self._survey_locks()
+        self._modes.survey(self._reached)
         for contact, _ in resting:
-            self._enter(contact, Mode.LOCKED)
+            self._modes.enter(contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
         """Step to the time t (s) of a change."""
         self._part(t, 1, lambda time: True, write=False, keep=True)
-
-    def _survey_locks(self) -> None:
-        """Find the directions of slip that joints and locks hold; this changes the current constraint forces."""
-        if self._planar:  # on one axis the directions of slip stay
-            self._locked = LockedContacts(self._mbs, self._reached, self._contacts)
-
-    def _settle(self) -> None:
-        """Choose modes that let all contacts obey Coulomb's law from the present time on."""
-        for contact in self._contacts:
-            contact.stick.idle = False
-            if contact.mode == Mode.LOCKED and self._locked.is_held(contact):
-                contact.enter(self._mbs, Mode.FORWARD)
-        for _ in range(MOST_CHANGES):
-            self._locked.share_directions()
-            for planar in self._planar:
-                planar.stick.idle = planar.stick.slides and self._locked.is_held(planar)
-            chosen = self._contradiction()
-            if chosen is None:
-                for contact in self._contacts:
-                    contact.stick.idle = contact.stick.slides and self._locked.is_held(contact)
-                if self._planar:
-                    accelerations, forces = self._starting
-                    data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
-                    data.SetODE2Coordinates_tt(accelerations, initial)
-                    data.SetAECoordinates(forces, initial)
-                return
-            contact, mode = chosen
-            if mode == Mode.LOCKED or not self._locked.support(contact):
-                self._enter(contact, mode)
-        raise SimulationError(
-            f"found no modes of the friction contacts that satisfy Coulomb's law at t = {self._reached:.9g} s"
-        )
-
-    def _enter(self, contact: StickingContact, mode: Mode) -> None:
-        """Switch the mode of a contact, and set its first slip if it is in the plane."""
-        if not isinstance(contact, PlanarContact):
-            contact.enter(self._mbs, mode)
-            return
-        slip = np.zeros(3)
-        if mode != Mode.LOCKED:
-            contact.enter(self._mbs, Mode.OPEN)
-            free = self._free_motion(contact)
-            shortest = contact.rest_share * self._step
-            speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
-            slip = speed * contact.planar.direction
-            self._slides.begin(max(shortest, speed / free.rate_potential))
-        contact.enter(self._mbs, Mode.OPEN)
-        self._locked.set_slip(contact, slip)
-        contact.enter(self._mbs, mode)
-
-    def _free_motion(self, contact: PlanarContact) -> SlipMotion:
-        """Return the motion of a contact at its start in the present modes."""
-        found: SlipMotion | None = None
-
-        def look(t: float) -> bool:
-            nonlocal found
-            self._locked.correct()
-            found = contact.motion(self._mbs)
-            return False
-
-        self._part(self._reached + self._step, 1, look, write=False, keep=False, settles=True)
-        assert found is not None
-        return found
-
-    def _contradiction(self) -> tuple[StickingContact, Mode] | None:
-        """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
-
-        The most overloaded locked contact comes first, then sliding contacts that reverse.
-        """
-        found: tuple[StickingContact, Mode] | None = None
-
-        def look(t: float) -> bool:
-            nonlocal found
-            mbs, found = self._mbs, None
-            self._locked.correct()
-            most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
-            if most.overload(mbs, t) > 1.0 + ROUNDING:
-                found = most, most.driven(mbs)
-            for contact in self._contacts:
-                reversing = found is None and contact.reverses(mbs, contact.rest_share * self._step)
-                if reversing and not self._locked.is_held(contact):
-                    found = contact, Mode.LOCKED
-            self._slides.survey()
-            data = mbs.systemData
-            self._starting = np.array(data.GetODE2Coordinates_tt()), np.array(data.GetAECoordinates())
-            return False
-
-        self._part(self._reached + self._step, 1, look, write=False, keep=False, settles=True)
-        return found
 
     def _note(self, before: Sequence[Mode]) -> None:
         """Add the changes at the time reached; raise ``SimulationError`` if they do not end."""

@@ -66,6 +66,7 @@ def test_works_and_stored_energy_are_those_of_the_closed_form_and_residual_is_wh
     np.testing.assert_allclose(balance.gains["drive"], put_in, atol=1e-12)
     np.testing.assert_allclose(balance.losses["damper"], lost, atol=1e-12)
     np.testing.assert_allclose(balance.residual, 0.0, atol=1e-12)
+    assert balance.imbalance == ""
     assert balance.turnover == pytest.approx(
         max(abs(work).max() for work in (put_in, lost, stored - stored[0]))
     )
@@ -75,7 +76,9 @@ def test_works_and_stored_energy_are_those_of_the_closed_form_and_residual_is_wh
         ("stored", [], STIFFNESS * angle**2 / 2.0),
     ):
         assert np.abs(missing).max() > 0.1
-        np.testing.assert_allclose(driven_oscillator(unit, **{part: empty}).residual, missing, atol=1e-12)
+        with pytest.warns(RuntimeWarning, match=r"off by .* J at t = .* of the energy turned over"):
+            balance = driven_oscillator(unit, **{part: empty})
+        np.testing.assert_allclose(balance.residual, missing, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", [items.NodeRigidBodyRotVecLG, items.NodeRigidBodyRxyz])

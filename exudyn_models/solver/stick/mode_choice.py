@@ -1,0 +1,186 @@
+"""Modes of all contacts that sticking exactly allows at one time of a run.
+
+A locked contact transmits no more than it can hold, and a sliding one does not reverse. A contact in the plane begins
+to slide normal to the limit surface, with the slip that its load reaches within a millionth of a step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.solver.stick.locked_contacts import LockedContacts
+from exudyn_models.solver.stick.sliding_steps import SlidingSteps
+from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
+from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
+from reference_model.systems import FloatArray
+from reference_model.trajectory import SimulationError
+
+ROUNDING = 1e-12
+"""Relative rounding error of the load of a locked contact."""
+
+SETTLED = 1e-10
+"""Largest relative change of a load that counts as settled."""
+
+MOST_CHANGES = 100
+"""Largest number of changes at one time."""
+
+
+class ModeChoice:
+    """Choice of the modes of contacts in an assembled model at its initial values.
+
+    Parameters
+    ----------
+    mbs : exudyn MainSystem
+        The model.
+    t : float
+        Time of the start in s.
+    contacts : list of StickingContact
+        All contacts, with their first modes.
+    slides : SlidingSteps
+        The steps of contacts that slide in the plane.
+    step : float
+        Step of the run in s.
+    at_start : callable
+        Computes the initial accelerations and calls a function with the time (s) before the first step.
+
+    """
+
+    def __init__(
+        self,
+        mbs: Any,
+        t: float,
+        contacts: Sequence[StickingContact],
+        slides: SlidingSteps,
+        step: float,
+        at_start: Callable[[Callable[[float], None]], None],
+    ) -> None:
+        self._mbs, self._contacts, self._slides = mbs, contacts, slides
+        self._step, self._at_start = step, at_start
+        self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
+        self._locked = LockedContacts(mbs, t, contacts)
+        #: Accelerations and constraint forces, and whether no load of a contact changes with them.
+        self._starting = np.empty(0), np.empty(0), True
+
+    def survey(self, t: float) -> None:
+        """Find the directions of slip that joints and locks hold at the time t (s) and the initial values.
+
+        This changes the current constraint forces.
+        """
+        if self._planar:  # on one axis the directions of slip stay
+            self._locked = LockedContacts(self._mbs, t, self._contacts)
+
+    def begin(self) -> None:
+        """Remove the slip of contacts that are locked at the start."""
+        for contact in self._planar:
+            if contact.mode == Mode.LOCKED:
+                self._locked.set_slip(contact, np.zeros(3))
+
+    def leave(self, contact: StickingContact, mode: Mode) -> None:
+        """Let a contact enter the mode that follows, unless idle contacts can take its load."""
+        was_locked = contact.mode == Mode.LOCKED and mode != Mode.OPEN
+        if not (was_locked and self._locked.support(contact)):
+            self.enter(contact, mode)
+
+    def settle(self, t: float) -> None:
+        """Choose modes that let all contacts obey Coulomb's law from the time t (s) on."""
+        for contact in self._contacts:
+            contact.stick.idle = False
+            if contact.mode == Mode.LOCKED and self._locked.is_held(contact):
+                contact.enter(self._mbs, Mode.FORWARD)
+        for _ in range(MOST_CHANGES):
+            self._locked.share_directions()
+            for planar in self._planar:
+                planar.stick.idle = planar.stick.slides and self._locked.is_held(planar)
+            chosen = self._contradiction()
+            accelerations, forces, loads_settled = self._starting
+            data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
+            data.SetODE2Coordinates_tt(accelerations, initial)
+            data.SetAECoordinates(forces, initial)
+            if not loads_settled:
+                continue
+            if chosen is None:
+                for contact in self._contacts:
+                    contact.stick.idle = contact.stick.slides and self._locked.is_held(contact)
+                return
+            self.leave(*chosen)
+        raise SimulationError(
+            f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s"
+        )
+
+    def enter(self, contact: StickingContact, mode: Mode) -> None:
+        """Switch the mode of a contact; in the plane, set the slip of one that is locked or released."""
+        released = contact.mode == Mode.LOCKED and mode != Mode.OPEN
+        if not isinstance(contact, PlanarContact) or not (released or mode == Mode.LOCKED):
+            contact.enter(self._mbs, mode)
+            return
+        slip = np.zeros(3)
+        if released:
+            contact.enter(self._mbs, Mode.OPEN)
+            free = self._free_motion(contact)
+            shortest = contact.rest_share * self._step
+            speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
+            slip = speed * contact.planar.direction
+            self._slides.begin(max(shortest, speed / free.rate_potential))
+        contact.enter(self._mbs, Mode.OPEN)
+        self._locked.set_slip(contact, slip)
+        contact.enter(self._mbs, mode)
+
+    def _free_motion(self, contact: PlanarContact) -> SlipMotion:
+        """Return the motion of a contact at its start in the present modes."""
+        found: SlipMotion | None = None
+
+        def look(t: float) -> None:
+            nonlocal found
+            self._locked.correct()
+            found = contact.motion(self._mbs)
+
+        self._at_start(look)
+        assert found is not None
+        return found
+
+    def _contradiction(self) -> tuple[StickingContact, Mode] | None:
+        """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
+
+        Contacts that open or close come first, because a load may depend on forces that are known only now. The most
+        overloaded locked contact follows, then sliding contacts that reverse.
+        """
+        found: tuple[StickingContact, Mode] | None = None
+
+        def look(t: float) -> None:
+            nonlocal found
+            mbs = self._mbs
+            self._locked.correct()
+            self._starting = self._initial_forces(t)
+            for contact in self._contacts:
+                if contact.opens_or_closes(contact.holding(t)):
+                    found = contact, contact.following(mbs, t)
+                    return
+            most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
+            if most.overload(mbs, t) > 1.0 + ROUNDING:
+                found = most, most.driven(mbs)
+            for contact in self._contacts:
+                reversing = found is None and contact.reverses(mbs, contact.rest_share * self._step)
+                if reversing and not self._locked.is_held(contact):
+                    found = contact, Mode.LOCKED
+            self._slides.survey()
+
+        self._at_start(look)
+        return found
+
+    def _initial_forces(self, t: float) -> tuple[FloatArray, FloatArray, bool]:
+        """Return accelerations, constraint forces, and whether the loads that led to both agree with them.
+
+        A load may be a function of constraint forces, such as the reaction of a joint.
+        """
+        data = self._mbs.systemData
+        accelerations, forces = np.array(data.GetODE2Coordinates_tt()), np.array(data.GetAECoordinates())
+        loads = [contact.holding(t) for contact in self._contacts]
+        data.SetAECoordinates(data.GetAECoordinates(exu.ConfigurationType.Initial))
+        before = [contact.holding(t) for contact in self._contacts]
+        data.SetAECoordinates(forces)
+        return accelerations, forces, np.allclose(loads, before, rtol=SETTLED, atol=0.0)

@@ -1,0 +1,268 @@
+"""Exact stick in machines whose motion is known: a dry pendulum, a brake that a spring presses, two of Modelica's."""
+
+import math
+
+import exudyn as exu
+import numpy as np
+import pytest
+from free_bodies import drive, items, new_model, planar_body, rate_of, rotor, settings_of
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from exudyn_models import add_ring_friction, solve_dynamic
+from reference_model.trajectory import SimulationError
+
+TRAPEZOIDAL = exu.DynamicSolverType.TrapezoidalIndex2
+IMPLICIT = [TRAPEZOIDAL, exu.DynamicSolverType.GeneralizedAlpha]
+
+MASS, INERTIA, LENGTH, GRAVITY = 2.0, 0.1, 0.4, 9.81  # length: pivot to centre of mass
+PIVOT, COEFFICIENT = 0.02, 0.3
+
+
+def pendulum(reaction):
+    """Return a pendulum with 1 rad/s at its lowest position; the load of its dry pivot is the ``reaction`` or m·g."""
+    mbs = new_model()
+    down = [0.0, -LENGTH, -math.pi / 2.0]
+    node = mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=down, initialVelocities=[LENGTH, 0.0, 1.0]))
+    rod = mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=MASS, inertia=INERTIA))
+    centre = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=rod))
+    mbs.AddLoad(items.Force(markerNumber=centre, loadVector=[0.0, -MASS * GRAVITY, 0.0]))
+    pins = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[place, 0.0, 0.0]))
+        for body, place in ((mbs.AddObject(items.ObjectGround()), 0.0), (rod, -LENGTH))
+    ]
+    joint = mbs.AddObject(items.GenericJoint(markerNumbers=pins, constrainedAxes=[1, 1, 0, 0, 0, 0]))
+    force = mbs.AddSensor(
+        items.SensorObject(
+            objectNumber=joint, outputVariableType=exu.OutputVariableType.ForceLocal, writeToFile=False
+        )
+    )
+    load = (lambda: float(np.linalg.norm(mbs.GetSensorValues(force)))) if reaction else MASS * GRAVITY
+    add_ring_friction(mbs, *pins, contact_radius=PIVOT, friction_coefficient=COEFFICIENT, normal_load=load)
+    mbs.Assemble()
+    return mbs
+
+
+def exact_pendulum(reaction):
+    """Return the times (s) of all reversals, ending with the stop, and the final angle (rad)."""
+    inertia, weight = INERTIA + MASS * LENGTH**2, MASS * GRAVITY
+
+    def missing(rate, angle, speed, sign):
+        """Return the moment (N m) about the pivot that is missing for an acceleration ``rate`` (rad/s²)."""
+        across = MASS * LENGTH * rate + weight * math.sin(angle)
+        along = MASS * LENGTH * speed**2 + weight * math.cos(angle)
+        load = math.hypot(across, along) if reaction else weight
+        return inertia * rate + weight * LENGTH * math.sin(angle) + sign * COEFFICIENT * PIVOT * load
+
+    def rates(t, state, sign):
+        return [state[1], brentq(missing, -1e3, 1e3, args=(*state, sign), xtol=1e-14)]
+
+    time, angle, speed, times = 0.0, 0.0, 1.0, []
+    while not times or weight * LENGTH * abs(math.sin(angle)) > COEFFICIENT * PIVOT * weight:
+        sign = math.copysign(1.0, speed) if not times else -math.copysign(1.0, angle)
+
+        def stop(t, state, sign):
+            return state[1]
+
+        stop.terminal, stop.direction = True, -sign
+        swing = solve_ivp(
+            rates, (time, time + 2.0), [angle, speed], args=(sign,), events=stop, rtol=1e-11, atol=1e-13
+        )
+        time, angle, speed = swing.t[-1], swing.y[0, -1], 0.0
+        times.append(time)
+    return times, angle
+
+
+@pytest.mark.parametrize("reaction", [False, True])
+def test_a_dry_pendulum_comes_to_rest_at_the_exact_angle_and_keeps_it(reaction):
+    """The load of the pivot may be the reaction of the joint, which in turn depends on the friction."""
+    times, angle = exact_pendulum(reaction)
+    assert len(times) == 8
+    errors = []
+    for step in (2e-3, 1e-3):
+        mbs = pendulum(reaction)
+        changes = solve_dynamic(
+            mbs, settings_of(6.0, round(6.0 / step)), TRAPEZOIDAL, updateInitialValues=True
+        )
+        assert len(changes) == len(times)
+        errors.append(max(abs(change.time - time) for change, time in zip(changes, times, strict=True)))
+        rests_at = mbs.systemData.GetODE2Coordinates()[2]
+        assert rests_at == pytest.approx(angle, abs=1e-6)
+    assert errors[1] < 1e-5
+    assert 3.0 < errors[0] / errors[1] < 5.0
+    assert solve_dynamic(mbs, settings_of(3606.0, 3600, start=6.0), TRAPEZOIDAL) == []
+    assert abs(mbs.systemData.GetODE2Coordinates()[2] - rests_at) < 1e-12
+
+
+def test_a_load_from_a_spring_acts_without_delay():
+    """A swinging mass presses a brake by its spring, N = k·x₀·|cos ωt|."""
+    stiffness, mass, deflection, speed = 400.0, 1.0, 0.1, 20.0
+    mbs = new_model()
+    swing = mbs.AddNode(items.Node1D(initialCoordinates=[deflection]))
+    mbs.AddObject(items.ObjectMass1D(nodeNumber=swing, mass=mass))
+    frame = mbs.AddNode(items.NodePointGround())
+    ends = [
+        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in (frame, swing)
+    ]
+    spring = mbs.AddObject(items.CoordinateSpringDamper(markerNumbers=ends, stiffness=stiffness))
+    kind = exu.OutputVariableType.Force
+    force = mbs.AddSensor(items.SensorObject(objectNumber=spring, outputVariableType=kind, writeToFile=False))
+    wheel = rotor(mbs, 0.5, speed)
+    add_ring_friction(
+        mbs,
+        None,
+        wheel,
+        contact_radius=0.1,
+        friction_coefficient=0.5,
+        normal_load=lambda: abs(float(mbs.GetSensorValues(force))),
+    )
+    mbs.Assemble()
+    rate = math.sqrt(stiffness / mass)
+    end = 0.5 * math.pi / rate  # the load's first zero
+    solve_dynamic(mbs, settings_of(end, round(end / 1e-3)), TRAPEZOIDAL)
+    lost = 0.1 * 0.5 * stiffness * deflection / rate / 0.5
+    assert rate_of(mbs, wheel) == pytest.approx(speed - lost, abs=1e-8)  # a delay of a step costs 2e-3 rad/s
+
+
+def self_energising_brake(gain):
+    """Return a wheel of 20 rad/s and its node; the load of its brake grows with the moment between it and a flywheel.
+
+    N = N₀ + c·|M| with M = J·μrN/(2J), so that ``gain`` is c·μr/2.
+    """
+    mbs = new_model()
+    wheel, flywheel = rotor(mbs, 0.5, 20.0), rotor(mbs, 0.5, 20.0)
+    ends = [
+        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in (wheel, flywheel)
+    ]
+    shaft = mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends))
+    kind = exu.OutputVariableType.Force
+    moment = mbs.AddSensor(items.SensorObject(objectNumber=shaft, outputVariableType=kind, writeToFile=False))
+    grows = 2.0 * gain / (0.1 * 0.5)
+    add_ring_friction(
+        mbs,
+        None,
+        wheel,
+        contact_radius=0.1,
+        friction_coefficient=0.5,
+        normal_load=lambda: 40.0 + grows * abs(float(mbs.GetSensorValues(moment))),
+    )
+    mbs.Assemble()
+    return mbs, wheel
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+@pytest.mark.parametrize("gain", [0.0, 0.5, 0.8])
+def test_a_self_energising_brake_has_the_load_of_the_closed_form(gain, solver):
+    mbs, wheel = self_energising_brake(gain)
+    solve_dynamic(mbs, settings_of(0.5, 50), solver)
+    assert rate_of(mbs, wheel) == pytest.approx(20.0 - 0.1 * 0.5 * 40.0 / (1.0 - gain) * 0.5, abs=1e-7)
+
+
+def test_a_self_locking_brake_is_an_error():
+    mbs, _ = self_energising_brake(1.5)
+    with pytest.raises(SimulationError, match=r"found no modes .* Coulomb's law at t = 0 s"):
+        solve_dynamic(mbs, settings_of(0.5, 50), TRAPEZOIDAL)
+
+
+TO_CARRIER = np.array([1.0, 1.5]) / 2.5  # speed of the carrier by those of sun and ring
+GEAR_MASSES = np.diag([1.0, 0.0]) + 10.0 * np.outer(TO_CARRIER, TO_CARRIER)
+
+
+def road_load(speed):
+    """Return the moment of the load in N m."""
+    return -20.0 * (speed / 10.471975511966) ** 2 * np.sign(speed)
+
+
+def clutch_share(time):
+    """Return the load of the clutch over its largest value; that of the brake is the rest."""
+    return min(max((time - 2.0) / 0.1, 0.0), 1.0)
+
+
+def exact_gear_shift():
+    """Return when (s) the brake slips and the clutch sticks, and the speed (rad/s) of the engine at 5 s."""
+    options = {"rtol": 1e-12, "atol": 1e-13, "method": "DOP853"}
+
+    def braked(t, speed):
+        moment = 20.0 - 100.0 * clutch_share(t) + TO_CARRIER[0] * road_load(TO_CARRIER[0] * speed[0])
+        return [moment / GEAR_MASSES[0, 0]]
+
+    def unused(t, speed):
+        """Return the static friction of the brake minus the moment of the ring on it, in N m."""
+        moment = 100.0 * clutch_share(t) + TO_CARRIER[1] * road_load(TO_CARRIER[0] * speed[0])
+        return 100.0 * (1.0 - clutch_share(t)) - abs(moment - GEAR_MASSES[1, 0] * braked(t, speed)[0])
+
+    def sliding(t, speeds):
+        clutch, brake = 100.0 * clutch_share(t), 100.0 * (1.0 - clutch_share(t))
+        moments = np.array([20.0 - clutch, clutch - brake]) + TO_CARRIER * road_load(TO_CARRIER @ speeds)
+        return np.linalg.solve(GEAR_MASSES, moments)
+
+    def slip(t, speeds):
+        return speeds[0] - speeds[1]
+
+    unused.terminal = slip.terminal = True
+    first = solve_ivp(braked, (0.5, 2.0), [0.0], **options)
+    shift = solve_ivp(braked, (2.0, 2.1), first.y[:, -1], events=unused, **options)
+    both = solve_ivp(sliding, (shift.t[-1], 2.1), [shift.y[0, -1], 0.0], **options)
+    clutch = solve_ivp(sliding, (2.1, 3.0), both.y[:, -1], events=slip, **options)
+    together = solve_ivp(
+        lambda t, speed: (20.0 + road_load(speed)) / 11.0, (clutch.t[-1], 5.0), clutch.y[:1, -1], **options
+    )
+    return shift.t[-1], clutch.t[-1], together.y[0, -1]
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_gear_shift_of_modelica_is_exact(solver):
+    """SimpleGearShift: a clutch between the sun and the massless ring of a planetary gear, a brake on the ring."""
+    mbs = new_model()
+    sun, ring = (mbs.AddNode(items.Node1D()) for _ in range(2))
+
+    def moments(mbs, t, item, angles, speeds):
+        return (TO_CARRIER * road_load(TO_CARRIER @ np.array(speeds))).tolist()
+
+    mbs.AddObject(
+        items.ObjectGenericODE2(nodeNumbers=[sun, ring], massMatrix=GEAR_MASSES, forceUserFunction=moments)
+    )
+    drive(mbs, sun, lambda t: 20.0 if t >= 0.5 else 0.0)
+    law = {"contact_radius": 2.0, "friction_coefficient": 0.5}
+    clutch = add_ring_friction(mbs, ring, sun, normal_load=lambda time: 100.0 * clutch_share(time), **law)
+    brake = add_ring_friction(
+        mbs, None, ring, normal_load=lambda time: 100.0 * (1.0 - clutch_share(time)), **law
+    )
+    mbs.Assemble()
+    changes = solve_dynamic(mbs, settings_of(5.0, 5000), solver, breaks=[0.5, 2.0, 2.1])
+    slips, sticks, speed = exact_gear_shift()
+    clutch, brake = int(clutch.item), int(brake.item)
+    assert [(change.time, change.contact, int(change.before), int(change.after)) for change in changes] == [
+        (pytest.approx(2.0, abs=1e-9), clutch, 2, 1),
+        (pytest.approx(slips, abs=1e-7), brake, 0, 1),
+        (pytest.approx(2.1, abs=1e-9), brake, 1, 2),
+        (pytest.approx(sticks, abs=1e-7), clutch, 1, 0),
+    ]
+    assert rate_of(mbs, sun) == pytest.approx(speed, abs=1e-6)
+    # Published by the Modelica Association (MAP-LIB_ReferenceResults, BSD 3-clause), from DASSL at 1e-6:
+    assert [changes[1].time, changes[3].time] == pytest.approx(
+        [2.0408163581592942, 2.1107903791524119], abs=2e-7
+    )
+
+
+@pytest.mark.parametrize("sliding_mass", [False, True])
+def test_a_brake_of_modelica_is_exact(sliding_mass):
+    """Brake: μN = 1 N from 0.1 s on stops 1 kg at 1 m/s, or a rotor of 1 kg m² at 1 rad/s, at 1.1 s after 0.6 m."""
+    mbs = new_model()
+    place, velocity = [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]
+    node = planar_body(mbs, 1.0, 1.0, place, velocity) if sliding_mass else rotor(mbs, 1.0, 1.0)
+    add_ring_friction(
+        mbs,
+        None,
+        node,
+        contact_radius=0.0 if sliding_mass else 1.0,
+        friction_coefficient=1.0,
+        normal_load=lambda time: 1.0 if time >= 0.1 else 0.0,
+    )
+    mbs.Assemble()
+    changes = solve_dynamic(mbs, settings_of(2.0, 2000), TRAPEZOIDAL)
+    assert [(change.time, int(change.before), int(change.after)) for change in changes] == [
+        (pytest.approx(0.1, abs=1e-9), 2, 1),
+        (pytest.approx(1.1, abs=1e-9), 1, 0),
+    ]
+    assert mbs.systemData.GetODE2Coordinates()[0] == pytest.approx(0.6, abs=1e-9)
