@@ -25,9 +25,12 @@ import numpy as np
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
-from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
+from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_jacobian
 from reference_model.systems import FloatArray
+
+FREE = 1e-12
+"""Least capacity in one direction, relative to the other, so that rounding errors do not release a one-way clutch."""
 
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
 """``Kinds`` of bodies that turn about one axis in one direction."""
@@ -201,9 +204,15 @@ class AxialStick:
         radius = mean_radius(self.factors.geometry)
         return radius * self.factors.friction_force(t, 0.0, radius * abs(spin), spin)
 
-    def holding_moment(self, t: float) -> float:
-        """Return the largest moment in N m that the locked contact transmits at the time t (s)."""
-        return self.static_ratio * self.sliding_moment(t, 0.0)
+    def limits(self, t: float) -> tuple[float, float]:
+        """Return the largest moments in N m by which a locked contact resists sliding forward and backward, at t (s).
+
+        They differ if the coefficient does, as in a one-way clutch.
+        """
+        forward = self.static_ratio * self.sliding_moment(t, AT_REST)
+        if not self.factors.depends_on_direction:
+            return forward, forward
+        return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
 
     @property
     def slides(self) -> bool:
@@ -212,7 +221,10 @@ class AxialStick:
 
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, but for that of the constraint while the contact is locked."""
-        return -int(self.mode or 0) * self.sliding_moment(t, spin) if self.slides else 0.0
+        if not self.slides:
+            return 0.0
+        direction = int(self.mode or 0)
+        return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
 
     def held_moment(self, mbs: Any) -> float:
         """Return the moment in N m that the constraint exerts on the disc in the current motion."""
@@ -226,8 +238,12 @@ class AxialStick:
     def capacity_share(self, mbs: Any, t: float) -> float:
         """Return the moment over the largest one: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
-            return abs(self.held_moment(mbs)) / self.holding_moment(t)
+            return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
         return 1.0 if self.slides else 0.0
+
+    def unused(self, limits: tuple[float, float], held: float) -> float:
+        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) on the disc leaves."""
+        return 1.0 - abs(held) / max(limits[held > 0.0], FREE * max(limits))
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
         """Return the moments on the nodes, as the user function of the connector."""
@@ -253,8 +269,8 @@ class AxialStick:
         """Return the derivatives of minus the moments on the nodes, as the user function of the connector."""
         gradient = np.array(self.gradient(q))
         slope = 0.0
-        if self.factors.depends_on_motion and self.slides:
-            spin = float(gradient @ q_t)
+        spin = float(gradient @ q_t)
+        if self.factors.depends_on_motion and self.slides and int(self.mode or 0) * spin > 0.0:
             radius = mean_radius(self.factors.geometry)
             _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
             slope = int(self.mode or 0) * radius * float(by_speed * math.copysign(radius, spin) + by_spin)

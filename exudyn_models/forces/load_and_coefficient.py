@@ -28,6 +28,9 @@ DIFFERENCE = 1e-5
 SLOWEST = 1e-9
 """Slip speed in m/s below which this step stays constant."""
 
+AT_REST = 1e-200
+"""Relative spin in rad/s of a contact at rest that is about to slide."""
+
 
 class LoadAndCoefficient:
     """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
@@ -80,6 +83,7 @@ class LoadAndCoefficient:
         if self._static_ratio > 1.0 or curve is not None:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
+        self.depends_on_direction = "relative_spin" in self._reads
         self.depends_on_slip = not self._reads <= {"time", "radius"}
         #: Whether it calls no Python function.
         self.compiled = all(function is None or function.address != 0.0 for function in functions)
@@ -117,8 +121,10 @@ class LoadAndCoefficient:
         for i, (name, scale) in enumerate(zip(motion, scales, strict=True)):
             if name in self._reads and (name != "radius" or radius > 0.0):  # on the axis it has no derivative
                 low, high = motion[name] - DIFFERENCE * scale, motion[name] + DIFFERENCE * scale
-                if name != "relative_spin":
-                    low = max(0.0, low)
+                if motion[name] >= 0.0:  # the coefficient may jump at rest
+                    low = max(AT_REST, low)
+                else:
+                    high = min(-AT_REST, high)
                 change = self.friction_force(t, **motion | {name: high})
                 change -= self.friction_force(t, **motion | {name: low})
                 result[i] = change / (high - low)

@@ -19,6 +19,9 @@ from reference_model.systems import FloatArray
 
 CURRENT = exu.ConfigurationType.Current
 
+SOON = 1e-9
+"""Time in s after which the slip of a contact at rest shows the sign of its acceleration."""
+
 
 @dataclass(frozen=True)
 class ModeChange:
@@ -84,12 +87,12 @@ class StickingContact:
         if self.holding(t) == 0.0:
             return Mode.OPEN
         if self.mode == Mode.OPEN:
-            return Mode(int(np.sign(self.slip(mbs))))
+            return Mode(int(np.sign(self.slip(mbs) or self.slip(mbs, SOON))))
         return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
 
     def holding(self, t: float) -> float:
         """Return the static friction at the time t (s), a moment in N m."""
-        return self.stick.holding_moment(t)
+        return max(self.stick.limits(t))
 
     def opens_or_closes(self, holding: float) -> bool:
         """Return whether the static friction ``holding`` has vanished, or acts on an open contact."""
@@ -143,16 +146,16 @@ class StickingContact:
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        It is the slip in the direction of sliding (rad/s), the unused moment of a locked contact (N m), or ±1 if load
-        or coefficient is zero.
+        It is the slip in the direction of sliding (rad/s), the unused share of the capacity of a locked contact, or
+        ±1 if load or coefficient is zero.
         """
-        holding = self.holding(t)
-        if self.opens_or_closes(holding):
+        limits = self.stick.limits(t)
+        if self.opens_or_closes(max(limits)):
             return -1.0
         if self.mode == Mode.OPEN or self.stick.idle:
             return 1.0
         if self.mode == Mode.LOCKED:
-            return holding - abs(self.stick.held_moment(mbs))
+            return self.stick.unused(limits, self.stick.held_moment(mbs))
         return int(self.mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:

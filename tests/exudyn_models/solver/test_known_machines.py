@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from exudyn_models import add_ring_friction, solve_dynamic
+from exudyn_models.solver.model import IN_MEMORY
 from reference_model.trajectory import SimulationError
 
 TRAPEZOIDAL = exu.DynamicSolverType.TrapezoidalIndex2
@@ -17,6 +18,7 @@ IMPLICIT = [TRAPEZOIDAL, exu.DynamicSolverType.GeneralizedAlpha]
 
 MASS, INERTIA, LENGTH, GRAVITY = 2.0, 0.1, 0.4, 9.81  # length: pivot to centre of mass
 PIVOT, COEFFICIENT = 0.02, 0.3
+COORDINATES_T = exu.OutputVariableType.Coordinates_t
 
 
 def pendulum(reaction):
@@ -266,3 +268,92 @@ def test_a_brake_of_modelica_is_exact(sliding_mass):
         (pytest.approx(1.1, abs=1e-9), 1, 0),
     ]
     assert mbs.systemData.GetODE2Coordinates()[0] == pytest.approx(0.6, abs=1e-9)
+
+
+def overrun():
+    """Return when (s) a driven rotor starts to overrun its driver, and when the one-way clutch engages again.
+
+    8·sin 5t N m drive a rotor of 1 kg m². The clutch drives another of 0.5 kg m² under a drag of 1 N m.
+    """
+    start = (math.pi + math.asin(1.0 / 0.5 / 8.0)) / 5.0  # no moment between them: 8·sin 5t/1 = -1/0.5
+
+    def slip(t):
+        return -(t - start) / 0.5 - 8.0 / 5.0 * (math.cos(5.0 * start) - math.cos(5.0 * t))
+
+    return start, brentq(slip, start + 0.3, start + 1.2)
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_one_way_clutch_overruns_and_engages_at_the_exact_times(solver):
+    released, engaged = overrun()
+    errors = []
+    for step in (2e-3, 1e-3):
+        mbs = new_model()
+        driver, driven = rotor(mbs, 1.0, 4.0), rotor(mbs, 0.5, 4.0)
+        drive(mbs, driver, lambda t: 8.0 * math.sin(5.0 * t))
+        drive(mbs, driven, -1.0)
+        clutch = add_ring_friction(
+            mbs,
+            driver,
+            driven,
+            contact_radius=0.1,
+            friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
+            normal_load=1e4,
+        )
+        moment, mode = clutch.add_sensor("transmitted_moment"), clutch.add_sensor("mode")
+        mbs.Assemble()
+        changes = solve_dynamic(mbs, settings_of(1.6, round(1.6 / step)), solver)
+        assert [(int(change.before), int(change.after)) for change in changes] == [(0, 1), (1, 0)]
+        errors.append(max(abs(changes[0].time - released), abs(changes[1].time - engaged)))
+        moments, modes = (mbs.GetSensorStoredData(sensor)[:, 1] for sensor in (moment, mode))
+        assert (moments[modes == 0] > -1e-9).all()
+        assert (moments[modes == 1] == 0.0).all()
+    assert errors[1] < 1e-5
+    assert errors[0] < 1e-9 or errors[0] / errors[1] > 3.0
+
+
+def test_a_one_way_clutch_without_a_load_rests():
+    """Rounding errors of the moment do not release it."""
+    mbs = new_model()
+    driver, driven = rotor(mbs, 1.0, 3.0), rotor(mbs, 0.5, 3.0)
+    add_ring_friction(
+        mbs,
+        driver,
+        driven,
+        contact_radius=0.1,
+        friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
+        normal_load=1e4,
+    )
+    mbs.Assemble()
+    assert solve_dynamic(mbs, settings_of(10.0, 1000), TRAPEZOIDAL) == []
+    assert rate_of(mbs, driver) == rate_of(mbs, driven) == 3.0
+
+
+@pytest.mark.parametrize("solver", IMPLICIT)
+def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solver):
+    """Modelica's LossyGear: bearing friction under the moment of the gear, which depends on the flow of power."""
+    ratio, efficiency, drives, brakes = 2.0, 0.8, 3.0, -2.0
+    mbs = new_model()
+    shafts = [rotor(mbs, 1.0, 0.0), rotor(mbs, 0.5, 0.0)]
+    drive(mbs, shafts[0], lambda t: drives if t < 1.0 else brakes)
+    ends = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in shafts]
+    gear = mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends, factor1=ratio))
+    kind = exu.OutputVariableType.Force
+    moment = mbs.AddSensor(items.SensorObject(objectNumber=gear, outputVariableType=kind, writeToFile=False))
+
+    def loss(time):
+        share = 1.0 / efficiency - 1.0 if time < 1.0 else 1.0 - efficiency
+        return share * abs(float(mbs.GetSensorValues(moment)))
+
+    add_ring_friction(mbs, None, shafts[0], contact_radius=1.0, friction_coefficient=1.0, normal_load=loss)
+    speed = mbs.AddSensor(
+        items.SensorNode(nodeNumber=shafts[0], outputVariableType=COORDINATES_T, **IN_MEMORY)
+    )
+    mbs.Assemble()
+    solve_dynamic(mbs, settings_of(2.0, 200), solver, breaks=[1.0])
+    times, speeds = mbs.GetSensorStoredData(speed).T
+    far = 0.5 / ratio**2  # inertia of the second shaft at the first
+    top = drives / (1.0 + far / efficiency)
+    np.testing.assert_allclose(speeds[times <= 1.0], top * times[times <= 1.0], atol=1e-7)
+    after = top + brakes / (1.0 + far * efficiency) * (times[times > 1.0] - 1.0)
+    np.testing.assert_allclose(speeds[times > 1.0], after, atol=1e-7)
