@@ -28,7 +28,7 @@ STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
 """Friction moment in N m and slip speed in m/s in the steady state, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
-"""Negative slope of the coefficient in s/m at which friction feeds in the power that the damper dissipates."""
+"""Negative slope of the coefficient in s/m; friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
 """Negative slope of the coefficient over slip speed in s/m. A negative value means a rising coefficient."""
@@ -82,9 +82,9 @@ LEFT_OUT = 2e-13
 
 
 def slipping_time(end: float) -> float:
-    """Return the time in s at which the slip of the engaging clutch has fallen to ``end`` in rad/s.
+    """Return the time in s until the slip of the engaging clutch has fallen to ``end`` in rad/s.
 
-    Without heat loss, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with
+    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with
     c = k·J/(2C) and b = 1 − c·S₀², and the solution is a tangent.
     """
     c = FADE * REDUCED / (2.0 * CAPACITY)
@@ -232,7 +232,7 @@ STUDY = Study.beside(
     f"periods each, after a push of {PERTURBED:g} rad/s. Numerical error: the change with the tolerance.",
 )
 def onset(engine: Engine) -> Measured:
-    """Compare the slope at which the measured growth changes sign with the closed form."""
+    """Compare the slope for zero measured growth with the closed form."""
     growths = [np.array([_growth(gradient, tolerance) for gradient in GRADIENTS]) for tolerance in BOTH]
     lines = [np.polyfit(GRADIENTS, growth, 1) for growth in growths]
     first, second = (-np.atleast_1d(growth) / slope for slope, growth in lines)
@@ -279,7 +279,7 @@ def takes_longer(engine: Engine) -> Measured:
 
 
 def _time_of_slip(run: FloatArray) -> float:
-    """Return the time in s at which the slip falls to ``NEARLY_HOLDS``."""
+    """Return the time in s until the slip has fallen to ``NEARLY_HOLDS``."""
     return float(np.interp(-NEARLY_HOLDS, run[:, 2] - run[:, 1], run[:, 0]))
 
 

@@ -69,7 +69,7 @@ TO_REST = (0.1, 0.0, 0.0275, 0.0)
 """Near the critical start: the pin sticks nine times before it comes to rest in space."""
 
 UNTIL, SAMPLES = 240.0, 481
-"""Duration at the paper's scale in s, in which this pin comes to rest, and number of samples."""
+"""Duration at the paper's scale in s until this pin has come to rest, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
 """Fig. 6 at the friction force 0.12 N."""
@@ -89,7 +89,7 @@ VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
 ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
-"""Number of random starts, seed, and duration at the paper's scale in s, in which each start reaches its end."""
+"""Number of random starts, seed, and duration at the paper's scale in s until each start has reached its end."""
 
 SOURCE = (
     "{}; X0 = 0.1 mm, ω = 300 rad/s and m = 0.5 kg are our choice, all dimensionless numbers are the paper's"
@@ -101,7 +101,7 @@ def scaled(system: System) -> System:
     return CLUTCH.system(system)
 
 
-# --- Motions at the paper's scale, with which the motions of the clutch are compared
+# --- Motions at the paper's scale, for comparison with the motions of the clutch
 
 
 @functools.cache

@@ -24,7 +24,7 @@ from reference_model.formulas.pin import (
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 3, for which the paper prints no parameters, and the measurements
+# --- The pin of Fig. 3, whose parameters the paper does not print, and the measurements
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
@@ -39,10 +39,10 @@ LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)
 """Friction forces μN in N, within (5)."""
 
 DURATION = 520.0
-"""Duration in s, after which the slowest transient, exp(−βt/2m), has fallen to 5e-12 of its initial value."""
+"""Duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value."""
 
 DELAY = 60.0
-"""Final part of a run in s, by which the remaining transient is estimated."""
+"""Final part of a run in s, which yields the estimate of the remaining transient."""
 
 TOLERANCE = 0.03 * WORKING
 """Tolerance of the claims on the position of rest, whose resolution is 1e-9 of X0."""
@@ -103,9 +103,9 @@ def along_and_across(values: Sequence[complex]) -> list[complex]:
 
 
 def vanishing_load(loads: Sequence[float], places: FloatArray, error: FloatArray) -> tuple[float, float]:
-    """Return the μN in N at which ρ² of the last two ``places`` reaches zero, and its error.
+    """Return μN in N for ρ² = 0, extrapolated from the last two ``places``, and its error.
 
-    By (3) ρ² is linear in (μN)².
+    According to (3), ρ² is linear in (μN)².
     """
     first, last = (load**2 for load in loads[-2:])
     first_radius, last_radius = np.hypot(*places[-2:].T)
@@ -202,7 +202,7 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the extrapolated friction force at which the position of rest reaches the axis with (5)."""
+    """Compare the friction force of the equilibrium on the axis, by extrapolation, with (5)."""
     limit, error = vanishing_load(loads, *resting_places(engine, loads))
     return Measured(predicted=LIMIT, value=limit, error=error)
 
@@ -216,7 +216,7 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
-    """Compare the final speed at which the pin turns about the axis with 0 and ω, for friction forces near (5)."""
+    """Compare the final angular speed of the pin about the axis with 0 and ω, for friction forces near (5)."""
     x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:

@@ -64,7 +64,7 @@ def curves() -> Data:
 def error_of_eq18(pin: PinOnDisc) -> float:
     """Return a bound of the error of (18) in m: the second harmonic, and all orders of X0 except the first.
 
-    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k), by which the offset turns the slip.
+    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k), the angle of the slip due to the offset.
     """
     turn = pin.offset / whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
     higher = abs(third_order_of_whirl_shift(pin)) / (1.0 - turn**2)
@@ -222,7 +222,7 @@ def over_offset(engine: Engine, speed: float) -> Measurement:
 def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Measurement:
     """Return mean and second harmonic of x + iy over a whirl in m, shape (4,).
 
-    The phase of the second harmonic refers to a time at which the first harmonic is real.
+    The phase of the second harmonic refers to a time when the first harmonic is real.
     """
     first_orbit = guess or whirl_of(engine, pin, tolerance)
 

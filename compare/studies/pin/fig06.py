@@ -49,7 +49,7 @@ TOLERANCE = 10.0 * WORKING
 """Tolerance of all claims except the end of the whirl, which is measured to 1e-8 N."""
 
 INNERMOST = 0.012
-"""Crossing of the x axis in m at which the branch towards the axis ends."""
+"""Crossing of the x axis in m that ends the branch towards the axis."""
 
 ON_THE_WAY = 1e-8
 """Tolerance of the drawn branch, which leads to the cycle; its friction forces have errors below 1e-10 N."""
@@ -96,7 +96,7 @@ Two multipliers meet there, so the error is the root of the error of the return 
 
 @functools.cache
 def load_of_unit_multiplier() -> float:
-    """Return the friction force in N at which a second multiplier of the reference's whirl passes 1."""
+    """Return the friction force in N where a second multiplier of the reference's whirl passes 1."""
     orbit = whirl_orbit(with_load(0.08))
 
     def excess(x: float) -> float:
@@ -211,7 +211,7 @@ def _reference_whirl(load: float) -> Orbit:
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest μN of the branch with the μN at which a multiplier is one."""
+    """Compare the smallest μN of the branch with the μN of a unit multiplier."""
     fold = last_whirl(
         with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
     )
@@ -249,7 +249,7 @@ def coexist(engine: Engine) -> Measured:
     stuck = 0.5 * sticking_radius(FIG6)
     orbit = whirl_orbit(FIG6)
     starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
-    # Without a whirl, a pin needs about 30 s from this start until it sticks.
+    # If there were no whirl, a pin would need about 30 s from this start until it sticks.
     lengths = (10.0, 100.0)
 
     def sticks_and_slides(tolerance: float) -> list[bool]:
@@ -300,7 +300,7 @@ def cycle_exists(engine: Engine) -> Measured:
     "twice the deviation.",
 )
 def cycle_attracts(engine: Engine) -> Measured:
-    """Compare the factor by which the distance from the cycle falls per turn with the multiplier."""
+    """Compare the ratio of successive distances from the cycle with the multiplier."""
     orbit = cycle()
     found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION), TOLERANCE)
     # For central differences, the error is a third of the change at twice the deviation.

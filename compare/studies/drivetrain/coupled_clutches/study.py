@@ -153,10 +153,10 @@ def moves(engine: Engine) -> Measured:
     "Each clutch sticks and releases at the times of exact Coulomb friction",
     unit="s",
     resolution=1e-3,
-    note=f"Times at which the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
+    note=f"Times when the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
 )
 def switches_on_time(engine: Engine) -> Measured:
-    """Compare the times at which the slip falls below ε, or rises above it, with the times of the events."""
+    """Compare the times when the slip falls below ε, or rises above it, with the times of the events."""
     _check_has_epsilon(engine)
     times, error = _finest(
         [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
@@ -165,7 +165,7 @@ def switches_on_time(engine: Engine) -> Measured:
 
 
 def _passings(run: Run, epsilon: float) -> FloatArray:
-    """Return for each event the nearest time (s) at which the slip passes ``epsilon`` (rad/s), or NaN."""
+    """Return for each event the nearest time (s) when the slip passes ``epsilon`` (rad/s), or NaN."""
     found = []
     for time, clutch, mode in switches():
         above = np.abs(run.slips[:, clutch]) - epsilon
@@ -317,7 +317,7 @@ def published_angles() -> Measured:
     note=OF_PUBLISHED,
 )
 def published_switches() -> Measured:
-    """Compare the times at which a published mode changes with the times of the events."""
+    """Compare the times of changes of a published mode with the times of the events."""
     times, modes = published().times, published().modes
     found = []
     for time, clutch, mode in switches():

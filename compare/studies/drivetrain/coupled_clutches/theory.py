@@ -41,7 +41,7 @@ UNTIL = 1.5
 """End of the motion in s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
-"""Times at which speeds are compared, in s, at least 5 ms from any event. A clutch releases 0.3 ms after 1 s."""
+"""Times of the compared speeds in s, at least 5 ms from any event. A clutch releases 0.3 ms after 1 s."""
 
 EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
 """In m/s, which at the radius of 1 m equals rad/s."""
@@ -71,7 +71,7 @@ The damping of the bristle in N m s/rad is twice the root of its stiffness, crit
 """
 
 DECAY = 1e-4
-"""Slip in rad/s over which the friction of that connector falls from its static to its sliding value."""
+"""Range of slip in rad/s where the friction of that connector falls from its static to its sliding value."""
 
 PUBLISHED_TOLERANCE = 1e-6
 """Relative tolerance of DASSL in the published result."""

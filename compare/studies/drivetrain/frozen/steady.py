@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 
-# --- Speed at which the disc leaves the engine's axis: closed form, reference and Exudyn
+# --- Onset speed, where the disc leaves the engine's axis: closed form, reference and Exudyn
 
 IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
 
@@ -60,7 +60,7 @@ ONSET_NOTE = (
     named=NAMED,
 )
 def loses_stability(engine: Engine) -> Measured:
-    """Compare the onset in Exudyn's linearisation, in which the car's flywheel turns freely."""
+    """Compare the onset in Exudyn's linearisation, where the car's flywheel turns freely."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
@@ -117,7 +117,7 @@ def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
 
 
 def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float) -> tuple[float, float]:
-    """Return the speed at which the eigenvalue nearest to ``frequency`` has no real part, and the error."""
+    """Return the speed of zero real part of the eigenvalue nearest to ``frequency``, and its error."""
 
     def radial(speed: float) -> tuple[float, float]:
         balanced, _ = matrix_balance(matrix(speed))

@@ -83,7 +83,7 @@ BETWEEN = (3900.0, 4300.0)
 """Speeds in rpm below and above the border."""
 
 TIME = 0.4
-"""Duration in s for which small deviations are followed."""
+"""Duration in s of the runs with small deviations."""
 
 DEVIATION = 3e-3
 """Initial deviation relative to the radius."""
@@ -185,7 +185,7 @@ def whirl_under_surplus(
 
 @functools.lru_cache(maxsize=64)
 def _ratio_of_moment(law: Annulus, needed: float) -> float:
-    """Return U/S in m at which the moment per unit of friction force is ``needed`` (m)."""
+    """Return the ratio U/S in m for the moment ``needed`` per unit of friction force (m)."""
     widest = 10.0 * law.outer_radius
     return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
 

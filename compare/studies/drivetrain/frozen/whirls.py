@@ -130,7 +130,7 @@ def _border(
     "with twice the deviation, and at a smaller tolerance.",
 )
 def growth(engine: Engine) -> Measured:
-    """Compare the eigenvalue by which deviations from the modulated whirl grow in a run."""
+    """Compare the eigenvalue of growing deviations from the modulated whirl in a run."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)

@@ -32,7 +32,7 @@ MM = 1e3
 CYAN = "#58e0ff"
 
 OPEN = 0.7
-"""Angle in rad at which the cut of the cover faces the viewer."""
+"""Angle in rad that turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
 """Magnification of radial motion in the pictures."""
@@ -180,7 +180,7 @@ def show(panel: Axes, image: Any, title: str) -> None:
 
 
 def time_of(found: Data, turns: float) -> float:
-    """Return the time at which the mean speed of the engine, without its ripple, reaches ``turns`` (rpm)."""
+    """Return the time when the speed of the engine without its ripple reaches ``turns`` (rpm)."""
     angle, times = found["engine"][:, 0], found["times"]
     smooth = np.polyfit(times, angle, 4)
     return float(np.interp(turns * RPM, np.polyval(np.polyder(smooth), times), times))

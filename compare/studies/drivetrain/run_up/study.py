@@ -57,7 +57,7 @@ TURNS, SAMPLES = 36, 16
 
 
 def duration(car: Drivetrain, top: float) -> float:
-    """Return the time in s in which the mean torque accelerates engine and vehicle from idle to ``top`` (rpm)."""
+    """Return the time in s until the mean torque has accelerated engine and vehicle from idle to ``top`` (rpm)."""
     inertia = car.engine_inertia + car.disc_inertia + car.vehicle_inertia
     return (top - IDLE) * RPM * inertia / TORQUE
 

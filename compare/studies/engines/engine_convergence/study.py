@@ -33,7 +33,7 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     "scatter. Model error: the effect of the term.",
 )
 def sliding(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent with which the error of sliding pins falls with the tolerance with 1."""
+    """Compare the exponent of the tolerance in the error of sliding pins with 1."""
     scan = theory.SCANS[engine.name]
     errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
@@ -65,7 +65,7 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     basis="reference",
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent with which the errors of stick and release times fall with the tolerance with 1."""
+    """Compare the exponent of the tolerance in the errors of stick and release times with 1."""
     scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(

@@ -1,4 +1,4 @@
-"""Exact motions from which errors are measured, and the shift of a release by creep."""
+"""Exact motions as references for errors, and the shift of a release by creep."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Scan:
     sliding, sticking, work : array
         Tolerances for both exponents, between the first few steps and rounding, and for the plot of error over work.
     sticking_term : float
-        Power of the tolerance by which the next term is smaller if the pin sticks.
+        Ratio of the next term to the first if the pin sticks, as a power of the tolerance.
 
     """
 
@@ -89,7 +89,7 @@ CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
 """ε in m/s for the first release by RK44, whose step must be below 2.8·mε/μN = 31 s²/m·ε."""
 
 TOLERANCE = WORKING / 10
-"""Tolerance at which ε dominates all other errors."""
+"""Tolerance so small that ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
 """In s, until after the last of nine stick phases on the way to the whirl."""
@@ -99,7 +99,7 @@ WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
 
 
 def smallest_regularisation(step: float) -> float:
-    """Return the ε in m/s with which RK44, stable up to 2.8·mε/μN, resolves stick at this ``step`` in s."""
+    """Return ε in m/s such that RK44, stable up to 2.8·mε/μN, resolves stick at this ``step`` in s."""
     return step * FIG5.friction_force / FIG5.mass / 1.5
 
 

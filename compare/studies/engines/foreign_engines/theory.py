@@ -132,10 +132,10 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 
 
 def release_by(law: Law) -> tuple[float, float]:
-    """Return the time in s at which ``law`` releases a stuck pin, and its error, see ``refined``.
+    """Return the time in s when ``law`` releases a stuck pin, and its error, see ``refined``.
 
-    While friction holds the pin, its slip along each axis of the world creeps below ε. The release is the time at
-    which it reaches ε.
+    While friction holds the pin, its slip along each axis of the world creeps below ε. The release is the time
+    when it reaches ε.
     """
     case = CASES["release"]
     turning = 1j * case.system.disc_speed
@@ -154,7 +154,7 @@ def release_by(law: Law) -> tuple[float, float]:
 
 
 def release_where(held: Callable[[complex], float]) -> float:
-    """Return the time in s at which ``held`` of the force (6) over μN on a stuck pin exceeds 1, in closed form."""
+    """Return the time in s when ``held`` of the force (6) over μN on a stuck pin exceeds 1, in closed form."""
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])
     carried = pin.stiffness - pin.mass * pin.disc_speed**2 + 1j * pin.damping * pin.disc_speed
@@ -192,7 +192,7 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
 # --- Claims of each recorded engine and case: does its motion converge to the exact one?
 
 OUR_FORCE = "our force"
-"""Setting of engines in which our force replaces their own friction."""
+"""Setting with our force instead of the engine's own friction."""
 
 IN_SHORT = {
     "slip": ("slides", "slip"),

@@ -75,7 +75,7 @@ def _on_points(random: Generator, disc_speed: float) -> DiscOnDisc:
 
 
 def _sliding(random: Generator, system: System) -> tuple[float, ...]:
-    """Draw a start from which the support's spring swings the body round in either sense, not through the centre."""
+    """Draw a start such that the support's spring swings the body round in either sense, not through the centre."""
     w = cmath.rect(between(random, 0.2, 0.6), random.uniform(-math.pi, math.pi))
     z = w + system.offset
     v = sign(random) * 1j * system.natural_frequency * between(random, 0.7, 1.4) * w
@@ -180,7 +180,7 @@ DRAWN = {
     "pins on stops": Drawn(1, _stiffening, _sliding),
     "rings": Drawn(2, _ring, _sliding),
     "points": Drawn(3, _on_points, _sliding),
-    # With other numbers, wrong engines may never finish, which shows less than a motion that differs.
+    # For other numbers, wrong engines may never finish, which shows less than a motion that differs.
     "pins that stick": Drawn(12, _sticking, _stuck),
 }
 """Random motions by kind."""

@@ -15,7 +15,7 @@ from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.systems import System
 
 PANEL = 0.25
-"""Length in s of the intervals over which forces are integrated."""
+"""Length in s of the integration intervals of forces."""
 
 STICK_RESOLUTION = 5e-4
 """In s, to detect a millisecond. Approximate laws of stick release late, by about 1e-5 s at a tolerance of 1e-9."""

@@ -83,7 +83,7 @@ def pooled(parts: Sequence[Measured]) -> Measured:
 
 
 def _sizes(part: Measured) -> FloatArray:
-    """Return the size to which the errors of each number are compared."""
+    """Return the reference size for the error of each number."""
     size = np.max(np.abs(part.predicted)) if part.size is None else part.size
     return np.broadcast_to(size, np.shape(part.value)).ravel()
 

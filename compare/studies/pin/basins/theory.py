@@ -28,7 +28,7 @@ RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
 FROM_REST = "Fig. 5; starts from rest in y"
 
 SIDE, FINER = 334, 3
-"""Starts along each side of the plane, and factor by which the grid is refined where ends differ."""
+"""Starts along each side of the plane, and refinement factor of the grid where ends differ."""
 
 FASTEST = replace(FIG5, disc_speed=3.0)
 """Fig. 5 at twice its speed, where the basin is small."""
@@ -43,7 +43,7 @@ ASKED, BARELY = 64, 1e-6
 """Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
 
 UNTIL = 3000.0
-"""Duration in s, after which every start has reached its end."""
+"""Duration in s until every start has reached its end."""
 
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
 """Disc speeds in rad/s."""
@@ -55,7 +55,7 @@ RECOMPUTED = 16
 """Starts that the plain reference recomputes, half of them near the boundary."""
 
 SETTLED = 250.0
-"""Duration in s in which the plain reference reaches one of the two ends from these starts."""
+"""Duration in s until the plain reference has reached one of the two ends from these starts."""
 
 STEP = 5e-3
 """Distance in rad of other releases from the saddle's, for an engine's multiplier."""
@@ -64,10 +64,10 @@ PLACES, ASIDE = 4, 5e-3
 """Number of starts on the boundary for each engine, and distance from it to either side in m and m/s."""
 
 WITHIN, REACH = (0.05, -0.1), 0.4
-"""A start in the basin of the equilibrium, and a distance from it at which all starts lead to the whirl."""
+"""A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
-"""Duration in s, after which the engines' motions have left the saddle, and tolerance."""
+"""Duration in s until the engines' motions have left the saddle, and tolerance."""
 
 
 def curves(

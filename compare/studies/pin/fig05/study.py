@@ -35,7 +35,7 @@ FURTHER_TURNS = 20
 """Turns of the whirl after a run; the last one is averaged."""
 
 SLIDING_START = (0.9, 0.0, 0.0, 0.9)
-"""A start near the whirl, from which the pin always slides (our choice)."""
+"""A start near the whirl that leads to permanent slip (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
@@ -119,7 +119,7 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 
 @functools.lru_cache(maxsize=8)
 def critical_velocity(engine: Engine, tolerance: float) -> float:
-    """Return vx(0) in m/s at which the second stick phase is as far from the axis as the first.
+    """Return vx(0) in m/s that puts the second stick phase as far from the axis as the first.
 
     The result is NaN if the pin of an engine does not stick twice, or moves in the same direction from both starts.
     At small tolerances, the search begins near the result of a larger tolerance.
@@ -358,7 +358,7 @@ def sides(engine: Engine) -> Measured:
 
 
 def _parted(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the margins in m by which starts on either side of the critical velocity end inside and outside 2·X0."""
+    """Return by how much in m starts below and above the critical velocity end inside and outside 2·X0."""
     middle = critical_velocity(engine, tolerance)
     if not math.isfinite(middle):
         return np.full(2, math.nan)

@@ -64,7 +64,7 @@ TOLERANCE = 10 * WORKING
 """Tolerance of motions whose error is then only a hundredth of the resolution."""
 
 STICKS_BY = 2.0
-"""In s, after which the pin of Fig. 5's second start has stuck and been released."""
+"""Duration in s; the pin of Fig. 5's second start has then stuck and been released."""
 
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
@@ -81,7 +81,7 @@ FOLLOWED_ON = 0.2
 """Duration in s after a pin without damping has stuck."""
 
 GROWN = 1e-6
-"""Tolerance of growing motions, of which the claim only needs the end."""
+"""Tolerance of growing motions; the claim only needs their ends."""
 
 
 def curves() -> Data:
@@ -112,7 +112,7 @@ def radius_and_frequency(orbit: Orbit) -> tuple[float, float]:
 
 
 def end_of_growth(pin: PinOnDisc) -> float:
-    """Return the radius in m at which the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
+    """Return the radius in m where the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
     excess = pin.mass * pin.disc_speed**2 - pin.stiffness
     if pin.hardening > 0.0:
         return math.sqrt(excess / pin.hardening)
@@ -120,7 +120,7 @@ def end_of_growth(pin: PinOnDisc) -> float:
 
 
 def first_circle(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Return a state on the circle on which the linear spring carries the pin."""
+    """Return a state on the circle where the linear spring carries the pin."""
     return GROWING_FROM, 0.0, 0.0, pin.natural_frequency * GROWING_FROM
 
 

@@ -201,7 +201,7 @@ def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
 def _between(
     engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return radii in m that enclose the largest radius at which the pin sticks, by bisection.
+    """Return radii in m that enclose the largest sticking radius, by bisection.
 
     The search begins between the radii ``around`` and extends beyond them if necessary. The result is NaN if the
     search fails.

@@ -14,7 +14,7 @@ from compare.studies.toolkit.pins import safest_angle
 from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 4, and starts from which it sticks or is released
+# --- The pin of Fig. 4, and starts of stick and of release
 
 PIN = FIG4
 SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are ours"

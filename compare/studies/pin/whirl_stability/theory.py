@@ -28,10 +28,10 @@ DISPLACED = 1.1
 """Radius at their start, relative to (11)."""
 
 DURATION = 460.0
-"""Duration in s, after which the slowest deviation has fallen to 1e-10 of its initial value."""
+"""Duration in s; the slowest deviation falls to 1e-10 of its initial value."""
 
 DELAY = 40.0
-"""Final part of a run in s, by which the remaining transient is estimated."""
+"""Final part of a run in s, which yields the estimate of the remaining transient."""
 
 TOLERANCE = WORKING / 5
 """Tolerance of the claims on radius and frequency of the circle (11), whose resolution is 1e-9."""
@@ -46,7 +46,7 @@ FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
 """Weights of the one-sided difference of fourth order."""
 
 CAUGHT = 18.0
-"""In s, after which a pin that left the circle below k sticks to the disc."""
+"""Duration in s; at its end, a pin that left the circle below k sticks to the disc."""
 
 CAUGHT_TOLERANCE = 1e-7
 
@@ -54,7 +54,7 @@ POINTS = (
     *((speed, PIN.damping) for speed in (1.05, 1.1, 1.5, 2.5, 5.0)),
     *((1.5, damping) for damping in (0.5, 2.0)),
 )
-"""ω in rad/s and β in N s/m at which eigenvalues are measured."""
+"""ω in rad/s and β in N s/m for the eigenvalues."""
 
 FLOW_DURATION = 0.5
 """Duration in s of the simulations for eigenvalues."""
@@ -66,7 +66,7 @@ DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k and β/(mk) of the grid on which (14) to (16) are compared with eigenvalues, including ω < k."""
+"""ω/k and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues, including ω < k."""
 
 
 def pin_at(speed: float, damping: float = PIN.damping) -> PinOnDisc:
