@@ -22,9 +22,9 @@ DISC = FIG11
 
 SIX = replace(FIG11, contact_points=6)
 
-SOURCE = "Fig. 11; how the disc moves is ours"
+SOURCE = "Fig. 11; the motion of the disc is our choice"
 
-SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are ours"
+SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""

@@ -19,7 +19,7 @@ FROM_THE_CYCLE = f"{CENTRED}; start {START}"
 
 COMPONENTS = ("x in m", "y in m", "angle in rad", "vx in m/s", "vy in m/s", "spin in rad/s")
 
-EXTREMES = ("least radius in m", "greatest radius in m", "least spin in rad/s", "greatest spin in rad/s")
+EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
 """Initial state from which all contact points slip for 100 s (our choice)."""

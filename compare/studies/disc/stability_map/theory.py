@@ -33,7 +33,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 DISC = FIG11
 K = DISC.natural_frequency
 
-SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are ours"
+SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are our choice"
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
 BOTH_LAWS = "(19), (20), (23)"
@@ -289,14 +289,14 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
     answers = asked(as_said, SETTLING_TOLERANCE)
     found = ends[SETTLING_TOLERANCE]
     differing = [
-        f"{end} in place of {start.end} for {changes(start.disc)}"
+        f"{end} instead of {start.end} for {changes(start.disc)}"
         for end, start in zip(found, starts, strict=True)
         if end != start.end
     ]
     return found, answers_of(
         *answers,
-        source="Fig. 11 with X0 = 0; one parameter at a time is another",
-        note=f"Whether each motion ends as said after {at_each('t', sorted({one.duration for one in starts}))} s: "
+        source="Fig. 11 with X0 = 0; one parameter at a time differs",
+        note=f"Predicted ends of the motions after {at_each('t', sorted({one.duration for one in starts}))} s: "
         + ", ".join(f"{start.end} for {changes(start.disc)}" for start in starts)
         + f". {'; '.join(differing)}".rstrip("; "),
     )
