@@ -115,7 +115,7 @@ class Rotors:
         import exudyn.itemInterface
 
         self.items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # lives as long as its model
+        self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.sensors = [], []
         of_speed = exu.OutputVariableType.Coordinates_t
@@ -225,7 +225,7 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "Judder begins when the friction coefficient falls with slip speed by more than D/(N·R²)",
+    "Judder begins when the friction coefficient falls with slip speed at a rate above D/(N·R²)",
     unit="s/m",
     resolution=1e-5 * ONSET,
     note=f"Root of a straight line through the growth rates of {len(GRADIENTS)} simulated vibrations of {PERIODS} "
@@ -258,7 +258,7 @@ def _growth(gradient: float, tolerance: float) -> float:
 
 
 @STUDY.claim(
-    "Fading friction prolongs the slip of an engaging clutch by the factor of the closed form",
+    "Fading friction prolongs the slip of an engaging clutch by the factor that the closed form predicts",
     resolution=1e-5,
     note=f"Time until the slip is {NEARLY_HOLDS:g} rad/s, divided by the same time for cold friction. Numerical "
     "error: the change with the tolerance, plus the change if the interpolation omits every other step.",

@@ -266,7 +266,9 @@ def draw(data: ByEngine) -> Figures:
             color=colour,
         )
     drift.set(
-        xlabel=axis("t", "s"), ylabel="drift relative to the largest momentum of one body", ylim=(1e-17, 1e-6)
+        xlabel=axis("t", "s"),
+        ylabel="drift relative to the largest\nmomentum of one body",
+        ylim=(1e-17, 1e-6),
     )
     return {"drivetrain-momentum": figure}
 

@@ -161,7 +161,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 
 
 @STUDY.claim(
-    "The engine's whirls by shooting equal those of exact Coulomb friction, at every friction force",
+    "The whirls found by shooting equal those of exact Coulomb friction, at every friction force",
     equation="(17)",
     kind="trajectory",
     unit="s, m",

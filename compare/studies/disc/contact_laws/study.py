@@ -98,8 +98,8 @@ def friction_on(
 ) -> Measured:
     """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
 
-    By (19) they are the initial acceleration times inertia plus the resistance of springs and dampers. ``name`` is
-    the key of the law in the figures' data.
+    According to (19), they are the initial acceleration times inertia plus the resistance of springs and dampers.
+    ``name`` is the key of the law in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 

@@ -32,11 +32,9 @@ SIX = replace(RING, contact_points=6)
 PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
 """Contact law (23)."""
 
-SOURCE = (
-    "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper leaves out; the friction forces are our choice"
-)
+SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper omits; the friction forces are our choice"
 
-SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper leaves out X0"
+SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper omits X0"
 
 LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
 """Friction forces in N. The paper does not print a range; the equilibrium ends slightly above C·X0 = 0.1 N."""

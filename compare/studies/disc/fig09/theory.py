@@ -36,7 +36,7 @@ PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
 
 SOURCE = (
     'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
-    "are our choice, the paper leaves them out"
+    "are our choice, the paper omits them"
 )
 
 SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"

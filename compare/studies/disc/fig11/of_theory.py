@@ -98,7 +98,7 @@ def dies_out_by_23() -> Measured:
 
 
 @STUDY.claim(
-    "Just above the critical X0 the steady whirl and the modulated motion are both stable",
+    "Just above the critical X0, the steady whirl and the modulated motion are both stable",
     equation="(19)–(21)",
     note="Does the pair of multipliers lie inside the unit circle, and does the spin still oscillate by more "
     f"than {parameters.SWING:g} rad/s after {parameters.ENDS_UNTIL:g} s?",

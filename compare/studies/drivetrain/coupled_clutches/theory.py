@@ -207,7 +207,7 @@ class _Rotors:
         import exudyn.itemInterface
 
         items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # lives as long as its model
+        self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.markers, self.sensors = [], [], []
         for inertia, speed in zip(INERTIAS, (SPEED, 0.0, 0.0, 0.0), strict=True):

@@ -157,7 +157,7 @@ class Steady(NamedTuple):
 
 
 @STUDY.claim(
-    "Below the onset the clutch disc comes to rest in space at the position of the reference's reduced disc",
+    "Below the onset, the clutch disc comes to rest in space at the position of the reference's reduced disc",
     unit="m",
     note=NOTE,
 )
@@ -174,7 +174,7 @@ def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
 
 
 @STUDY.claim(
-    "Above the onset the clutch disc whirls on its stop with the radius of the reference's reduced disc",
+    "Above the onset, the clutch disc whirls on its stop with the radius of the reference's reduced disc",
     unit="m",
     note=NOTE,
 )
@@ -185,7 +185,7 @@ def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
 
 
 @STUDY.claim(
-    "Above the onset the clutch disc whirls at the frequency of the reference's reduced disc",
+    "Above the onset, the clutch disc whirls at the frequency of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
 )
@@ -195,7 +195,7 @@ def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measur
 
 
 @STUDY.claim(
-    "At rest in space and in the whirl the clutch disc has the slip of the reference's reduced disc",
+    "At rest in space and in the whirl, the clutch disc has the slip of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
 )

@@ -165,7 +165,7 @@ def pyramid_whirls() -> Measured:
 
 
 @_of_law(
-    "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction bounded along each axis separately",
+    "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction bounded along each axis does",
     equation=CASES["release"].equation,
 )
 def box_releases() -> Measured:
@@ -174,7 +174,7 @@ def box_releases() -> Measured:
 
 
 @_of_law(
-    "MuJoCo's pyramid releases a stuck pin too early, by as much as friction along the nearest axis",
+    "MuJoCo's pyramid releases a stuck pin too early, by as much as friction along the nearest axis does",
     equation=CASES["release"].equation,
 )
 def pyramid_releases() -> Measured:

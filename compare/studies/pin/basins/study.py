@@ -141,7 +141,7 @@ def returns(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Starts on either side of the boundary by shooting end in the equilibrium and on the whirl",
+    "Starts on either side of the computed boundary end in the equilibrium and on the whirl",
     equation="(3), (17)",
     note=f"Starts {ASIDE:g} inside and outside the boundary, after {AFTER:g} s: is the distance from the position "
     "(3) smaller, or larger, than X0?",
@@ -166,7 +166,7 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 
 
 @STUDY.claim(
-    "The stable set of the saddle-type orbit separates starts that end in the equilibrium from those on the whirl",
+    "The stable set of the saddle-type orbit separates the starts of the equilibrium from those of the whirl",
     note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting and cubic splines. Some starts "
     "end as if they were on the other side of the splines. For those of them that are farthest away, shooting "
     "determines the side of the saddle's stable set, and the claim fails for a start if that is not the side of its "

@@ -68,7 +68,7 @@ def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "With an offset, the engine's whirls by shooting equal those of exact Coulomb friction",
+    "With an offset, the whirls found by shooting equal those of exact Coulomb friction",
     equation="(17)",
     kind="trajectory",
     unit="s, m",

@@ -302,7 +302,7 @@ def resonance_of_9() -> Measured:
 
 
 @STUDY.claim(
-    "For large ω the sticking domain shrinks like 1/ω²",
+    "For large ω, the sticking domain shrinks like 1/ω²",
     equation="(9)",
     resolution=0.05,
     note="Right side of (9) over (μN − C·X0)/(mω²). Model error: twice the first omitted term, (ω*/ω)² at the "

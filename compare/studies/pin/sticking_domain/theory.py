@@ -17,7 +17,7 @@ from reference_model.systems import FloatArray, PinOnDisc
 # --- The pin of Fig. 4, and starts of stick and of release
 
 PIN = FIG4
-SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are ours"
+SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are our choice"
 RESONANCE = resonant_disc_speed(PIN)
 
 SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)
