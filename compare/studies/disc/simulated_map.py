@@ -28,7 +28,7 @@ START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 """Initial state x, y, angle, vx, vy, spin, close to the axis."""
 
 UNTIL = 12000.0
-"""Duration in s, after which the slowest motions have settled."""
+"""Duration in s until the slowest motions have settled."""
 
 TOLERANCE = 10.0 * WORKING
 """Tolerance of the simulations, which only determine the kind of final motion."""
@@ -40,7 +40,7 @@ EVERY = 5
 """Stride of the discs, in both directions, whose whirls' eigenvalues are computed."""
 
 GROWN = 15.0
-"""Re λ times the duration after which motions have left an unstable whirl; deviations have grown by exp(15)."""
+"""Re λ times the duration that lets motions leave an unstable whirl; deviations have grown by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
 """Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""

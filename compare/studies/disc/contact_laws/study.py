@@ -265,7 +265,7 @@ OF_RINGS = (
     note=OF_RINGS,
 )
 def annulus_converges() -> Measured:
-    """Measure the order at which force and moment of an annulus converge."""
+    """Compare the order of convergence of force and moment of an annulus with 12."""
     return order_in_rings(Annulus.shares, ORDER)
 
 
@@ -276,12 +276,12 @@ def annulus_converges() -> Measured:
     note=OF_RINGS,
 )
 def slopes_converge() -> Measured:
-    """Measure the order at which the slopes of force and moment of an annulus converge."""
+    """Compare the order of convergence of the slopes of force and moment of an annulus with 6."""
     return order_in_rings(Annulus.slopes, SLOPE_ORDER)
 
 
 def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
-    """Measure the order at which a ``function`` of an annulus converges with the number of rings."""
+    """Compare the order of convergence of a ``function`` of an annulus with the number of rings with ``order``."""
     # Gauss's rule on powers and logarithms has an error in even powers of 1/(n + ½).
     fineness = 1.0 / (np.array(RINGS) + 0.5)
     observed = []

@@ -298,7 +298,7 @@ def printed_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def end_of_26() -> Measured:
-    """Compare the friction force at the end of (26) with the one at which friction (23) can hold the disc."""
+    """Compare the friction force at the end of (26) with the smallest one that can hold the disc by (23)."""
     discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
     predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
     return Measured(

@@ -25,7 +25,7 @@ from reference_model.formulas.disc import whirl_at
     swept=("friction_force",),
 )
 def fold() -> Measured:
-    """Compare the friction force at which an eigenvalue passes zero with the smallest one of the balances."""
+    """Compare the friction force of a zero eigenvalue with the smallest friction force of the balances."""
     laws: Sequence[IsotropicContact | None] = (None, theory.PAPER_LAW)
     measured = [whirl_at(theory.CENTRED, theory.marginal_ratio(law), law).load for law in laws]
     return Measured(

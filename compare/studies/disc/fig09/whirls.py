@@ -171,7 +171,7 @@ def limit_of_large_loads(engine: Engine) -> Measured:
 
 
 def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
-    """Compare ``orders`` in the friction force with the orders at which radius and spin converge to ``others``."""
+    """Compare the orders of convergence of radius and spin to ``others`` in the friction force with ``orders``."""
     found = circles_of(engine, theory.CENTRED)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
     observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])

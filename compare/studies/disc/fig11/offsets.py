@@ -143,7 +143,7 @@ NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
     note=f"{NOTE} A missing or additional rest makes all numbers missing.",
 )
 def points_rest(engine: Engine) -> Measured:
-    """Compare the times at which single points come to rest and slip again with the reference."""
+    """Compare the times of rest and renewed slip of single points with the reference."""
     if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
         raise UnsupportedSystemError(f"{engine.name} does not report when single points rest")
     predicted = rests_of_points(_reference())

@@ -36,7 +36,7 @@ ENLARGED = 20.0
 SIDE_BANDS = 5
 
 SETTLED = 230.0
-"""Time in s from which sections and spectra are computed."""
+"""Start time in s of sections and spectra."""
 
 X0_AXIS = 0.025
 

@@ -38,7 +38,7 @@ STUDY.provides(curves=theory.curves)
 def end_together(
     engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
 ) -> Measured:
-    """Compare the times at which both speeds, extrapolated, reach zero."""
+    """Compare the times when both extrapolated speeds reach zero."""
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
@@ -337,7 +337,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
-    """Check for which J a balance of both decelerations exists."""
+    """Check the range of J with a balance of both decelerations."""
 
     def has_ratio(inertia: float) -> bool:
         slowing = Slowing(inertia)

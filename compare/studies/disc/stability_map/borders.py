@@ -124,7 +124,7 @@ def crosses_line() -> Measured:
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    """Compare the μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
+    """Compare the μN of an imaginary eigenvalue of the centred rotation with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
         for speed in theory.ONSET_SPEEDS:
@@ -157,7 +157,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
     "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
 }
-"""Discs by the share of one parameter of Fig. 11, and a share at which the rotation is stable."""
+"""Discs by the share of one parameter of Fig. 11, and a share with stable rotation."""
 
 
 @STUDY.claim(
@@ -169,7 +169,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
 )
 def remedies() -> Measured:
-    """Compare the share of each parameter at which the centred rotation becomes stable with the closed form."""
+    """Compare the share of each parameter at the border of stable rotation with the closed form."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []

@@ -70,7 +70,7 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     implied_by=rates,
 )
 def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Check on which side of the curves deviations grow."""
+    """Check the side of the curves where deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
     for one in found:
