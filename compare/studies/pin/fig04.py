@@ -151,8 +151,8 @@ def order(engine: Engine, speed: float) -> Measured:
         value=extrapolated,
         error=float(noise[1] + noise[2]) / np.log(2.0),
         model=float(abs(orders[1] - orders[0])) / 3.0,
-        note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0. Model error: the last "
-        "step of the extrapolation.",
+        note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0. Model error: the change "
+        "due to extrapolation.",
         data={f"means at {speed:g}": means.value[:, :2]},
         **_of_offsets(pin_at(speed, OFFSETS[-1])),
     )

@@ -94,7 +94,7 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
 LOADS = [load for load, _ in theory.CIRCLES]
 
 OBSERVED = (
-    "Orders of the deviations of radius and spin, extrapolated. Model error: the last step of the extrapolation. The "
+    "Orders of the deviations of radius and spin, extrapolated. Model error: the change due to extrapolation. The "
     "limit of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
     f"{theory.spin_of_large_whirl(theory.RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
     f"{', '.join(f'{load:g}' for load in LOADS[theory.ORDERS])} N."
@@ -189,8 +189,8 @@ def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[flo
 # --- Whirls with an offset: periodic orbits, shifted and changed by the offset.
 
 EXTRAPOLATED = (
-    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated. Model error: the last "
-    "step of the extrapolation."
+    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated. Model error: the change "
+    "due to extrapolation."
 )
 
 

@@ -120,8 +120,9 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
             equation="(1), (10)",
             kind="order",
             resolution=0.2,
-            note="Orders observed in successive halvings of the step, extrapolated to h = 0. Model error: the last "
-            "step of the extrapolation. Numerical error: its change from one step to the next.",
+            note="Orders observed in successive halvings of the step, extrapolated to h = 0. Model error: the "
+            "change due to extrapolation. Numerical error: change of the extrapolated value from one step to the "
+            "next.",
             each={solver.name: solver for solver in theory.SOLVERS if solver.order == order},
         )(function)
     return function
@@ -302,8 +303,8 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
     unit="s per m/s",
     note="Shift of the first release over ε, RK44 with four steps in mε/μN, extrapolated to ε = 0. Predicted: creep "
     "at the slip speed w = ε·a/g during the stick phase of exact friction, where m·a is the force of (6). Model "
-    "error: the last step of the extrapolation. Numerical error: its change from one ε to the next, and at twice "
-    "the step.",
+    "error: the change due to extrapolation. Numerical error: change of the extrapolated value from one ε to the "
+    "next, and at twice the step.",
 )
 def creep(engine: Engine) -> Measured | None:
     """Compare the shift of the first release per ε with creep, for both starts of Fig. 5."""

@@ -33,8 +33,8 @@ from compare.studies.engines.foreign_engines.theory import (
 )
 
 ORDER = (
-    "Orders observed in successive halvings of the step, extrapolated to 0. Model error: the last step of the "
-    "extrapolation. Numerical error: its change from one step to the next."
+    "Orders observed in successive halvings of the step, extrapolated to 0. Model error: the change due to "
+    "extrapolation. Numerical error: change of the extrapolated value from one step to the next."
 )
 SCATTERED_ORDER = (
     "Orders observed in successive halvings of the step, by least squares with a next term of one order more, "

@@ -199,7 +199,7 @@ IN_SHORT = {
     "stick-slip": ("sticks 9 times", "stick"),
     "whirl": ("whirls", "slip"),
     "stuck": ("stays stuck", "stick"),
-    "release": ("releases", "stick"),
+    "release": ("is released", "stick"),
     "disc": ("disc, 6 points", "slip"),
 }
 """Short name of each case, and whether it slips or sticks."""
