@@ -136,7 +136,7 @@ def returns(engine: Engine) -> Measured:
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
         value=found.value,
         error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
-        components=("period in s", "stick time in s", "multiplier"),
+        components=("period in s", "stick time in s", "multiplier in 1"),
     )
 
 
