@@ -28,7 +28,7 @@ START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 """Initial state x, y, angle, vx, vy, spin, close to the axis."""
 
 UNTIL = 12000.0
-"""Duration in s, after which the slowest motions have settled."""
+"""Duration in s until the slowest motions have settled."""
 
 TOLERANCE = 10.0 * WORKING
 """Tolerance of the simulations, which only determine the kind of final motion."""
@@ -40,7 +40,7 @@ EVERY = 5
 """Stride of the discs, in both directions, whose whirls' eigenvalues are computed."""
 
 GROWN = 15.0
-"""Re λ times the duration after which motions have left an unstable whirl; deviations have grown by exp(15)."""
+"""Re λ times the duration that lets motions leave an unstable whirl; deviations have grown by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
 """Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
@@ -94,7 +94,7 @@ def curves() -> Data:
 STUDY = Study.beside(
     __file__,
     "simulated-map",
-    source=f"Fig. 11 with X0 = 0; β, b and the start {START} are ours",
+    source=f"Fig. 11 with X0 = 0; β, b and the start {START} are our choice",
     system=FIG11,
     only=("theory",),  # only the reference has an ensemble
     seconds=2.0,
@@ -103,10 +103,10 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "Motions that begin beside the axis come back to it where μN is below the onset, and leave it above",
+    "Motions that start near the axis return to it if μN is below the onset, and leave it above",
     equation="(19)–(21)",
-    note=f"Those within {MARGIN:g} of the onset's μN and those that stick are left out. By the compiled ensemble "
-    f"to t = {UNTIL:g} s, which may leave one in a thousand undecided.",
+    note=f"Without motions within {MARGIN:g} of the onset's μN, and without motions that stick. By the compiled "
+    f"ensemble until t = {UNTIL:g} s, which may leave one in a thousand undecided.",
     basis="reference",
     swept=("damping", "shaft_damping"),
 )
@@ -127,7 +127,7 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
 
 
 @STUDY.claim(
-    "No motion ends as a steady whirl that has had time to amplify a deviation by exp(15)",
+    "No motion ends on a steady whirl whose deviations had time to grow by exp(15)",
     equation="(19)–(21)",
     basis="reference",
     swept=("damping", "shaft_damping"),
@@ -148,8 +148,8 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
     return answers_of(
         (left != EndState.WHIRL)[unstable],
         UNDECIDED_IS_OPEN * (left == EndState.UNDECIDED)[unstable],
-        note=f"So it is of {np.count_nonzero(unstable)} of {rates.size} discs, each fifth in both directions: they "
-        "have no other whirl.",
+        note=f"This applies to {np.count_nonzero(unstable)} of {rates.size} discs, every fifth in both directions; "
+        "they have no other whirl.",
     )
 
 

@@ -1,4 +1,4 @@
-"""Two rotors and a clutch in Exudyn: the onset of judder, heat and temperature, and the balance of energy."""
+"""Two rotors and a clutch in Exudyn: onset of judder, heat, temperature and the energy balance."""
 
 from __future__ import annotations
 
@@ -13,79 +13,79 @@ from compare.engines import Engine
 from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figure, points
 from reference_model.systems import FloatArray
 
-# Judder: a drive drags a clutch disc on a torsional spring, and friction falls with the slip.
+# Judder: a drive drags a clutch disc on a torsional spring, and the friction coefficient falls with slip speed.
 
 INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
-"""Inertia of the disc in kg m², its shaft in N m/rad and N m s/rad: 19 Hz, with 2 % of critical damping."""
+"""Inertia of the disc in kg m², and stiffness (N m/rad) and damping (N m s/rad) of its shaft: 19 Hz, 2 % damping."""
 
 SPEED, DRIVE_INERTIA = 50.0, 1e12
-"""The drive in rad/s and kg m²: friction slows it by 1e-11 rad/s²."""
+"""Speed of the drive in rad/s and its inertia in kg m², so large that friction slows it by only 1e-11 rad/s²."""
 
 RADIUS, LOAD, COEFFICIENT = 0.1, 1000.0, 0.5
-"""The contact in m and N, and its coefficient at the slip of the steady state."""
+"""Contact radius in m, normal load in N, and friction coefficient at the slip speed of the steady state."""
 
 STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
-"""Friction in N m and slip in m/s while the wound-up shaft is at rest."""
+"""Friction moment in N m and slip speed in m/s in the steady state, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
-"""In s/m: with this fall of the coefficient friction feeds what the damper takes."""
+"""Negative slope of the coefficient in s/m; friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
-"""Fall of the coefficient with the slip in s/m. A negative fall is a rise."""
+"""Negative slope of the coefficient over slip speed in s/m. A negative value means a rising coefficient."""
 
 EPSILON = 1e-4
-"""In m/s: a fifty-thousandth of the steady slip. It has no effect, because the disc does not stick."""
+"""In m/s, 1/50,000 of the steady slip speed. It has no effect because the disc does not stick."""
 
 PERTURBED = 0.1
-"""Speed of the disc at the start in rad/s, small against the drive's."""
+"""Speed of the disc at the start in rad/s, small compared with the speed of the drive."""
 
 PERIODS = 10
 TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
-"""In s, four to a period without damping."""
+"""In s, four per period of the undamped vibration."""
 
-# Heat: an engine engages with a vehicle and warms the linings, whose friction fades.
+# Heat: a clutch engages between an engine and a vehicle and warms the linings, whose friction fades.
 
 INERTIAS, SLIP = (0.2, 1.5), 200.0
-"""Engine and vehicle in kg m², reduced to the clutch, and the slip at the start in rad/s."""
+"""Inertias of engine and vehicle in kg m², reduced to the clutch, and initial slip in rad/s."""
 
 RING, PRESSED = 0.1, 3000.0
-"""Radius of the contact in m, and its load in N."""
+"""Contact radius in m and normal load in N."""
 
 COLD_COEFFICIENT, FADE = 0.33, 2e-3
-"""Coefficient at the temperature of the surroundings, and the share of it that each K above takes."""
+"""Coefficient at ambient temperature, and its relative loss per K above it."""
 
 CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
-"""Linings in J/K, their loss in W/K, and the surroundings in °C."""
+"""Heat capacity of the linings in J/K, heat loss in W/K and ambient temperature in °C."""
 
 CREEP = 1e-2
-"""ε in m/s, or 0.1 rad/s."""
+"""Regularisation ε in m/s; 0.1 rad/s at this radius."""
 
 ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
-"""In s: times while the clutch slips, and a time at which it holds."""
+"""In s: times during slip, and a time after the clutch has locked."""
 
 NEARLY_HOLDS = 1.0
-"""Slip in rad/s at which the slipping time is taken: ten times that of ε."""
+"""Slip in rad/s that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
-"""Slip of the clutch that keeps slipping in rad/s, rotors that hold it in kg m², and times in s."""
+"""For the clutch with sustained slip: slip in rad/s, inertias of the rotors in kg m² and times in s."""
 
 MOMENT = COLD_COEFFICIENT * PRESSED * RING
 REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
 HEAT = 0.5 * REDUCED * SLIP**2
-"""Moment of cold friction in N m, inertia that acts on the slip in kg m², and energy of the slip in J."""
+"""Moment of cold friction in N m, effective inertia of the slip in kg m², and energy of the slip in J."""
 
 BOTH = (1e-10, 1e-10 / COARSENING)
 """Tolerances of explicit steps, in rad, rad/s, K and J."""
 
 LEFT_OUT = 2e-13
-"""Share of a run's span that ``solve_dynamic`` leaves out at each break."""
+"""Fraction of a run's span that ``solve_dynamic`` skips at each break."""
 
 
 def slipping_time(end: float) -> float:
-    """Return the time in s at which the slip of the engaging clutch has fallen to ``end`` in rad/s.
+    """Return the time in s until the slip of the engaging clutch has fallen to ``end`` in rad/s.
 
-    Without loss C·(T − T₀) is what is gone of ½·J·S², so J·dS/dt = −M·(b + c·S²) with c = k·J/(2C) and
-    b = 1 − c·S₀². A tangent solves that.
+    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with
+    c = k·J/(2C) and b = 1 − c·S₀², and the solution is a tangent.
     """
     c = FADE * REDUCED / (2.0 * CAPACITY)
     b = 1.0 - c * SLIP**2
@@ -94,19 +94,19 @@ def slipping_time(end: float) -> float:
 
 
 def cold_slipping_time(end: float) -> float:
-    """Return the same time for friction that does not fade."""
+    """Return the slipping time in s if friction does not fade, see ``slipping_time``."""
     return (SLIP - end) * REDUCED / MOMENT
 
 
 def held(times: FloatArray) -> FloatArray:
-    """Return the temperature in °C of the clutch that keeps slipping; at the end heat and loss are equal."""
+    """Return the temperature in °C of the clutch with sustained slip. In the limit, the loss equals the heat."""
     power = MOMENT * SLOW_SLIP
     rate = CONDUCTANCE + FADE * power
     return SURROUNDINGS + power / rate * (1.0 - np.exp(-rate / CAPACITY * times))
 
 
 class Rotors:
-    """Two rotors about one axis in Exudyn, and a sensor of each speed."""
+    """Two rotors about one axis in Exudyn, with a speed sensor on each."""
 
     def __init__(
         self, inertias: tuple[float, float], speeds: tuple[float, float], second_angle: float = 0.0
@@ -115,7 +115,7 @@ class Rotors:
         import exudyn.itemInterface
 
         self.items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # lives as long as its model
+        self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.sensors = [], []
         of_speed = exu.OutputVariableType.Coordinates_t
@@ -127,9 +127,9 @@ class Rotors:
             self.nodes.append(node)
 
     def run(self, until: float, steps: int, tolerance: float, breaks: Sequence[float] = ()) -> FloatArray:
-        """Return times in s and what the sensors show after each step, one column each.
+        """Return times in s and the sensor values after each step, one column each.
 
-        The run ends and goes on at the ``breaks``, so that these times are among them.
+        The run stops and continues at the ``breaks``, so the times contain them.
         """
         import exudyn as exu
 
@@ -147,7 +147,7 @@ class Rotors:
 
 
 def juddering(gradient: float) -> Rotors:
-    """Return a drive and a disc on its shaft, with a coefficient that falls by ``gradient`` in s/m."""
+    """Return a drive and a disc on its shaft, with a friction coefficient of slope −``gradient`` in s/m."""
     from exudyn_models import add_ring_friction
 
     rotors = Rotors((DRIVE_INERTIA, INERTIA), (SPEED, PERTURBED), STEADY_MOMENT / STIFFNESS)
@@ -178,8 +178,7 @@ def heating(
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
-    The clutch slips with ``start`` in rad/s at first. The ``times`` in s, of which the last is the end, are among
-    those of the steps.
+    The initial slip is ``start`` in rad/s. The steps hit all ``times`` in s; the last one ends the run.
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 
@@ -219,21 +218,21 @@ def curves() -> Data:
 STUDY = Study.beside(
     __file__,
     "clutch-parts",
-    source="two rotors with a clutch, an assumption",
+    source="two rotors with a clutch (assumption)",
     only=("exudyn",),
     seconds=4.0,
 )
 
 
 @STUDY.claim(
-    "Judder begins where the coefficient of friction falls by D/(N·R²)",
+    "Judder begins when the friction coefficient falls with slip speed at a rate above D/(N·R²)",
     unit="s/m",
     resolution=1e-5 * ONSET,
-    note=f"Root of the straight line through the growth rates of {len(GRADIENTS)} simulated vibrations, {PERIODS} "
-    f"periods each after a push of {PERTURBED:g} rad/s. Numerical error: the change with the tolerance.",
+    note=f"Root of a straight line through the growth rates of {len(GRADIENTS)} simulated vibrations of {PERIODS} "
+    f"periods each, after a push of {PERTURBED:g} rad/s. Numerical error: the change with the tolerance.",
 )
 def onset(engine: Engine) -> Measured:
-    """Compare the fall at which the measured growth changes its sign with the closed form."""
+    """Compare the slope for zero measured growth with the closed form."""
     growths = [np.array([_growth(gradient, tolerance) for gradient in GRADIENTS]) for tolerance in BOTH]
     lines = [np.polyfit(GRADIENTS, growth, 1) for growth in growths]
     first, second = (-np.atleast_1d(growth) / slope for slope, growth in lines)
@@ -247,9 +246,9 @@ def onset(engine: Engine) -> Measured:
 
 
 def _growth(gradient: float, tolerance: float) -> float:
-    """Return the growth of the vibration in 1/s.
+    """Return the growth rate of the vibration in 1/s.
 
-    Speeds at equal intervals Δ of one linear vibration are a recurrence, v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
+    Speeds of a linear vibration at equal intervals Δ satisfy v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
     """
     until = float(TIMES[-1])
     run = juddering(gradient).run(until, round(until / 1e-3), tolerance, TIMES[1:-1].tolist())
@@ -259,10 +258,10 @@ def _growth(gradient: float, tolerance: float) -> float:
 
 
 @STUDY.claim(
-    "Fading friction prolongs the slip of an engaging clutch by the ratio of the closed form",
+    "Fading friction prolongs the slip of an engaging clutch by the factor that the closed form predicts",
     resolution=1e-5,
     note=f"Time until the slip is {NEARLY_HOLDS:g} rad/s, divided by the same time for cold friction. Numerical "
-    "error: the change with the tolerance, and the change if the interpolation leaves out every other step.",
+    "error: the change with the tolerance, plus the change if the interpolation omits every other step.",
 )
 def takes_longer(engine: Engine) -> Measured:
     """Compare the time of the engagement with the closed form."""
@@ -280,23 +279,23 @@ def takes_longer(engine: Engine) -> Measured:
 
 
 def _time_of_slip(run: FloatArray) -> float:
-    """Return the time in s at which the slip falls to ``NEARLY_HOLDS``."""
+    """Return the time in s until the slip has fallen to ``NEARLY_HOLDS``."""
     return float(np.interp(-NEARLY_HOLDS, run[:, 2] - run[:, 1], run[:, 0]))
 
 
 @STUDY.claim(
-    "The temperature of a clutch that keeps slipping approaches its steady value exponentially",
+    "The temperature of a clutch with sustained slip approaches its steady value exponentially",
     kind="trajectory",
     unit="°C",
     resolution=1e-6,
-    note=f"Rotors of {HEAVY:g} kg m² hold the slip, and the friction fades. Numerical error: the change with the "
-    f"tolerance. Model error: the slip that the rotors lose, and the {LEFT_OUT:g} of its span that the run leaves "
-    "out at each of these times.",
+    note=f"Rotors of {HEAVY:g} kg m² maintain the slip while friction fades. Numerical error: the change with the "
+    f"tolerance. Model error: the slip that the rotors lose, and the fraction {LEFT_OUT:g} of its span that the run "
+    "skips at each of these times.",
 )
 def settles(engine: Engine) -> Measured:
     """Compare the temperature with the closed form."""
     runs = [heating((HEAVY, HEAVY), SLOW_SLIP, CONDUCTANCE, tolerance, HELD) for tolerance in BOTH]
-    # A run ends a little before each of these times.
+    # The last step before a break ends slightly before it.
     found, finer = (run[np.searchsorted(run[:, 0], HELD - 1e-9), 3] for run in runs)
     span = float(HELD[-1])
     skipped = len(HELD[:-1]) * LEFT_OUT * span * (MOMENT * SLOW_SLIP / CAPACITY)
@@ -311,12 +310,12 @@ def settles(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The energy of two rotors, the energy of the warm linings and the lost heat have a constant sum",
+    "The energy of two rotors, the heat in the linings and the lost heat have a constant sum",
     kind="conservation",
     unit="J",
     resolution=1e-8 * HEAT,
-    note="Largest deviation after any step, from slip into stick, with loss to the surroundings. Numerical error: "
-    "the change with the tolerance, and rounding, which grows like the square root of the number of steps.",
+    note="Largest deviation after any step, from slip to stick, with heat loss. Numerical error: the change with the "
+    "tolerance, plus rounding, which grows like the square root of the number of steps.",
 )
 def balance(engine: Engine) -> Measured:
     """Compare the energy after each step with the energy at the start."""
@@ -340,17 +339,19 @@ def balance(engine: Engine) -> Measured:
     )
 
 
-# --- Figures of judder and of a clutch that warms up.
+# --- Figures of judder and of a clutch that warms up
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw growth over the fall of friction, and slip and temperature over time."""
+    """Draw growth against the slope of friction, and slip and temperature over time."""
     if not data:
         return {}
     judder, (growth,) = new_figure(width=5.5, height=3.6)
     growth.axhline(0.0, color=GREY, linewidth=0.6)
     _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
-    growth.set(xlabel="fall of μ with the slip, over that of onset", ylabel="growth in 1/s")
+    growth.set(
+        xlabel="negative slope of μ over slip speed, relative to the onset", ylabel="growth rate in 1/s"
+    )
     growth.legend(loc="upper left")
 
     heat, (slips, temperatures) = new_figure(ncols=2, width=10.0, height=3.6)
@@ -359,14 +360,14 @@ def draw(data: ByEngine) -> Figures:
         slips.plot(theory["cold t"], theory["slips"], color=GREY, linestyle="--", label="cold friction")
     _both(slips, data, ("t", "slips"), ("engaged t", "engaged slip"))
     _both(temperatures, data, ("held t", "held"), ("measured t", "measured temperature"))
-    slips.set(xlabel=axis("t", "s"), ylabel="slip in rad/s", title="engagement", ylim=(0.0, None))
-    temperatures.set(xlabel=axis("t", "s"), ylabel="temperature in °C", title="held slip")
+    slips.set(xlabel=axis("t", "s"), ylabel="slip in rad/s", title="Engagement", ylim=(0.0, None))
+    temperatures.set(xlabel=axis("t", "s"), ylabel="temperature in °C", title="Sustained slip")
     slips.legend(fontsize=8.5)
     return {"clutch-parts-judder": judder, "clutch-parts-heat": heat}
 
 
 def _both(panel: Axes, data: ByEngine, closed_form: tuple[str, str], measured: tuple[str, str]) -> None:
-    """Draw the closed form and the results of the engines, by the names of their abscissa and ordinate."""
+    """Draw the closed form and the results of the engines; the pairs name the arrays of abscissa and ordinate."""
     for name in ("theory", *engines_in(data)):
         x, y = closed_form if name == "theory" else measured
         found = data.get(name, {})

@@ -1,8 +1,8 @@
-"""An isolated drivetrain of the project's parts, on every kind of node, keeps its angular momentum.
+"""An isolated drivetrain of the project's parts keeps its angular momentum on every kind of node.
 
-Engine, clutch disc and vehicle move in space, in the plane, or about a fixed axis, and act only on each other: by
-friction, by an elastic shaft that is fixed to the vehicle away from its centre, and by a torsional spring. The claims
-fail for a part that forgets the moment of its force about one of the bodies, or acts on the two along different axes.
+Engine, clutch disc and vehicle move in space, in the plane or about a fixed axis. They act only on each other, by
+friction, by an elastic shaft that is attached to the vehicle off-centre, and by a torsional spring. The claims fail
+if a part lacks the moment of its force about one of the bodies, or acts on the two bodies along different axes.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ DRIVETRAINS = tuple(
     for i, engine in enumerate(KINDS)
     for j, vehicle in enumerate(KINDS)
 )
-"""Nodes of engine, disc and vehicle: each kind of each body meets each kind of the others."""
+"""Nodes of engine, disc and vehicle. Each kind for each body occurs with each kind for the others."""
 
 DRAWN = ("rotation vector",) * 3
 """The drivetrain of the figure."""
@@ -53,7 +53,7 @@ BODIES = {
         80.0, (5.0, 5.0, 8.0), (0.0, 0.009, 0.015, 1e-4, 1e-4, 0.1), (0.0, 0.0, 0.0, -1e-4, 1e-4, 1.0)
     ),
 }
-"""Their axes are apart and slightly tilted, so a force without its arm shows."""
+"""The axes of the bodies are apart and slightly tilted, which reveals a force without its arm."""
 
 FRICTION: dict[str, Any] = {
     "friction_coefficient": 1.0,
@@ -65,14 +65,14 @@ EPSILON = 1e-3
 SHAFT: dict[str, Any] = {"stiffness": 25.0, "damping": 0.5}
 ECCENTRICITY = 0.01
 SPRING = {"stiffness": 0.5, "damping": 0.02}
-"""N and m; m/s; N/m and N s/m; m; N m/rad and N m s/rad."""
+"""Friction in N and m, ε in m/s, shaft in N/m and N s/m, eccentricity in m, spring in N m/rad and N m s/rad."""
 
 UNTIL, SAMPLES = 5.0, 50
-"""In s, two turns of the engine; and how often the momenta are recorded."""
+"""Duration in s, two turns of the engine; and the number of recorded momenta."""
 
 
 class Solver(NamedTuple):
-    """A solver of Exudyn, its number of steps, its order, and the largest error with which a drift still shows."""
+    """A solver of Exudyn, its number of steps, its order, and the largest error that still reveals a drift."""
 
     name: str
     steps: int
@@ -89,14 +89,14 @@ STUDY = Study.beside(
     __file__,
     "drivetrain-momentum",
     words={"combinations": str(len(DRIVETRAINS))},
-    source="three bodies by choice, displaced, tilted and moving against each other",
+    source="three bodies (our choice), displaced, tilted and in relative motion",
     only=("exudyn",),
     seconds=4.5,
 )
 
 
 @STUDY.claim(
-    "An isolated drivetrain of any kinds of nodes keeps its angular momentum: {} solver",
+    "An isolated drivetrain keeps its angular momentum on all kinds of nodes: {} solver",
     kind="conservation",
     note=f"Largest drift in {UNTIL:g} s, divided by the largest angular momentum of one body, for {len(DRIVETRAINS)} "
     f"drivetrains in which each kind of node of each body meets each of the others: {', '.join(KINDS)}. About all "
@@ -106,7 +106,7 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Run every drivetrain with a solver, and again with half the steps."""
+    """Compare the drift of every drivetrain with zero; runs with half the steps yield the error."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []
@@ -128,8 +128,8 @@ def momentum(
         resolution=solver.resolution,
         at={"engine, disc, vehicle": [", ".join(kinds) for kinds in drivetrains]},
         parameters=FRICTION | {"eccentricity": ECCENTRICITY, "solver": solver.name, "steps": solver.steps},
-        note="Numerical error: the change with half the steps, if the order is lower by a half at worst, and the "
-        "rounding of every step, because rotation vectors lose digits near whole turns.",
+        note="Numerical error: the change with half the steps, if the order is too low by at most a half, plus "
+        "rounding in every step, because rotation vectors lose digits near whole turns.",
         data=data
         | {
             f"{name}: t": times,
@@ -140,7 +140,7 @@ def momentum(
 
 
 def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
-    """Return the drift of the sum about the axes that keep it, over the largest of one body, shape (n, axes)."""
+    """Return the drift of the sum about the conserved axes over the largest momentum of one body, shape (n, axes)."""
     total = momenta.sum(axis=1)
     kept = slice(None) if set(kinds) <= set(SPATIAL) else slice(2, 3)
     return np.asarray((total - total[0])[:, kept] / np.abs(momenta).max())
@@ -171,7 +171,7 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
     options.endTime, options.numberOfSteps, options.verboseMode = UNTIL, steps, 0
     options.newton.useModifiedNewton = True
     options.newton.relativeTolerance = options.newton.absoluteTolerance = 1e-12
-    # Not solve_dynamic, which warns that the coarse run could not hold a clutch that sticks: these slip all the time.
+    # Not solve_dynamic: it warns that the coarse run could not hold a stuck clutch, but these clutches always slip.
     if not mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver.name)):
         raise RuntimeError(f"Exudyn's {solver.name} failed for a drivetrain of {', '.join(kinds)}")
     stored = np.array(mbs.GetSensorStoredData(sensor))
@@ -179,7 +179,7 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
 
 
 def _add_drivetrain(mbs: Any, kinds: Sequence[str]) -> list[Any]:
-    """Add engine, disc and vehicle with nodes of these kinds, and all that acts between them; return the nodes."""
+    """Add engine, disc and vehicle with nodes of these kinds and all connections; return the nodes."""
     import exudyn.itemInterface
 
     from exudyn_models import add_radial_support, add_ring_friction
@@ -238,7 +238,7 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
     return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)
 
 
-# --- What the three bodies of the isolated drivetrain exchange, and how far their sum drifts.
+# --- Figure of the angular momenta and of their drift
 
 
 def draw(data: ByEngine) -> Figures:
@@ -265,7 +265,11 @@ def draw(data: ByEngine) -> Figures:
             textcoords="offset points",
             color=colour,
         )
-    drift.set(xlabel=axis("t", "s"), ylabel="drift over the largest momentum of one body", ylim=(1e-17, 1e-6))
+    drift.set(
+        xlabel=axis("t", "s"),
+        ylabel="drift relative to the largest\nmomentum of one body",
+        ylim=(1e-17, 1e-6),
+    )
     return {"drivetrain-momentum": figure}
 
 

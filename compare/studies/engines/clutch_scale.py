@@ -1,4 +1,4 @@
-"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch: the same motions, with the same verdicts."""
+"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch: the same motions with the same verdicts."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-# --- The paper's systems at the scale of a clutch: the same dimensionless numbers in other units.
+# --- The paper's systems at the scale of a clutch: the same dimensionless numbers in other units
 
 
 @dataclass(frozen=True)
 class Scale:
-    """What a metre, a second and a kilogram of a system become, in m, s and kg."""
+    """Lengths in m, times in s and masses in kg that correspond to 1 m, 1 s and 1 kg of a system."""
 
     length: float
     time: float
     mass: float
 
     def system(self, system: System) -> System:
-        """Return ``system`` with its lengths, times and masses changed: the same by all dimensionless numbers."""
+        """Return ``system`` with scaled lengths, times and masses; all dimensionless numbers stay the same."""
         length, time, mass = self.length, self.time, self.mass
         changes: dict[str, Any] = {
             "mass": mass * system.mass,
@@ -53,46 +53,46 @@ class Scale:
         return replace(system, **changes)
 
     def states(self, states: ArrayLike) -> FloatArray:
-        """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) changed alike; angles stay."""
+        """Return scaled ``states`` of shape (..., 4) for a pin or (..., 6) for a disc; angles do not change."""
         states = np.asarray(states, dtype=float)
         places = [self.length, self.length, 1.0][: states.shape[-1] // 2]
         return np.asarray(states * [*places, *(place / self.time for place in places)])
 
 
 CLUTCH = Scale(length=1e-3, time=1.5 / 300.0, mass=0.5)
-"""X0 = 0.1 m and ω = 1.5 rad/s become 0.1 mm and 300 rad/s, 1 kg a disc of half a kilogram."""
+"""X0 = 0.1 m becomes 0.1 mm, ω = 1.5 rad/s becomes 300 rad/s, and 1 kg becomes half a kilogram."""
 
 
-# --- The motions that are repeated at the scale of a clutch: starts and durations at the paper's scale.
+# --- Starts and durations of the repeated motions at the paper's scale
 
 TO_REST = (0.1, 0.0, 0.0275, 0.0)
-"""Near to the start that divides the motions: the pin sticks nine times before it comes to rest in space."""
+"""Near the critical start: the pin sticks nine times before it comes to rest in space."""
 
 UNTIL, SAMPLES = 240.0, 481
-"""Time of the paper's scale, in s, in which that pin comes to rest, and how often its state is asked for."""
+"""Duration at the paper's scale in s until this pin has come to rest, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
 """Fig. 6 at the friction force 0.12 N."""
 
 REST_OF_DISC = 40.0
-"""Time of the paper's scale, in s, for which the disc of Fig. 8 is left where (19) and (20) let it spin."""
+"""Duration at the paper's scale in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""
 
 CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
-"""x, y, angle, vx, vy, spin at the paper's scale of a disc that spirals towards the cycle of Fig. 11, and slides."""
+"""x, y, angle, vx, vy, spin at the paper's scale, for a disc that slides and spirals towards the cycle of Fig. 11."""
 
 CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
-"""Time of the paper's scale, in s, of the motion of Fig. 11, and how often its state is asked for."""
+"""Duration of the motion of Fig. 11 at the paper's scale in s, and number of samples."""
 
 VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
-"""vx(0) in m/s at the paper's scale of starts that go to either end."""
+"""vx(0) in m/s at the paper's scale; the starts lead to both ends."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
 ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
-"""Random starts of the ensemble, and the time of the paper's scale, in s, in which each comes to its end."""
+"""Number of random starts, seed, and duration at the paper's scale in s until each start has reached its end."""
 
 SOURCE = (
-    "{}; X0 = 0.1 mm, ω = 300 rad/s and a mass of 0.5 kg are ours, all dimensionless numbers are the paper's"
+    "{}; X0 = 0.1 mm, ω = 300 rad/s and m = 0.5 kg are our choice, all dimensionless numbers are the paper's"
 )
 
 
@@ -101,12 +101,12 @@ def scaled(system: System) -> System:
     return CLUTCH.system(system)
 
 
-# --- The motions at the paper's scale, with which those of the clutch are compared.
+# --- Motions at the paper's scale, for comparison with the motions of the clutch
 
 
 @functools.cache
 def exact_motion() -> Trajectory:
-    """Return the motion to rest, from the reference at its tightest."""
+    """Return the motion to rest, by the reference at its tightest tolerance."""
     return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH)
 
 
@@ -117,7 +117,7 @@ def exact_whirl() -> Orbit:
 
 
 def curves() -> Data:
-    """Return the motion to rest, at the times of the engines and between them."""
+    """Return the motion to rest, at the sampling times of the engines and between them."""
     exact = exact_motion()
     path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
     return {
@@ -140,14 +140,17 @@ STUDY = Study.beside(
 def at_clutch(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray, tolerance: float
 ) -> Trajectory:
-    """Return the motion at the scale of a clutch of a ``system`` and ``start`` at ``times`` (s) of the paper's."""
+    """Return the motion at the scale of a clutch; ``system``, ``start`` and ``times`` (s) have the paper's scale."""
     return engine.simulate(scaled(system), CLUTCH.states(start), CLUTCH.time * times, tolerance=tolerance)
 
 
 def states_of(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray
 ) -> Callable[[float], FloatArray]:
-    """Return the states after the start in the paper's units, shape (len(times) − 1, 4 or 6), by tolerance."""
+    """Return a function of the tolerance for the states after the start, in the paper's units.
+
+    The states have the shape (len(times) − 1, 4 or 6).
+    """
 
     def states(tolerance: float) -> FloatArray:
         found = at_clutch(engine, system, start, times, tolerance).states[1:]
@@ -158,20 +161,20 @@ def states_of(
 
 @functools.lru_cache(maxsize=2)
 def to_rest(engine: Engine, tolerance: float) -> Trajectory:
-    """Return the motion to rest at the scale of a clutch, of which two claims are made."""
+    """Return the motion to rest at the scale of a clutch, which two claims share."""
     return at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance)
 
 
 @STUDY.claim(
-    "At the scale of a clutch the pin of Fig. 5 comes to rest at the position (3)",
+    "At the scale of a clutch, the pin of Fig. 5 comes to rest at the position (3)",
     equation="(3)",
     resolution=1e-3,
-    note=f"After {CLUTCH.time * UNTIL:g} s and nine stick phases. Error: the change at a smaller tolerance, and what "
-    "is left of the slowest transient.",
+    note=f"After {CLUTCH.time * UNTIL:g} s and nine stick phases. Numerical error: the change at a smaller "
+    "tolerance, plus the rest of the slowest transient.",
 )
 def rests(engine: Engine) -> Measured:
-    """Compare where the pin comes to rest with (3)."""
-    # Places of the last 40 s, in the paper's units.
+    """Compare the position of rest with (3)."""
+    # The positions cover the last 40 s in the paper's units.
     places, error = refined(
         lambda tolerance: (
             to_rest(engine, tolerance).states[-81:, :2] / CLUTCH.states(np.ones(4))[:2] / FIG5.offset
@@ -193,16 +196,16 @@ def rests(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch the pin of Fig. 5 sticks and lets go at the times it has at the paper's scale",
+    "At the scale of a clutch, the pin of Fig. 5 sticks and is released at the times of the paper's scale",
     equation="(6), (7)",
     kind="trajectory",
     unit="s",
     resolution=1e-2,
-    note="Times of the clutch over 5 ms, which make them those of Fig. 5. Predicted: the reference at the paper's "
-    "scale. A stick phase too many or too few shows as a missing number.",
+    note="Times of the clutch divided by 5 ms, which converts them to the scale of Fig. 5. Predicted: the reference "
+    "at the paper's scale. A missing or additional stick phase makes all numbers missing.",
 )
 def sticks(engine: Engine) -> Measured:
-    """Compare all times of stick and release with those of exact friction at the paper's scale."""
+    """Compare all stick and release times with exact friction at the paper's scale."""
     predicted = exact_motion().stick_times
 
     def measured(tolerance: float) -> FloatArray:
@@ -221,13 +224,13 @@ def sticks(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch starts of Fig. 5 go to the equilibrium or the whirl as at the paper's scale",
+    "At the scale of a clutch, each start of Fig. 5 ends in the same motion as at the paper's scale",
     kind="trajectory",
     resolution=0.5,
-    note="1 for an end farther from the axis than 2·X0, 0 otherwise; vx(0) at the paper's scale.",
+    note="1 if the end is farther from the axis than 2·X0, otherwise 0; vx(0) at the paper's scale.",
 )
 def ends(engine: Engine) -> Measured:
-    """Compare the ends of some starts with those at the paper's scale."""
+    """Compare the ends of several starts with those at the paper's scale."""
     times = np.array([0.0, ENDS_UNTIL])
     starts = [(FIG5.offset, 0.0, velocity, 0.0) for velocity in VELOCITIES]
 
@@ -243,15 +246,15 @@ def ends(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch a pin on the whirl of Fig. 6 is back in its state after the period",
+    "At the scale of a clutch, a pin on the whirl of Fig. 6 returns to its state after one period",
     equation="(17)",
     kind="trajectory",
     resolution=1e-5,
-    note="Predicted: the periodic orbit that the reference finds by shooting at the paper's scale to 1e-9 of X0, "
-    "which is part of the error.",
+    note="Predicted: the periodic orbit of the reference, by shooting at the paper's scale. Its accuracy of 1e-9 of "
+    "X0 is part of the error.",
 )
 def whirls(engine: Engine) -> Measured:
-    """Compare the state after a period of the whirl with that at its start."""
+    """Compare the state after one period of the whirl with the state at its start."""
     orbit = exact_whirl()
     unit = np.array([1.0, 1.0, WHIRLING.disc_speed, WHIRLING.disc_speed]) * FIG5.offset
     states = states_of(engine, WHIRLING, tuple(orbit.state), np.array([0.0, orbit.period]))
@@ -267,13 +270,13 @@ def whirls(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch the disc of Fig. 8 rests and spins by the balance of forces and moments",
+    "At the scale of a clutch, the disc of Fig. 8 rests and spins as the balance of forces and moments predicts",
     equation="(19), (20)",
     resolution=1e-6,
-    note=f"A disc that starts there, after {CLUTCH.time * REST_OF_DISC:g} s. Rounding of the start: 1e-9.",
+    note=f"A disc that starts in this state, after {CLUTCH.time * REST_OF_DISC:g} s. Rounding of the start: 1e-9.",
 )
 def spins(engine: Engine) -> Measured:
-    """Compare where a disc stays and spins with the balance of forces and moments at the paper's scale."""
+    """Compare position and spin of a resting disc with the balance of forces and moments at the paper's scale."""
     rest = self_centred_equilibria(FIG8)[0]
     unit = (FIG8.offset, FIG8.offset, FIG8.disc_speed)
     start = (rest.x, rest.y, 0.0, 0.0, 0.0, rest.spin)
@@ -290,16 +293,17 @@ def spins(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch a disc on {} moves as (19) says with the parameters of Fig. 11",
+    "At the scale of a clutch, a disc on {} with the parameters of Fig. 11 moves according to (19)",
     equation="(19), (20)",
     kind="trajectory",
     unit="m, rad, m/s, rad/s",
     resolution=1e-6,
-    note="In the units of the paper's scale. Predicted: SciPy on (19) as it is printed, at the paper's scale.",
+    note="In the units of the paper's scale. Predicted: SciPy's integration of (19) as printed, at the paper's "
+    "scale.",
     each=DISCS,
 )
 def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
-    """Compare the motion of Fig. 11 with (19) as plain equations at the paper's scale."""
+    """Compare the motion of Fig. 11 with an integration of (19) at the paper's scale."""
     times = np.linspace(0.0, CYCLE_UNTIL, CYCLE_SAMPLES)
     predicted, rougher = (
         integrated(disc, CYCLE_START, CYCLE_UNTIL, CYCLE_SAMPLES, tolerance)[1:]
@@ -318,9 +322,9 @@ def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
 
 
 @STUDY.claim(
-    "At the scale of a clutch each start of an ensemble has the end that it has at the paper's scale",
+    "At the scale of a clutch, each start of an ensemble has the same end as at the paper's scale",
     kind="trajectory",
-    note="Random starts with |x|, |y| < 3·X0 and |vx|, |vy| < 2·ω·X0: the compiled ensemble at both scales.",
+    note="Random starts with |x|, |y| < 3·X0 and |vx|, |vy| < 2·ω·X0, by the compiled ensemble at both scales.",
 )
 def shares(starts: int = ENSEMBLE) -> Measured:
     """Compare the ends of random starts at both scales."""
@@ -346,11 +350,11 @@ def shares(starts: int = ENSEMBLE) -> Measured:
     )
 
 
-# --- The way to rest at both scales.
+# --- Figure of the motion to rest at both scales
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the way to rest at both scales, and how far they are apart over time."""
+    """Draw the motion to rest at both scales, and their distance over time."""
     figure, (plane, history) = new_figure(ncols=2, width=11.0)
     exact = data.get("theory", {})
     micrometres = 1e6 * CLUTCH.length
@@ -358,7 +362,7 @@ def draw(data: ByEngine) -> Figures:
     times = milliseconds * np.linspace(0.0, UNTIL, SAMPLES)
     if exact:
         x, y = micrometres * exact["path"].T
-        plane.plot(x, y, color=BLACK, linewidth=0.8, label="Fig. 5, its lengths times 1e-3")
+        plane.plot(x, y, color=BLACK, linewidth=0.8, label="Fig. 5, lengths times 1e-3")
         plane.plot(
             *(micrometres * exact["rest"]), marker="*", markersize=12.0, color=PURPLE, label="rest by (3)"
         )
@@ -373,7 +377,7 @@ def draw(data: ByEngine) -> Figures:
     plane.set(xlabel=axis("x", "µm"), ylabel=axis("y", "µm"), aspect="equal")
     if plane.lines:
         plane.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
-    history.set(xlabel=axis("t", "ms"), ylabel="distance from the line over X0")
+    history.set(xlabel=axis("t", "ms"), ylabel="distance from the line / X0")
     if history.lines:
         history.legend(loc="upper right")
     return {"clutch-scale": figure}

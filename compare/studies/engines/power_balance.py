@@ -1,4 +1,4 @@
-"""Energy: what the drive puts in is heat and stored energy, on every kind of trajectory and without a reference."""
+"""Energy balance: the work of the drive equals heat plus stored energy, on every kind of trajectory."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ from reference_model import PowerBalance, Trajectory, power_balance, sticking_ra
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
 
-# --- Motions of every kind that the balance is made for.
+# --- Motions of every kind
 
 SAMPLE_DISTANCE = 0.02
-"""In s: close enough that the balance's quadrature through stick phases is good to 1e-9."""
+"""In s, small enough that the quadrature of the balance has an error below 1e-9 through stick phases."""
 
 RESOLUTION = 1e-8
-"""Of the energy that is turned over."""
+"""Relative to the energy turned over."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A kind of motion.
+    """A kind of motion for the balance.
 
     Parameters
     ----------
     system, start, source
-        Parameters, the state at the start, and where they come from.
+        Parameters, initial state, and their origin.
     until, step : float
-        Length and distance of samples in s.
+        Duration and sampling interval in s.
     tolerance : float
-        At which it is measured.
+        Tolerance of the measurement.
     drawn : bool
-        Whether the figure shows it.
+        True if the figure shows the motion.
     contact_alone : bool
-        Whether it is asked of an engine of which only the contact is its own, see ``Engine.contact_only``.
+        True if engines that only provide the contact take part, see ``Engine.contact_only``.
 
     """
 
@@ -55,7 +55,7 @@ class Motion:
 
 
 def all_motions() -> dict[str, Motion]:
-    """Return the motions by the words in which the claims name them."""
+    """Return all motions by their names in the claims."""
     return motions_of_the_pin() | motions_of_the_disc()
 
 
@@ -79,7 +79,7 @@ def motions_of_the_pin() -> dict[str, Motion]:
             "Fig. 4 with X0 = 0, started 20 % inside the whirl",
         ),
         "a pin that sticks all the time": Motion(
-            # It turns over little energy, against which a smoothed law's creep must be small.
+            # Its energy turnover is small, and the creep of a regularised law must be small compared with it.
             sticky,
             (stuck, 0.0, 0.0, turning * stuck),
             10.0,
@@ -87,13 +87,13 @@ def motions_of_the_pin() -> dict[str, Motion]:
             tolerance=WORKING / 20,
         ),
         "a pin on a resting disc": Motion(
-            replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, start by choice"
+            replace(FIG4, disc_speed=0.0), (0.8, 0.3, -0.2, 0.5), 40.0, "Fig. 4 with ω = 0, arbitrary start"
         ),
         "a disc that turns the other way": Motion(
             replace(FIG4, disc_speed=-FIG4.disc_speed),
             (0.5, 0.2, 0.0, -0.3),
             100.0,
-            "Fig. 4 with −ω, start by choice",
+            "Fig. 4 with −ω, arbitrary start",
         ),
     }
 
@@ -111,19 +111,19 @@ def motions_of_the_disc() -> dict[str, Motion]:
         friction_force=0.1,
         polar_inertia=FIG11.mass * FIG11.contact_radius**2,
     )
-    on_table = "nothing but friction on a disc at rest, μN = 0.1 N, J = mR², start by choice"
+    on_table = "only friction, on a disc at rest, μN = 0.1 N, J = mR², arbitrary start"
     return {
         "a disc on its way to the modulated cycle": Motion(
-            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, start by choice"
+            FIG11, near_axis, 100.0, "Fig. 11 with X0 = 0, arbitrary start"
         ),
         "a disc on six points": Motion(
-            replace(FIG11, contact_points=6), near_axis, 40.0, "Fig. 11 with X0 = 0, start by choice"
+            replace(FIG11, contact_points=6), near_axis, 40.0, "Fig. 11 with X0 = 0, arbitrary start"
         ),
         "a disc with an offset, turning the other way": Motion(
             replace(FIG11, disc_speed=-FIG11.disc_speed, shaft_speed=-FIG11.shaft_speed, offset=0.02),
             (0.02, 0.0, 0.0, 0.0, 0.0, -1.3),
             40.0,
-            "Fig. 11 with −ω, −Ω and X0 = 0.02 m, start by choice",
+            "Fig. 11 with −ω, −Ω and X0 = 0.02 m, arbitrary start",
         ),
         "a disc that sticks all the time": Motion(
             sticky,
@@ -133,7 +133,7 @@ def motions_of_the_disc() -> dict[str, Motion]:
         ),
         "a ring thrown on a table, to rest": Motion(table, thrown, 10.0, on_table),
         "six points thrown on a table, to rest": Motion(
-            # One of the points rests before the others, where the quadrature is worse.
+            # One of the points rests before the others, which makes the quadrature less accurate.
             replace(table, contact_points=6),
             thrown,
             10.0,
@@ -146,12 +146,12 @@ def motions_of_the_disc() -> dict[str, Motion]:
 
 STUDY = Study.beside(__file__, "power-balance", seconds=2.5, quick=True, contact=True)
 
-SENTENCE = "What the drive puts in is heat and stored energy: {}"
+SENTENCE = "The work of the drive equals heat plus stored energy: {}"
 
 NOTE = (
-    "Largest residual at any time, as a fraction of the energy turned over (heat, and the most that was stored). "
-    "Error: change with the engine's tolerance, and with every second sample left out of the balance's quadrature, "
-    "and the rounding of the energies."
+    "Largest residual at any time, relative to the energy turned over (heat, and the largest stored energy). "
+    "Numerical error: the change with the engine's tolerance, the change of the quadrature without every second "
+    "sample, and the rounding of the energies."
 )
 
 Motions = Callable[[], Mapping[str, Motion]]
@@ -214,13 +214,15 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
 
 
 def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    intervals = 2 * round(motion.until / (2.0 * motion.step))  # every second sample has the last one too
+    intervals = 2 * round(
+        motion.until / (2.0 * motion.step)
+    )  # even, so every second sample includes the last one
     times = np.linspace(0.0, motion.until, intervals + 1)
     return engine.simulate(motion.system, motion.start, times, tolerance=tolerance)
 
 
 def _every_second(trajectory: Trajectory) -> Trajectory:
-    """Return the trajectory with every second sample left out."""
+    """Return the trajectory without every second sample."""
     kept = trajectory.times[::2], trajectory.states[::2]
     return Trajectory(trajectory.system, *kept, trajectory.phases, trajectory.solution)
 
@@ -240,11 +242,11 @@ def _drawn(balance: PowerBalance) -> Data:
     }
 
 
-# --- Where the energy goes, and what the balance leaves over.
+# --- Figure of the energies and of the residual
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw where the energy goes on the way to the whirl, and what is left over."""
+    """Draw the energies on the way to the whirl, and the residual of each engine."""
     figure, (energies, residuals) = new_figure(ncols=2)
     looks: dict[str, dict[str, Any]] = {
         "drive work": {"color": BLACK, "linestyle": "-"},

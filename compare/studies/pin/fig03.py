@@ -1,4 +1,4 @@
-"""Fig. 3 and eq. 3 to 5: the pin at rest in space on the semicircle, its stability, and the loss of it."""
+"""Fig. 3 and eq. 3 to 5: the pin at rest in space on the semicircle, its stability, and where it ends."""
 
 from __future__ import annotations
 
@@ -24,60 +24,60 @@ from reference_model.formulas.pin import (
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 3, for which the paper prints no parameters, and how it is measured.
+# --- The pin of Fig. 3, whose parameters the paper does not print, and the measurements
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
 LIMIT = largest_load_with_equilibrium(PIN)
-"""(5) in N."""
+"""Limit (5) in N."""
 
 START = (0.1, 0.05, 0.0, 0.0)
 """x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium."""
 
 LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)
-"""μN in N, within (5)."""
+"""Friction forces μN in N, within (5)."""
 
 DURATION = 520.0
-"""In s: the slowest transient, exp(−βt/2m), falls to 5e-12 of its beginning."""
+"""Duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value."""
 
 DELAY = 60.0
-"""In s: from how long before the end the remaining transient is inferred."""
+"""Final part of a run in s, which yields the estimate of the remaining transient."""
 
 TOLERANCE = 0.03 * WORKING
-"""The claims on the rest resolve 1e-9 of X0."""
+"""Tolerance of the claims on the position of rest, whose resolution is 1e-9 of X0."""
 
 SHARES = (0.98, 0.999, 1.05, 1.2)
-"""Friction forces about the limit (5), in units of it."""
+"""Friction forces near the limit (5), relative to it."""
 
 SETTLING = 300.0
-"""In s: from the axis to the equilibrium, for friction forces below the limit."""
+"""Duration in s from the axis to the equilibrium, for friction forces below the limit."""
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
-"""Of the disc, in s."""
+"""Period of the disc in s."""
 
 REVOLUTIONS = 2.0
-"""For friction forces above the limit, where the pin is caught at once."""
+"""Duration in periods for friction forces above the limit, where the pin sticks at once."""
 
 FLOW_DURATION = 0.3
-"""In s, of the simulations that give eigenvalues: short enough for the strongly damped ones to be seen."""
+"""Duration in s of the simulations for eigenvalues, short enough to show strongly damped ones."""
 
 GRID_SHARES = np.array([0.01, *np.linspace(0.05, 0.95, 19), 0.99, 0.999])
 GRID_SPEEDS = np.geomspace(0.05, 5.0, 25)
 GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
-"""Friction forces in units of the limit (5), ω in rad/s and β in N s/m at which the linearised (1) is looked at."""
+"""Grid for the linearised (1): friction forces relative to the limit (5), ω in rad/s and β in N s/m."""
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin of this study under μN = ``load`` in N."""
+    """Return the pin of this study with μN = ``load`` in N."""
     return replace(PIN, friction_force=load)
 
 
-# --- The position of rest and its eigenvalues over the friction force, and where measured positions lose it.
+# --- The position of rest and its eigenvalues over the friction force, and the end of measured positions
 
 
 def curves() -> Data:
-    """Return positions of rest and their eigenvalues over μN in N."""
+    """Return the positions of rest in m and their eigenvalues in 1/s over μN in N."""
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 181))[:-1]  # equal steps along the semicircle
     eigenvalues = [along_and_across(equilibrium_eigenvalues(with_load(load))) for load in loads[1:]]
     return {
@@ -88,12 +88,12 @@ def curves() -> Data:
 
 
 def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
-    """Return the positions (3) in m under μN = ``loads`` in N, shape (n, 2)."""
+    """Return the positions (3) in m at μN = ``loads`` in N, shape (n, 2)."""
     return np.array([equilibrium_position(with_load(load)) for load in loads])
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Sort the four eigenvalues, those of motion along the circumference (of the support alone) first."""
+    """Sort the four eigenvalues; motion along the circumference, with those of the support alone, comes first."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [
@@ -103,9 +103,9 @@ def along_and_across(values: Sequence[complex]) -> list[complex]:
 
 
 def vanishing_load(loads: Sequence[float], places: FloatArray, error: FloatArray) -> tuple[float, float]:
-    """Return the μN in N at which ρ² of the last two ``places`` reaches zero, and its error.
+    """Return μN in N for ρ² = 0, extrapolated from the last two ``places``, and its error.
 
-    By (3) ρ² is linear in (μN)².
+    According to (3), ρ² is linear in (μN)².
     """
     first, last = (load**2 for load in loads[-2:])
     first_radius, last_radius = np.hypot(*places[-2:].T)
@@ -120,7 +120,7 @@ def vanishing_load(loads: Sequence[float], places: FloatArray, error: FloatArray
 
 STUDY = Study.beside(__file__, "fig03", source=SOURCE, system=PIN, seconds=2.0)
 
-DECAYS = "No small deviation from the position of rest grows, whatever the friction force within (5)"
+DECAYS = "The position of rest is stable at every friction force within (5)"
 
 
 @STUDY.claim(
@@ -128,13 +128,13 @@ DECAYS = "No small deviation from the position of rest grows, whatever the frict
     equation="(3)",
     unit="m",
     resolution=1e-9 * PIN.offset,
-    note=f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s. Error: the "
-    "tolerance, the change at a smaller one, and what is left of the transient by its change in the last "
+    note=f"Starts at rest at x = {START[0]:g} m, y = {START[1]:g} m; position after {DURATION:g} s. Numerical error: "
+    "the tolerance, the change at a smaller one, and the remaining transient according to its change in the last "
     f"{DELAY:g} s.",
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare where pins are after a long time with (3)."""
+    """Compare the final positions with (3)."""
     places, error = resting_places(engine, loads)
     return Measured(
         predicted=positions(loads),
@@ -148,7 +148,7 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.lru_cache(maxsize=2)
 def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Return where the pin is after a long time, and the error as a distance; shapes (n, 2) and (n,) in m."""
+    """Return the final positions of the pin and their errors as distances; shapes (n, 2) and (n,) in m."""
 
     def track(load: float, times: list[float], tolerance: float) -> FloatArray:
         return engine.simulate(with_load(load), START, times, tolerance=tolerance).states[1:, :2]
@@ -164,8 +164,8 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
             tolerance=TOLERANCE,
         )
         places.append(end.value)
-        # One component may be right by chance.
-        # At rest two runs may coincide to within the tolerance, which then is what is known of the error.
+        # One component may be right by chance, so the larger error counts for both. At rest, two runs may agree
+        # better than the tolerance, which is then added.
         errors.append(np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset)
     return np.array(places), np.array(errors)
 
@@ -175,15 +175,15 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
     equation="(4)",
     unit="m²",
     resolution=1e-9 * PIN.offset**2,
-    note="Left side minus right side of (4), at the positions of the claim above.",
+    note="Left side minus right side of (4), at the positions of the previous claim.",
     implied_by=rests,
     swept=("friction_force",),
 )
 def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Put the positions of rest into (4)."""
+    """Evaluate (4) at the positions of rest."""
     places, error = resting_places(engine, loads)
     x, y = places.T
-    # ∂(4)/∂(x, y) is twice the way from the circle's centre, so of length X0 on the circle.
+    # ∂(4)/∂(x, y) is twice the vector from the circle's centre, so its length on the circle is X0.
     return Measured(
         predicted=np.zeros(len(loads)),
         value=semicircle_residual(PIN, x, y),
@@ -193,16 +193,16 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "The distance of the position of rest from the axis goes to zero at the friction force C·X0",
+    "The position of rest reaches the axis at the friction force C·X0",
     equation="(5)",
     unit="N",
     resolution=1e-9 * LIMIT,
-    note="The squared distance, linear in (μN)², is extrapolated to zero from the two largest μN.",
+    note="The squared distance from the axis, linear in (μN)², is extrapolated to zero from the two largest μN.",
     implied_by=rests,
     swept=("friction_force",),
 )
 def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Extrapolate to the friction force at which the position of rest reaches the axis."""
+    """Compare the friction force of the equilibrium on the axis, by extrapolation, with (5)."""
     limit, error = vanishing_load(loads, *resting_places(engine, loads))
     return Measured(predicted=LIMIT, value=limit, error=error)
 
@@ -211,12 +211,12 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     "A pin rests in space below the friction force C·X0, and turns with the disc above it",
     equation="(5)",
     resolution=1e-3,
-    note="Mean speed at which the pin turns about the axis in the last revolution, over ω. Starts at rest beside the "
-    "axis.",
+    note="Mean speed at which the pin turns about the axis in the last period of the disc, over ω. Starts at rest "
+    "near the axis.",
     swept=("friction_force",),
 )
 def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
-    """Measure how fast the pin turns about the axis in the end, for friction forces about the limit (5)."""
+    """Compare the final angular speed of the pin about the axis with 0 and ω, for friction forces near (5)."""
     x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:
@@ -225,7 +225,7 @@ def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
         speed, *radii = found.value
         speeds.append(speed / PIN.disc_speed)
         left = 0.0
-        if share < 1.0:  # whatever still moves does so with an envelope exp(−rt)
+        if share < 1.0:  # all remaining motion decays with the envelope exp(−rt)
             decay = equilibrium_eigenvalues(with_load(LIMIT * share))[0].real
             left = float(np.exp(decay * SETTLING)) * PIN.offset / min(radii) / REVOLUTION
         errors.append((found.error[0] + left) / PIN.disc_speed)
@@ -234,12 +234,12 @@ def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
         value=speeds,
         error=np.full(len(shares), max(errors)),
         at={"μN/(C·X0)": shares},
-        note=f"They are {x:.2e} m beside it.",
+        note=f"The starts are {x:.2e} m away from it.",
     )
 
 
 def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float) -> FloatArray:
-    """Return the mean speed about the axis in rad/s in the revolution up to ``end`` s, and distances from it in m."""
+    """Return the mean speed about the axis (rad/s) in the period up to ``end`` (s), and distances from it (m)."""
     times = [0.0, *np.linspace(end - REVOLUTION, end, 17)]
     states = engine.simulate(with_load(load), (x, 0.0, 0.0, 0.0), times, tolerance=tolerance).states[1:]
     angles = np.unwrap(np.arctan2(states[:, 1], states[:, 0]))
@@ -248,7 +248,7 @@ def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, loads: Sequence[float]) -> Rates:
-    """Return the eigenvalues of the positions of rest."""
+    """Return the eigenvalues at the positions of rest."""
     pins = [with_load(load) for load in loads]
     return measured_rates(
         engine,
@@ -259,12 +259,12 @@ def rates(engine: Engine, loads: Sequence[float]) -> Rates:
 
 
 @STUDY.claim(
-    "Small deviations from the position of rest develop with the eigenvalues of linearised (1)",
+    "Small deviations from the position of rest evolve with the eigenvalues of the linearised (1)",
     equation="(1)",
     unit="1/s",
     resolution=1e-6 * PIN.natural_frequency,
-    note=f"Central differences of the motion over {FLOW_DURATION:g} s, extrapolated to zero. Error: the change with "
-    "larger differences, and at a smaller tolerance.",
+    note=f"Central differences of the motion over {FLOW_DURATION:g} s, extrapolated to zero. Numerical error: the "
+    "change with larger differences, and at a smaller tolerance.",
     swept=("friction_force",),
 )
 def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
@@ -276,26 +276,26 @@ def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 @STUDY.claim(
     DECAYS,
     equation="(5)",
-    note="Whether the real part of each measured eigenvalue is below zero.",
+    note="Is the real part of each measured eigenvalue below zero?",
     implied_by=eigenvalues,
     swept=("friction_force",),
 )
 def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """See whether all measured deviations decay."""
+    """Check that all measured deviations decay."""
     return rates(engine, loads).decaying()
 
 
 @STUDY.claim(
     DECAYS,
     equation="(5)",
-    note="Whether each eigenvalue of the linearised (1) decays: "
-    f"μN/(C·X0) = {GRID_SHARES[0]:g} … {GRID_SHARES[-1]:g}, ω = {GRID_SPEEDS[0]:g} … {GRID_SPEEDS[-1]:g} rad/s, "
-    f"β = {GRID_DAMPINGS[0]:g} … {GRID_DAMPINGS[-1]:g} N s/m; up to one in a thousand may be left open by rounding. "
-    "In closed form they are the roots of mλ² + βλ + C and of mλ² + (β + μN/(ωρ*))λ + C: all decay where β > 0.",
+    note=f"Does each eigenvalue of the linearised (1) decay? Grid: μN/(C·X0) = {GRID_SHARES[0]:g} … "
+    f"{GRID_SHARES[-1]:g}, ω = {GRID_SPEEDS[0]:g} … {GRID_SPEEDS[-1]:g} rad/s, β = {GRID_DAMPINGS[0]:g} … "
+    f"{GRID_DAMPINGS[-1]:g} N s/m; rounding may leave one in a thousand undecided. In closed form they are the roots "
+    "of mλ² + βλ + C and of mλ² + (β + μN/(ωρ*))λ + C, which all decay if β > 0.",
     swept=("friction_force", "disc_speed", "damping"),
 )
 def stable_on_a_grid() -> Measured:
-    """Count the eigenvalues that do not decay."""
+    """Check that all eigenvalues on the grid decay."""
     pins = [
         replace(PIN, friction_force=share * LIMIT, disc_speed=speed, damping=damping)
         for share in GRID_SHARES
@@ -313,11 +313,11 @@ def stable_on_a_grid() -> Measured:
     )
 
 
-# --- The semicircle of Fig. 3, and the eigenvalues of the positions on it.
+# --- Figures of the semicircle of Fig. 3 and of the eigenvalues of its positions
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the semicircle with the errors beside it, and the eigenvalues over the friction force."""
+    """Draw the semicircle with the errors, and the eigenvalues over the friction force."""
     figures = {"fig03-semicircle": draw_semicircle(data)}
     if "theory" in data:
         figures["fig03-eigenvalues"] = draw_eigenvalues(data)
@@ -349,7 +349,7 @@ def draw_semicircle(data: ByEngine) -> Figure:
 
 
 def _label(plane: Axes) -> None:
-    """Mark axis and relaxed point, and write the friction forces beside the positions of rest."""
+    """Mark the axis and the relaxed point, and label the positions of rest with the friction forces."""
     X0 = PIN.offset
     small: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9.5}
     plane.plot([0.0, X0], [0.0, 0.0], color="black", marker="+", linestyle="none", markersize=9.0)

@@ -25,19 +25,19 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-# --- Speeds and offsets at which the whirl of Fig. 4 is measured.
+# --- Speeds and offsets of the measurements
 
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
-"""ω in rad/s. The paper does not print its range; below 1.15 this whirl is about to end in a fold."""
+"""ω in rad/s. The paper does not print its range. Below 1.15 rad/s, this whirl is close to its fold."""
 
 CLAIM_SPEEDS = (1.2, 1.5, 3.0)
-"""Those among them that claims are made for."""
+"""Speeds of the claims in rad/s."""
 
 OFFSETS = (0.02, 0.01, 0.005)
-"""X0 in m for the orders, each half of the one before and far below the whirl's radius of 1.2 m."""
+"""X0 in m for the orders; each is half of the previous one and far below the whirl's radius of 1.2 m."""
 
 SHIFT_TOLERANCE = 1e3 * WORKING
-"""Of the means over ω, which (18) gives to a few per cent."""
+"""Tolerance of the means over ω; (18) has an error of a few per cent."""
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"
@@ -48,11 +48,11 @@ def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
     return replace(FIG4, disc_speed=float(speed), offset=offset)
 
 
-# --- Eq. 18 and the exact first-order response over the speed, and what (18) may be off by.
+# --- Eq. 18 and the exact first-order response over the speed, and the error of (18)
 
 
 def curves() -> Data:
-    """Return both formulas over ω."""
+    """Return both formulas over ω in rad/s."""
     speeds = np.geomspace(1.08, 5.0, 200)
     return {
         "speeds": speeds,
@@ -62,9 +62,9 @@ def curves() -> Data:
 
 
 def error_of_eq18(pin: PinOnDisc) -> float:
-    """Return what (18) may be off by in m: the second harmonic, and all orders of X0 but the first.
+    """Return a bound of the error of (18) in m: the second harmonic, and all orders of X0 except the first.
 
-    Orders follow each other like (X0·w/ρ_c)², w = ω/(ω − k): so much does the offset turn the slip.
+    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k), the angle of the slip due to the offset.
     """
     turn = pin.offset / whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
     higher = abs(third_order_of_whirl_shift(pin)) / (1.0 - turn**2)
@@ -77,15 +77,15 @@ AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
 
 
 @STUDY.claim(
-    "The error of the whirl's shift by (18) is the one that theory predicts, ω = {}",
+    "The shift of the whirl equals (18) within its theoretical error, ω = {}",
     equation="(18)",
     unit="m",
-    note="Model error, in which there is neither a simulation nor (18) itself: the limit of its error for X0 → 0, "
-    "and the third order in X0 with the geometric series of higher ones.",
+    note="The model error uses neither a simulation nor (18) itself. It is the limit of the relative error of (18) "
+    "for X0 → 0, plus the third order in X0 with the geometric series of higher orders.",
     each=AT_SPEEDS,
 )
 def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Measured:
-    """Compare the mean of the whirl with (18) as printed, within what theory says of its error."""
+    """Compare the mean of the whirl with (18) as printed, within the theoretical error."""
     pin = pin_at(speed)
     means = over_speed(engine, speeds)
     share = 100.0 * error_of_eq18(pin) / float(np.hypot(*first_order_whirl_shift(pin)))
@@ -97,21 +97,21 @@ def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Mea
         resolution=0.1 * pin.offset,
         components=("x", "y"),
         system=pin,
-        note=f"It is {share:.2g} % of the shift.",
+        note=f"The model error is {share:.2g} % of the shift.",
         data={"speeds": speeds, "means": means.value},
     )
 
 
 @STUDY.claim(
-    "Shift and second harmonic of the whirl tend to the exact first-order response as X0 → 0, ω = {}",
+    "The shift and the second harmonic of the whirl tend to the exact first-order response as X0 → 0, ω = {}",
     equation="(10), (12)",
     resolution=1e-4,
-    note="All over X0 and extrapolated in X0²; model error: the change against the extrapolation from the two larger "
-    "offsets.",
+    note="All values are divided by X0 and extrapolated in X0². Model error: the change from the extrapolation by "
+    "the two larger offsets.",
     each=AT_SPEEDS,
 )
 def response(engine: Engine, speed: float) -> Measured:
-    """Compare mean and second harmonic over X0, extrapolated to X0 = 0, with the linear problem's solution."""
+    """Compare mean and second harmonic over X0, extrapolated to X0 = 0, with the solution of the linear problem."""
     pin = pin_at(speed, OFFSETS[-1])
     found = over_offset(engine, speed)
     coarser, extrapolated = towards_zero(found.value / np.array(OFFSETS)[:, np.newaxis])
@@ -134,7 +134,7 @@ def response(engine: Engine, speed: float) -> Measured:
     each=AT_SPEEDS,
 )
 def order(engine: Engine, speed: float) -> Measured:
-    """Observe the order of the error of the exact first-order response."""
+    """Compare the observed order of the error of the exact first-order response with 3."""
     means = over_offset(engine, speed)
     gaps = np.array(
         [
@@ -151,8 +151,8 @@ def order(engine: Engine, speed: float) -> Measured:
         value=extrapolated,
         error=float(noise[1] + noise[2]) / np.log(2.0),
         model=float(abs(orders[1] - orders[0])) / 3.0,
-        note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0; model error: the "
-        "extrapolation's own step.",
+        note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0. Model error: the change "
+        "due to extrapolation.",
         data={f"means at {speed:g}": means.value[:, :2]},
         **_of_offsets(pin_at(speed, OFFSETS[-1])),
     )
@@ -161,8 +161,8 @@ def order(engine: Engine, speed: float) -> Measured:
 @STUDY.claim(
     "The relative error of (18) tends to its theoretical limit as X0 → 0, ω = {}",
     equation="(18)",
-    note="(x+iy) of (18) over the measured one, less 1, extrapolated in X0²; model error: the change against the "
-    "extrapolation from the two larger offsets.",
+    note="(x + iy) of (18) over the measured one, minus 1, extrapolated in X0². Model error: the change from the "
+    "extrapolation by the two larger offsets.",
     implied_by=order,
     each=AT_SPEEDS,
 )
@@ -190,12 +190,12 @@ def limit(engine: Engine, speed: float) -> Measured:
 
 
 def _of_offsets(pin: PinOnDisc) -> dict[str, Any]:
-    """Return what claims about falling offsets say of their parameters; ``pin`` has the last of them."""
+    """Return the parameters and the source of claims about decreasing offsets; ``pin`` has the last offset."""
     return {"system": pin, "source": SOURCE_OF_OFFSETS}
 
 
 def towards_zero(values: FloatArray) -> FloatArray:
-    """Return what ``values`` at offsets halved each time, shape (n, ...), tend to, by each two neighbours.
+    """Return the limits of ``values``, shape (n, ...), at successively halved offsets, from each two neighbours.
 
     The next term is of the order X0².
     """
@@ -204,7 +204,7 @@ def towards_zero(values: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
-    """Return the means of the whirls in m, shape (n, 2), following the branch from high speed down."""
+    """Return the means of the whirls in m, shape (n, 2), along the branch from high to low speed."""
     found, guess = [], None
     for speed in reversed(speeds):
         guess = whirl_of(engine, pin_at(speed), SHIFT_TOLERANCE, guess)
@@ -214,7 +214,7 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 @functools.lru_cache(maxsize=len(CLAIM_SPEEDS))
 def over_offset(engine: Engine, speed: float) -> Measurement:
-    """Return ``harmonics`` at each of ``OFFSETS``, shape (n, 4)."""
+    """Return ``harmonics`` for all ``OFFSETS``, shape (n, 4)."""
     found = [harmonics(engine, pin_at(speed, offset), WORKING) for offset in OFFSETS]
     return Measurement(*(np.array(each) for each in zip(*found, strict=True)))
 
@@ -222,7 +222,7 @@ def over_offset(engine: Engine, speed: float) -> Measurement:
 def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Measurement:
     """Return mean and second harmonic of x + iy over a whirl in m, shape (4,).
 
-    The second harmonic is that of a time at which the first one is real.
+    The phase of the second harmonic refers to a time when the first harmonic is real.
     """
     first_orbit = guess or whirl_of(engine, pin, tolerance)
 
@@ -233,7 +233,7 @@ def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | N
         second *= (np.conj(first) / abs(first)) ** 2
         return np.array([*orbit.mean, second.real, second.imag])
 
-    # A miss of the orbit shifts its mean by about as much.
+    # A residual of the orbit shifts its mean by about the same amount.
     return refined(found, tolerance).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
 
 
@@ -241,7 +241,7 @@ def _complex(point: FloatArray) -> complex:
     return complex(point[0], point[1])
 
 
-# --- Fig. 4 redrawn, and the errors of both formulas over the offset.
+# --- Figure: Fig. 4 redrawn, and the errors of both formulas over the offset
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (

@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, sticking and whirl under increasing friction force, and where each of them ends."""
+"""Fig. 6: equilibrium, permanent stick and whirl under increasing friction force, and the end of each of them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-# --- The pin of Fig. 6 and the friction forces at which it is measured.
+# --- The pin of Fig. 6 and the friction forces of the measurements
 
 FIG6 = replace(FIG4, disc_speed=1.2)
 
@@ -36,37 +36,37 @@ LIMIT = largest_load_with_equilibrium(FIG6)
 
 WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
-"""μN in N. The paper does not print the range of its axis; 2·C·X0 shows all that happens."""
+"""μN in N. The paper does not print the range of its axis; a range up to 2·C·X0 shows all motions."""
 
 CYCLE_LOAD = 0.102
-"""Between C·X0 and the friction force at which the stick–slip cycle ends."""
+"""μN in N, between C·X0 and the end of the stick–slip cycle."""
 
 CYCLE_DEVIATION = 0.01
 CYCLE_TURNS = 5
-"""How far from the cycle pins are started, relative to it, and for how many turns they are followed."""
+"""Relative distance of the starts from the cycle, and number of turns."""
 
 TOLERANCE = 10.0 * WORKING
-"""Of all but the friction force at which the whirl ends, which is to be known to 1e-8 N."""
+"""Tolerance of all claims except the end of the whirl, which is measured to 1e-8 N."""
 
 INNERMOST = 0.012
-"""Crossing of the x axis in m down to which the branch is followed towards the axis."""
+"""Crossing of the x axis in m that ends the branch towards the axis."""
 
 ON_THE_WAY = 1e-8
-"""Tolerance of the branch that is drawn, and that leads to the cycle; its friction forces are right to 1e-10 N."""
+"""Tolerance of the drawn branch, which leads to the cycle; its friction forces have errors below 1e-10 N."""
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin under μN = ``load`` in N."""
+    """Return the pin with μN = ``load`` in N."""
     return replace(FIG6, friction_force=float(load))
 
 
-# --- The branches of Fig. 6: equilibria and sticking by formulas, whirls and cycles followed by the reference.
+# --- The branches of Fig. 6: equilibria and stick by formulas, whirls and cycles by continuation with the reference
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Follow the branch of whirls through its folds with the reference, and evaluate (3) and (9).
+    """Return the branch of whirls through its folds by the reference, and (3) and (9) over the friction force.
 
-    The branch is followed to the crossing ``innermost`` in m, in relative steps of ``step``.
+    The branch ends at the crossing ``innermost`` in m; its relative steps are ``step``.
     """
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
@@ -88,15 +88,15 @@ def _along(loads: FloatArray, formula: Callable[[PinOnDisc], float]) -> FloatArr
 
 
 UNIT_MULTIPLIER_ERROR = 1e-5
-"""Error of a multiplier from central differences with the relative step ``orbits.CENTRAL``, near a fold.
+"""Error of a multiplier near a fold, from central differences with the relative step ``orbits.CENTRAL``.
 
-There two multipliers meet, so that it is the root of that of the return map: 3e-6 was seen.
+Two multipliers meet there, so the error is the root of the error of the return map; 3e-6 was observed.
 """
 
 
 @functools.cache
 def load_of_unit_multiplier() -> float:
-    """Return the friction force in N at which a second multiplier of the reference's whirl passes 1."""
+    """Return the friction force in N where a second multiplier of the reference's whirl passes 1."""
     orbit = whirl_orbit(with_load(0.08))
 
     def excess(x: float) -> float:
@@ -112,7 +112,7 @@ def load_of_unit_multiplier() -> float:
 
 @functools.cache
 def cycle() -> Orbit:
-    """Return the stable stick–slip cycle at ``CYCLE_LOAD``, reached along the branch of whirls."""
+    """Return the stable stick–slip cycle at ``CYCLE_LOAD``, by continuation of the branch of whirls."""
     start = whirl_orbit(with_load(0.08), tolerance=ON_THE_WAY)
     *_, orbit = whirl_branch(start, 0.06, step=0.4, samples=2)
     return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
@@ -129,18 +129,18 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "A pin started near to the equilibrium (3) comes to rest there, at every friction force up to C·X0",
+    "A pin that starts near the equilibrium (3) comes to rest there, at every friction force up to C·X0",
     equation="(3), (5)",
     unit="m",
     resolution=1e-6 * FIG6.offset,
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
-    """Compare where pins come to rest with (3), at several late times: one state alone may be right by chance."""
+    """Compare the positions of rest with (3) at several late times; a single state may be right by chance."""
     times = np.linspace(590.0, 600.0, 11)
     found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
-    # The slowest deviation decays like exp(−βt/2m); it was 5 mm.
+    # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).
     left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * times[0])
     return Measured(
         predicted=np.repeat(positions[:, np.newaxis], len(times), axis=1),
@@ -153,7 +153,7 @@ def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measure
 
 
 def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the places at ``times`` of a pin that starts 5 mm beside the equilibrium."""
+    """Return the positions at ``times`` of a pin that starts 5 mm away from the equilibrium."""
     pin = with_load(load)
     x, y = equilibrium_position(pin)
     motion = engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), (0.0, *times), tolerance=tolerance)
@@ -161,7 +161,7 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 
 
 @STUDY.claim(
-    "The whirls that the engine finds by shooting are those of exact Coulomb friction, at every friction force",
+    "The whirls found by shooting equal those of exact Coulomb friction, at every friction force",
     equation="(17)",
     kind="trajectory",
     unit="s, m",
@@ -183,14 +183,14 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     found = refined(period_and_extent, TOLERANCE)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
-    # Near the fold a small miss of the orbit moves it by more: by the inverse of 1 − its slowest multiplier.
+    # Near the fold, a residual of the orbit shifts it more, by the factor 1/(1 − its slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Measured(
         predicted=[[orbit.period, *extent(orbit)] for orbit in others],
         value=found.value,
         error=found.largest + miss * sharpness,
         at={"μN in N": loads},
-        components=("period in s", "least radius in m", "greatest radius in m"),
+        components=("period in s", "smallest radius in m", "largest radius in m"),
         data={"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
     )
 
@@ -201,23 +201,23 @@ def _reference_whirl(load: float) -> Orbit:
 
 
 @STUDY.claim(
-    "The whirl ends at the friction force where a second multiplier of its orbit passes 1",
+    "The whirl ends at the friction force at which a second multiplier of its orbit passes 1",
     kind="trajectory",
     unit="N",
     resolution=1e-8,
-    note="Not in the paper. Measured: the smallest μN on the branch. Predicted: the μN at which a second "
-    "multiplier of the reference's whirl passes 1 (μN is flat there, so an error δ in where it does changes "
-    "μN by δ²).",
+    note="This is not in the paper. Measured: the smallest μN on the branch. Predicted: the μN at which a second "
+    "multiplier of the reference's whirl passes 1. Because μN is stationary there, an error δ of the position "
+    "changes μN only by δ².",
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest μN of the branch with the one at which a multiplier is one."""
+    """Compare the smallest μN of the branch with the μN of a unit multiplier."""
     fold = last_whirl(
         with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
     )
 
     def least_load(tolerance: float) -> float:
-        # The load is flat there, so that its least value changes with the tolerance as that at this crossing.
+        # The load is stationary there, so at this crossing it changes with the tolerance like its smallest value.
         orbit = whirl_orbit(
             FIG6,
             simulate=engine.simulate,
@@ -239,17 +239,17 @@ def whirl_ends(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Sticking and the whirl exist for the same parameters",
+    "Permanent stick and the whirl exist at the same parameters",
     equation="(9), (17)",
-    note="Whether a start stuck at half the radius (9) sticks all the time, for 10 s, and one 10 % slower than the "
-    "whirl slides all the time, for 100 s.",
+    note="Does a start stuck at half the radius (9) stick for the whole 10 s, and does a start 10 % slower than the "
+    "whirl slide for the whole 100 s?",
 )
 def coexist(engine: Engine) -> Measured:
-    """See whether one start sticks and the other goes on sliding."""
+    """Check that one start sticks and the other slides all the time."""
     stuck = 0.5 * sticking_radius(FIG6)
     orbit = whirl_orbit(FIG6)
     starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
-    # Without a whirl it takes a pin some 30 s to come down from there and stick.
+    # If there were no whirl, a pin would need about 30 s from this start until it sticks.
     lengths = (10.0, 100.0)
 
     def sticks_and_slides(tolerance: float) -> list[bool]:
@@ -263,14 +263,15 @@ def coexist(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A small stick–slip cycle exists from the friction force C·X0 to the one where it ends",
+    "A small stick–slip cycle exists just above the friction force C·X0",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-4,
-    note="Not in the paper, which shows only equilibrium, sticking and whirl. From the reference's orbit on.",
+    note="This is not in the paper, which shows only equilibrium, stick and whirl. The start is on the reference's "
+    "orbit.",
 )
 def cycle_exists(engine: Engine) -> Measured:
-    """Follow the reference's cycle for a turn."""
+    """Compare one turn from a state on the cycle with the reference."""
     orbit = cycle()
     times = np.linspace(0.0, orbit.period, 65)
     found = refined(
@@ -290,18 +291,19 @@ def cycle_exists(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The distance of a pin from the small stick–slip cycle shrinks in each turn by the cycle's multiplier",
+    "In each turn, the distance of a pin from the small stick–slip cycle shrinks by the cycle's multiplier",
     kind="trajectory",
     resolution=5e-3,
-    note=f"Two pins start with all of the cycle's state larger and smaller by {CYCLE_DEVIATION:g}; the distance of "
-    f"the radii at which they stick, from one stick phase to the next, over {CYCLE_TURNS} turns. Predicted: the "
-    "largest multiplier of the reference's orbit but that of the phase. Error: tolerance, and twice the deviation.",
+    note=f"Two pins start with the cycle's state enlarged and reduced by {CYCLE_DEVIATION:g}. Measured: the "
+    f"difference of the radii at which they stick, from one stick phase to the next, over {CYCLE_TURNS} turns. "
+    "Predicted: the largest multiplier of the reference's orbit except that of the phase. Error: tolerance, and "
+    "twice the deviation.",
 )
 def cycle_attracts(engine: Engine) -> Measured:
-    """Measure by how much the distance from the cycle falls in a turn."""
+    """Compare the ratio of successive distances from the cycle with the multiplier."""
     orbit = cycle()
     found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION), TOLERANCE)
-    # Central differences: a quarter of the error at twice the deviation, which is three times what is left.
+    # For central differences, the error is a third of the change at twice the deviation.
     wide = _decay_in_a_turn(engine, orbit, TOLERANCE, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
     return Measured(
@@ -313,7 +315,7 @@ def cycle_attracts(engine: Engine) -> Measured:
 
 
 def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: float) -> float:
-    """Return the mean factor for a turn, or no number where a pin does not stick once in each turn."""
+    """Return the mean factor per turn, or NaN if a pin does not stick once in each turn."""
     times = [0.0, (CYCLE_TURNS + 1.0) * orbit.period]
     ends = []
     for scale in (1.0 + deviation, 1.0 - deviation):
@@ -327,11 +329,11 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
     return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
 
 
-# --- The branches of Fig. 6.
+# --- Figure of the branches of Fig. 6
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the branches over the friction force, and those near the limit (5) enlarged."""
+    """Draw the branches over the friction force, and an enlarged view near the limit (5)."""
     figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
     for panel in (whole, near):
         if "theory" in data:
@@ -360,10 +362,10 @@ def _draw_theory(panel: Axes, found: Data) -> None:
         color=GREY,
         alpha=0.4,
         linewidth=0.0,
-        label="sticks, (9)",
+        label="permanent stick, (9)",
     )
-    # A smooth curve through the orbits. In a fold a multiplier passes 1, so they are stable where the load falls
-    # from the outermost whirl on, unstable where it rises.
+    # A smooth curve connects the orbits. A multiplier passes 1 in each fold. From the outermost whirl on, orbits are
+    # therefore stable where the load falls, and unstable where it rises.
     number = np.arange(len(found["branch load"]))
     fine = np.linspace(0.0, number[-1], 20 * number[-1] + 1)
     load = PchipInterpolator(number, found["branch load"])(fine)

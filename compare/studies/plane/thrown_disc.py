@@ -166,16 +166,16 @@ WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Wa
 def way_of(engine: Engine) -> Way:
     """Return the function of ``engine`` for full discs; raise ``UnsupportedSystemError`` if it has none."""
     if engine.name not in WAYS:
-        raise UnsupportedSystemError(f"{engine.name} is not asked for a full disc, which no engine promises")
+        raise UnsupportedSystemError(f"{engine.name} has no model of a full disc")
     return WAYS[engine.name]
 
 
 STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, seconds=1.0, quick=True, contact=True)
 
 SEEN = (
-    "way along in m",
-    "way across in m",
-    "way of the rim in m",
+    "distance along in m",
+    "distance across in m",
+    "distance of the rim in m",
     "speed along in m/s",
     "speed across in m/s",
     "speed of the rim in m/s",
@@ -232,11 +232,11 @@ def seen(states: FloatArray) -> FloatArray:
 
 
 @STUDY.claim(
-    "A ring that slides is slowed down by μN, one that spins by μNR, and one that does both by 2/π of each",
+    "Friction acts on a sliding ring with μN, on a spinning ring with μNR, and with 2/π of each if it does both",
     equation="(19), (20)",
     unit="m, m/s",
     resolution=1e-6,
-    note="Uniform deceleration to rest; both: J = mR², and the rim is as fast as the centre.",
+    note="Uniform deceleration to rest. A ring that does both has J = mR², and its rim is as fast as its centre.",
     swept=("polar_inertia",),
 )
 def on_ring(engine: Engine) -> Measured:
@@ -245,7 +245,7 @@ def on_ring(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A disc on {} points that slides is slowed down by μN, one that spins by μNR",
+    "Friction acts on a sliding disc on {} points with μN, and on a spinning one with μNR",
     equation="(19), (21)",
     unit="m, m/s",
     resolution=1e-6,
@@ -259,13 +259,13 @@ def on_points(engine: Engine, points: int) -> Measured:
 
 
 @STUDY.claim(
-    "A full disc that slides is slowed down by μN, one that spins by ⅔·μNR, and one that does both by less of each",
+    "Friction acts on a sliding full disc with μN, on a spinning one with ⅔·μNR, with less of each if it does both",
     equation="(19), (20)",
     unit="m, m/s",
     resolution=1e-6,
-    note="Contact under uniform pressure within R. Uniform deceleration, looked at until nine tenths of the time to "
-    "rest; both alike: J = mR²/3, and the rim is as fast as the centre, with the force 8/3π·μN and the moment "
-    "8/9π·μNR.",
+    note="Contact under uniform pressure within R. Uniform deceleration, sampled until nine tenths of the time to "
+    "rest. A disc that does both has J = mR²/3, and its rim is as fast as its centre; the force is then 8/3π·μN and "
+    "the moment 8/9π·μNR.",
     swept=("polar_inertia",),
 )
 def on_full_disc(engine: Engine) -> Measured:

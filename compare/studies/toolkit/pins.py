@@ -20,7 +20,7 @@ def safest_angle(pin: PinOnDisc) -> float:
 
 
 def farthest(pin: PinOnDisc) -> float:
-    """Return the largest radius in m at which friction can hold a pin, by (7)."""
+    """Return the largest radius in m where friction can hold a pin, by (7)."""
     return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
         complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
     )

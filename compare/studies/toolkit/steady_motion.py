@@ -215,7 +215,7 @@ def equilibrium_of(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N at which the self-centred equilibrium ends: (5) for a disc.
+    """Return the μN in N where the self-centred equilibrium ends: (5) for a disc.
 
     Above it friction can supply both the force C·|X0|, which holds the disc on the axis, and the moment b|ω − Ω| of
     the shaft. Both lie within the limit surface, which is convex, if C·|X0| + b|ω − Ω|/R <= μN.

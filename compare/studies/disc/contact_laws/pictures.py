@@ -81,11 +81,11 @@ def errors(data: ByEngine) -> Figure:
                 error = theory[f"{name}_error"][:, i]
                 panel.plot(theory["ratio"], error, color=colour, label=f"{label}: {size:.3f} at {place:.2f}")
                 panel.plot([place], [size], color=colour, marker="o", markersize=6.0, linestyle="none")
-            panel.legend(title="the largest, at U/W")
+            panel.legend(title="largest error, at U/W")
         panel.set(xscale="log", xlabel=RATIO, xlim=NEAR, xticks=(0.2, 0.5, 1.0, 2.0, 5.0))
         panel.set_xticks((), minor=True)
         panel.xaxis.set_major_formatter("{x:g}")
     force, moment = panels
-    force.set(ylabel=axis(r"|\Delta F|/\mu N"), title="Distance of the force from that of the ring")
-    moment.set(ylabel=axis(r"|\Delta M|/\mu N R"), title="Distance of the moment from that of the ring")
+    force.set(ylabel=axis(r"|\Delta F|/\mu N"), title="Deviation of the force from the ring")
+    moment.set(ylabel=axis(r"|\Delta M|/\mu N R"), title="Deviation of the moment from the ring")
     return figure

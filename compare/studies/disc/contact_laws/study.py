@@ -56,14 +56,14 @@ STUDY.provides(curves=curves)
 # --- Friction on a disc in an engine, from its acceleration.
 
 NOTE = (
-    "F_x, F_y over μN and M over μN·R. From the acceleration at the start, by the velocities of the first "
-    f"{4.0 * STEP:g} s; predicted by quadrature. Error: the change from differences of the next lower order, and at "
+    "F_x, F_y over μN and M over μN·R. Measured: the initial acceleration, from the velocities in the first "
+    f"{4.0 * STEP:g} s. Predicted: quadrature. Error: the change from differences of the next lower order, and at "
     "a smaller tolerance."
 )
 
 
 @STUDY.claim(
-    "Friction on the continuous ring is the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
+    "Friction on the continuous ring equals the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
 )
 def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     """Compare friction on the ring with the integral at the ``ratios`` U/W."""
@@ -72,7 +72,7 @@ def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
 
 
 @STUDY.claim(
-    "Friction on six points is the mean of (20) over the points, which slip as (21) says",
+    "Friction on six points equals the mean of (20) over the points, with the slip of (21)",
     equation="(21)",
     resolution=1e-3,
     note=NOTE,
@@ -98,8 +98,8 @@ def friction_on(
 ) -> Measured:
     """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
 
-    By (19) they are the initial acceleration times inertia plus the resistance of springs and dampers. ``name`` is
-    the key of the law in the figures' data.
+    According to (19), they are the initial acceleration times inertia plus the resistance of springs and dampers.
+    ``name`` is the key of the law in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 
@@ -135,12 +135,12 @@ def friction_on(
 # --- Contact laws against the integral, each other and the textbook, without an engine.
 
 OF_EXPANSION = (
-    "Predicted: the integral (20), and the same with the three terms of (22). Measured: the closed forms. Error: "
-    "that of the quadrature"
+    "Predicted: the integral (20), and the integral with the three terms of (22). Measured: the closed forms. Error: "
+    "from the quadrature"
 )
 
 OF_POINTS = (
-    "Found on a grid over U/W = 1/20 … 20 and φ that is refined about its best place again and again. Error: twice "
+    "Found on a grid over U/W = 1/20 … 20 and φ, with repeated refinement about the best point. Error: twice "
     "the last"
 )
 
@@ -180,7 +180,7 @@ def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> M
 
 
 @STUDY.claim(
-    "(23) is off by up to 0.1025 of μN in force and of μN·R in moment",
+    "The error of (23) reaches 0.1025 of μN in force and of μN·R in moment",
     equation="(23)",
     resolution=1e-6,
     note=f"{OF_EXPANSION}.",
@@ -198,10 +198,10 @@ def error_of_expansion() -> Measured:
 
 
 @STUDY.claim(
-    "(23) is off the most in force at U = 0.77 W, and in moment at W = 0.77 U",
+    "The error of (23) is largest at U = 0.77 W in force, and at W = 0.77 U in moment",
     equation="(23)",
     resolution=1e-3,
-    note=f"U/W. {OF_EXPANSION}, and how well a top can be located with it.",
+    note=f"U/W. {OF_EXPANSION}, and the resulting uncertainty of the position of the maximum.",
 )
 def place_of_expansion_error() -> Measured:
     """Compare the U/W of the largest error of (23) by closed forms with that by integrals."""
@@ -215,11 +215,11 @@ def place_of_expansion_error() -> Measured:
 
 
 @STUDY.claim(
-    "n points are off by up to 1/n + 2/π − cot(π/2n)/n of μN and of μN·R",
+    "The error of n points reaches 1/n + 2/π − cot(π/2n)/n of μN and of μN·R",
     equation="(21)",
     resolution=1e-3,
-    note="Predicted: the point that is about to rest has its full share of friction, in the direction that hurts the "
-    f"most, and the others are a sum of sines at U = W. {OF_POINTS} step.",
+    note="Predicted: at U = W, the point that is about to rest contributes its full share of friction in the most "
+    f"unfavourable direction, and the other points contribute a sum of sines. {OF_POINTS} step.",
 )
 def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
     """Compare the largest error of points with its closed form."""
@@ -235,10 +235,10 @@ def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
 
 
 @STUDY.claim(
-    "n points are off the most where U = W and one of them comes to rest",
+    "The error of n points is largest where U = W and one of them comes to rest",
     equation="(21)",
     resolution=1e-3,
-    note=f"U/W. {OF_POINTS} change of the place.",
+    note=f"U/W. {OF_POINTS} change of the position.",
 )
 def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
     """Compare the U/W of the points' largest error with 1."""
@@ -253,35 +253,35 @@ def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
 
 
 OF_RINGS = (
-    f"With {', '.join(map(str, RINGS))} rings on either side of the one with the point at rest; against 100. Errors: "
-    "scatter, and the change without a next term."
+    f"With {', '.join(map(str, RINGS))} rings on either side of the ring with the resting point, compared with 100. "
+    "Errors: scatter, and the change without a next term."
 )
 
 
 @STUDY.claim(
-    "An annulus with a resting point converges with its rings at order 12",
+    "An annulus with a resting point converges with the number of rings at order 12",
     kind="order",
     resolution=1.5,
     note=OF_RINGS,
 )
 def annulus_converges() -> Measured:
-    """Measure the order at which force and moment of an annulus converge."""
+    """Compare the order of convergence of force and moment of an annulus with 12."""
     return order_in_rings(Annulus.shares, ORDER)
 
 
 @STUDY.claim(
-    "The slopes of an annulus with a resting point converge with its rings at order 6",
+    "The slopes of an annulus with a resting point converge with the number of rings at order 6",
     kind="order",
     resolution=1.5,
     note=OF_RINGS,
 )
 def slopes_converge() -> Measured:
-    """Measure the order at which the slopes of force and moment of an annulus converge."""
+    """Compare the order of convergence of the slopes of force and moment of an annulus with 6."""
     return order_in_rings(Annulus.slopes, SLOPE_ORDER)
 
 
 def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
-    """Measure the order at which a ``function`` of an annulus converges with the number of rings."""
+    """Compare the order of convergence of a ``function`` of an annulus with the number of rings with ``order``."""
     # Gauss's rule on powers and logarithms has an error in even powers of 1/(n + ½).
     fineness = 1.0 / (np.array(RINGS) + 0.5)
     observed = []
@@ -302,11 +302,11 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
 
 
 @STUDY.claim(
-    "A thin annulus is a ring, up to the square of its width",
+    "A thin annulus equals a ring, up to the square of its width",
     equation="(20)",
     kind="order",
     resolution=0.1,
-    note="Exponent with which the distance from the ring of the mean radius falls, for width/R = "
+    note="Exponent of the width in the deviation from the ring of the mean radius, for width/R = "
     f"{', '.join(f'{width:g}' for width in WIDTHS)}. Errors: scatter, and the change without a next term.",
 )
 def thin_annulus() -> Measured:
@@ -329,11 +329,11 @@ def thin_annulus() -> Measured:
 
 
 @STUDY.claim(
-    "An annulus that turns in place has the moment of a disc clutch",
+    "A spinning annulus has the moment of a disc clutch",
     unit="m",
     resolution=1e-9,
     note="M/μN of a full disc, and of an annulus from 2R/3 to R. Predicted: (2/3)(r₂³ − r₁³)/(r₂² − r₁²) under "
-    "uniform pressure, (r₁ + r₂)/2 under one like 1/r. Error: rounding.",
+    "uniform pressure, (r₁ + r₂)/2 under a pressure like 1/r. Error: rounding.",
 )
 def in_place() -> Measured:
     """Compare the moment of annuli that only spin with the textbook."""

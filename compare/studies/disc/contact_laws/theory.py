@@ -22,9 +22,9 @@ DISC = FIG11
 
 SIX = replace(FIG11, contact_points=6)
 
-SOURCE = "Fig. 11; how the disc moves is ours"
+SOURCE = "Fig. 11; the motion of the disc is our choice"
 
-SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are ours"
+SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
@@ -47,7 +47,7 @@ DIFFERENCES = (
 R = FIG11.contact_radius
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""Ratios U/W, including 1, at which the closed form is compared with the integral."""
+"""Ratios U/W, including 1, for the comparison of the closed form with the integral."""
 
 NUMBERS = (6, 12, 24)
 """Numbers of points on the ring."""
@@ -155,7 +155,7 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
 
 
 def top(error: Callable[[float], float], noise: float) -> tuple[float, float, float]:
-    """Return the U/W at which ``error`` is largest, its size, and the error of U/W.
+    """Return the U/W of the largest ``error``, its size, and the error of U/W.
 
     On a parabola of curvature c, points within √(2·noise/c) cannot be distinguished from the maximum. The tolerance
     of the search is 1e-6.
@@ -181,7 +181,7 @@ def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
 
 
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
-    """Return the U/W at which the error of ``number`` points is largest, its size, and the errors of size and U/W.
+    """Return the U/W of the largest error of ``number`` points, its size, and the errors of size and U/W.
 
     ``part`` selects force or moment. The largest error is next to a jump, so the search does not use slopes.
     """

@@ -53,7 +53,7 @@ def draw_spin(data: ByEngine) -> Figure:
         ylabel="difference in rad/s",
         yscale="log",
         ylim=(1e-16, 1.0),
-        title="Spin less that on the continuous ring",
+        title="Spin minus spin on the continuous ring",
     )
     plane.set(
         xlabel=axis("x", "m"),
@@ -61,7 +61,7 @@ def draw_spin(data: ByEngine) -> Figure:
         aspect="equal",
         xlim=(-0.005, 0.105),
         ylim=(-0.005, 0.066),
-        title="Places of rest",
+        title="Positions of rest",
     )
     spin.legend(loc="upper left", bbox_to_anchor=(0.0, 0.89), fontsize=9.0)
     distance.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--", label="resolution of ring")

@@ -52,12 +52,12 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
 
 
 @STUDY.claim(
-    "On the continuous ring the engine's steady state is the self-centred equilibrium, at every friction force",
+    "On the continuous ring, the engine's steady state is the self-centred equilibrium, at every friction force",
     equation="(19), (20)",
     unit="m, rad/s",
     resolution=theory.RESOLUTION,
-    note="Measured: the state that the engine itself brings back after a sixth of a turn, found from the place by "
-    "(26). Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
+    note="Measured: the state that repeats after a sixth of a turn in the engine, with the position (26) as initial "
+    "guess. Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -79,7 +79,7 @@ def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     equation="(4)",
     unit="m²",
     resolution=1e-9 * theory.RING.offset**2,
-    note="Left side minus right side of (4), at the places of the claim above.",
+    note="Left side minus right side of (4), at the positions of the previous claim.",
     implied_by=rests,
     swept=("friction_force",),
 )
@@ -98,14 +98,14 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Meas
 
 
 @STUDY.claim(
-    "A displaced disc approaches the equilibrium as the slowest eigenvalue says",
+    "A displaced disc approaches the equilibrium as the slowest eigenvalue predicts",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-4,
-    note="Starts at rest where the springs are relaxed, with the spin of the shaft. Measured: growth of the slowest "
-    "mode's part of the deviation, in the later half of "
+    note="Starts at rest at the relaxed position of the springs, with the spin of the shaft. Measured: growth of the "
+    "slowest mode's share of the deviation, in the later half of "
     + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in theory.DECAYS)
-    + ". Error: the change against the earlier half, and at a smaller tolerance.",
+    + ". Error: the change from the earlier half, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -152,10 +152,10 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     equation="(5)",
     unit="N",
     resolution=1e-6,
-    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in theory.END_LOADS)} N, μN as a polynomial "
-    "of their distance from the axis. A pin's would end at C·X0 = "
-    f"{theory.RING.stiffness * theory.RING.offset:g} N; of the disc's friction the moment of the shaft takes a "
-    "part. Error: the change without the farthest, and at a smaller tolerance.",
+    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in theory.END_LOADS)} N, with μN as a polynomial "
+    "of their distance from the axis. The equilibrium of a pin would end at C·X0 = "
+    f"{theory.RING.stiffness * theory.RING.offset:g} N; the moment of the shaft uses part of the disc's friction. "
+    "Error: the change without the farthest equilibrium, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -186,10 +186,10 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 
 
 @STUDY.claim(
-    "A disc on the axis sticks to the master disc above the μN where the equilibrium ends, and not below",
+    "A disc on the axis sticks to the master disc above the μN at which the equilibrium ends, but not below",
     equation="(5)",
-    note=f"Whether it sticks after {theory.STICKING_TIME:g} s, or does not, at "
-    f"{', '.join(f'{ratio:g}' for ratio in theory.STICKING_RATIOS)} of that μN. Starts on the axis with 95 % of the "
+    note=f"Does it stick, or not, after {theory.STICKING_TIME:g} s at "
+    f"{', '.join(f'{ratio:g}' for ratio in theory.STICKING_RATIOS)} of this μN? Starts on the axis with 95 % of the "
     "speed of the master disc.",
     basis="reference",
     swept=("friction_force",),
@@ -210,12 +210,12 @@ def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> 
 
 
 @STUDY.claim(
-    "On six points the mean place and spin of the disc are those of exact Coulomb friction",
+    "On six points, the mean position and spin of the disc equal those of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",
     resolution=1e-9,
-    note="Means over the motion that comes back after a sixth of a turn; predicted by the reference at tolerance "
+    note="Means over the motion that repeats after a sixth of a turn. Predicted: the reference at tolerance "
     f"{TIGHTEST:g}.",
     swept=("friction_force",),
 )
@@ -244,11 +244,11 @@ def _six_points_of_reference(load: float) -> tuple[float, ...]:
 
 
 @STUDY.claim(
-    "The corrected (26) is the equilibrium of (23), at every friction force and offset",
+    "The corrected (26) equals the equilibrium of (23), at every friction force and offset",
     equation="(26)",
     unit="m, rad/s",
     resolution=1e-12,
-    note="Predicted: balance of forces and moments of (19) with (23). Error: that of rounded parameters.",
+    note="Predicted: balance of forces and moments of (19) with (23). Error: rounding of the parameters.",
     swept=("friction_force", "offset"),
 )
 def corrected_26() -> Measured:
@@ -269,10 +269,10 @@ def corrected_26() -> Measured:
 
 
 @STUDY.claim(
-    "Springs and friction (23) balance at no place that (26) as printed gives",
+    "Springs and friction (23) do not balance at any position of (26) as printed",
     equation="(26)",
-    note=f"Whether the force that is left at a place is below {theory.BALANCED:g}·μN by the corrected (26), and "
-    "above by the printed one.",
+    note=f"Is the residual force at a position below {theory.BALANCED:g}·μN for the corrected (26), and above it for "
+    "the printed one?",
     swept=("friction_force", "offset"),
 )
 def printed_26() -> Measured:
@@ -284,13 +284,13 @@ def printed_26() -> Measured:
     return answers_of(
         [*(theory.BALANCED - corrected), *(printed - theory.BALANCED)],
         source=theory.SOURCE_OF_GRID,
-        note=f"At {len(discs)} places each. By the corrected one it is at most {np.max(corrected):.1g}·μN, by the "
-        f"printed one {np.min(printed):.2g} to {np.max(printed):.2g}·μN.",
+        note=f"At {len(discs)} positions each. It is at most {np.max(corrected):.1g}·μN for the corrected one, and "
+        f"{np.min(printed):.2g} to {np.max(printed):.2g}·μN for the printed one.",
     )
 
 
 @STUDY.claim(
-    "The corrected (26) ends at the μN with which friction (23) holds the disc against springs and shaft",
+    "The corrected (26) ends at the μN at which friction (23) holds the disc against springs and shaft",
     equation="(5), (26)",
     unit="N",
     resolution=1e-9,
@@ -298,7 +298,7 @@ def printed_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def end_of_26() -> Measured:
-    """Compare the friction force at the end of (26) with the one at which friction (23) can hold the disc."""
+    """Compare the friction force at the end of (26) with the smallest one that can hold the disc by (23)."""
     discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
     predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
     return Measured(

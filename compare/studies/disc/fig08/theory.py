@@ -32,17 +32,15 @@ SIX = replace(RING, contact_points=6)
 PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
 """Contact law (23)."""
 
-SOURCE = (
-    "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper leaves out; the friction forces are our choice"
-)
+SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper omits; the friction forces are our choice"
 
-SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper leaves out X0"
+SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper omits X0"
 
 LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
 """Friction forces in N. The paper does not print a range; the equilibrium ends slightly above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
-"""Friction force in N, and the time span in s in which the decay is measured, late enough for small deviations."""
+"""Friction force in N, and the time span in s of the measured decay, late enough for small deviations."""
 
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """Friction forces in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
@@ -97,7 +95,7 @@ def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
 
 
 def last_load_by_26(disc: DiscOnDisc) -> float:
-    """Return the friction force in N at which A of (26) becomes zero."""
+    """Return the friction force in N where A of (26) becomes zero."""
     difference = reduced_parameters(disc).speed_difference
 
     def miss(unknowns: FloatArray) -> FloatArray:

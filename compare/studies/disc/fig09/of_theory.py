@@ -17,15 +17,15 @@ from reference_model.formulas.disc import whirl_at
 
 
 @STUDY.claim(
-    "Without offset the whirl ends in a fold: at its smallest friction force an eigenvalue of it passes zero",
+    "Without offset, the whirl ends in a fold: at its smallest friction force, one of its eigenvalues passes zero",
     equation="(20), (23)",
     unit="N",
     note="Predicted: the minimum of μN over the ratio of the slip speeds of rim and centre. Measured: μN "
-    "where the eigenvalue is zero, to 1e-6 of that ratio; μN is flat there.",
+    "where the eigenvalue is zero, to 1e-6 of that ratio; μN is stationary there.",
     swept=("friction_force",),
 )
 def fold() -> Measured:
-    """Compare the friction force at which an eigenvalue passes zero with the smallest one of the balances."""
+    """Compare the friction force of a zero eigenvalue with the smallest friction force of the balances."""
     laws: Sequence[IsotropicContact | None] = (None, theory.PAPER_LAW)
     measured = [whirl_at(theory.CENTRED, theory.marginal_ratio(law), law).load for law in laws]
     return Measured(
@@ -39,10 +39,10 @@ def fold() -> Measured:
 
 
 @STUDY.claim(
-    "As β → 0 the equilibrium loses its stability where friction feeds a circular motion as much as β damps it",
+    "As β → 0, the equilibrium loses its stability where friction excites a circular motion as much as β damps it",
     resolution=0.05,
     note=f"Order in β of the error, for β = {', '.join(f'{damping:g}' for damping in theory.DAMPINGS)} N s/m, "
-    "extrapolated. Not in the paper, which has the equilibrium stable.",
+    "extrapolated. This is not in the paper, which states that the equilibrium is stable.",
     swept=("friction_force", "damping"),
 )
 def weak_damping() -> Measured:
@@ -55,19 +55,19 @@ def weak_damping() -> Measured:
         value=order,
         error=numerical,
         model=model,
-        source=f"{theory.SOURCE}; the falling β are ours",
-        note=f"With the β of Fig. 9 it loses its stability at {last_stable_load(theory.RING):.6f} N, "
-        f"{weak_damping_load(theory.RING):.6f} N by this formula: far below C·X0, where sticking begins.",
+        source=f"{theory.SOURCE}; the decreasing β are our choice",
+        note=f"For the β of Fig. 9, it loses its stability at {last_stable_load(theory.RING):.6f} N, or at "
+        f"{weak_damping_load(theory.RING):.6f} N by this formula, far below C·X0, where stick begins.",
     )
 
 
 @STUDY.claim(
-    "The inner, unstable whirl shrinks onto the equilibrium at the μN where the equilibrium loses its stability",
+    "The inner, unstable whirl shrinks onto the equilibrium at the μN at which the equilibrium loses its stability",
     unit="N",
-    note="Not in the paper. Predicted: where the real part of an eigenvalue of the equilibrium is zero. Measured: "
-    "μN of the reference's inner whirls, found by shooting, as a polynomial in the square of their size (root "
-    "of the mean square distance from the centre), at zero. Model error: the change with one orbit less. So the "
-    "basin of the equilibrium shrinks to nothing there.",
+    note="This is not in the paper. Predicted: the zero of the real part of an eigenvalue of the equilibrium. "
+    "Measured: μN of the reference's inner whirls by shooting, as a polynomial in the square of their size (root "
+    "of the mean square distance from the centre), at zero. Model error: the change with one orbit less. The "
+    "basin of the equilibrium therefore shrinks to nothing there.",
     basis="reference",
     named={"last stable load": 0},
     swept=("friction_force",),

@@ -85,7 +85,7 @@ def _whirls(panel: Axes, found: Data) -> None:
     panel.plot(load, radius, **curve("theory", "whirl, $X_0=0$, eq. (23)", **PAPER))
     load, least, greatest, _ = found["orbits"].T
     fold = int(np.argmin(load))
-    for bound, label in ((least, "whirl, $X_0=0.1$ m, least and greatest"), (greatest, "")):
+    for bound, label in ((least, "whirl, $X_0=0.1$ m, smallest and largest"), (greatest, "")):
         panel.plot(load[: fold + 1], bound[: fold + 1], label=label, **WHIRL)
 
 
@@ -140,7 +140,7 @@ def draw_spin(data: ByEngine) -> Figure:
     )
     distance.set(xscale="log", yscale="log", xlim=(LEAST_LOAD, 1.3 * LARGEST_LOAD), ylim=(5e-11, 1e-2))
     distance.set(
-        xlabel=axis(r"\mu N", "N"), ylabel=rf"$\dot\varphi$ of the whirl less its limit {limit:.5f} in rad/s"
+        xlabel=axis(r"\mu N", "N"), ylabel=rf"$\dot\varphi$ of the whirl minus its limit {limit:.5f} in rad/s"
     )
     _legend_below(figure, whole)
     return figure
@@ -183,7 +183,7 @@ def draw_ends(found: Data) -> Figure:
     panel.plot(offset[0], load[0], color=PURPLE, marker="<", clip_on=False)
     panel.axvline(RING.offset, color=BLACK, linewidth=0.7, linestyle=":")
     words: dict[str, Any] = {"ha": "center", "va": "center"}
-    panel.text(0.012, 0.11, "no equilibrium, sticking", **words)
+    panel.text(0.012, 0.11, "no equilibrium, stick", **words)
     panel.text(0.012, 0.004, "equilibrium unstable", **words)
     panel.text(0.16, 0.01, "equilibrium\nand whirl", **words)
     panel.text(0.15, 0.0008, "equilibrium,\nno whirl", **words)

@@ -23,17 +23,17 @@ from reference_model.systems import DiscOnDisc, FloatArray
 # --- The self-centred equilibrium, and small deviations from it and from the whirl.
 
 FOLLOWED = (
-    f"Half the difference of two simulations that start {theory.DISPLACED:g} of the way from the axis to either "
-    "side. Error: the change at a smaller tolerance, and with twice the deviation, which is three times what is "
-    "not linear."
+    f"Half the difference of two simulations that start {theory.DISPLACED:g} of the distance from the axis to either "
+    "side. Error: the change at a smaller tolerance, and with twice the deviation, which is three times the "
+    "nonlinear part."
 )
 
 
 @STUDY.claim(
-    "Place and spin of the self-centred disc are those of the balance of forces and moments, stable or not",
+    "Position and spin of the self-centred disc satisfy the balance of forces and moments, stable or not",
     equation="(19), (20)",
     resolution=1e-7,
-    note="In units of X0 and ω. Measured: the state that the engine itself brings back.",
+    note="Relative to X0 and ω. Measured: the state that repeats in the engine.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -55,13 +55,13 @@ def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measure
 
 
 @STUDY.claim(
-    "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues say",
+    "Small deviations from the equilibrium decay at a small μN and grow at larger ones, as its eigenvalues predict",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,
-    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. Not in the paper, which has this "
-    "equilibrium stable at every speed: that of the pin is. The friction of a ring grows with its slip, which on a "
-    f"master disc faster than k drives the disc around more than β damps it. {FOLLOWED}",
+    note=f"Over {', '.join(f'{duration:g}' for _, duration in theory.GROWTHS)} s. According to the paper, this "
+    "equilibrium is stable at every speed; only that of the pin is. The friction of a ring grows with its slip. On a "
+    f"master disc faster than k, it drives the disc around more than β damps it. {FOLLOWED}",
     basis="reference",
     swept=("friction_force",),
 )
@@ -82,7 +82,7 @@ def deviations_grow(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A disc beside the whirl approaches it at the rate of the slowest eigenvalue",
+    "A disc near the whirl approaches it at the rate of the slowest eigenvalue",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-6,
@@ -138,13 +138,13 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
 
 
 @STUDY.claim(
-    "A disc stuck at 0.98 of the radius (9) turns with the master disc for ever",
+    "A disc stuck at 0.98 of the radius (9) turns with the master disc permanently",
     equation="(9)",
     resolution=1e-2,
-    note="After a revolution: displacement on the master disc in units of the radius, turn against it in rad, spin "
-    "against it in units of ω; and the number of phases that do not stick. What holds the disc has the period of a "
-    "revolution. In (9) stands the force that friction can give beside the moment b(ω − Ω). Error: the change at a "
-    "smaller tolerance, by which a law that only approximates stick shows its creep.",
+    note="After one revolution: displacement on the master disc relative to the radius, turn against it in rad, spin "
+    "against it relative to ω, and the number of slip phases. The holding force has the period of a "
+    "revolution. Equation (9) uses the force that remains after the moment b(ω − Ω). Error: the change at a "
+    "smaller tolerance, which reveals the creep of a law that only approximates stick.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -177,7 +177,7 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
         value=np.append(found.value.ravel(), slips(theory.TOLERANCE)),
         # Zero departures give no scale for the rounding error.
         error=np.append(found.largest + ROUNDING + np.zeros(found.value.size), change),
-        components=[*(f"{part} at μN = {load:g} N" for load in loads for part in parts), "phases that slip"],
+        components=[*(f"{part} at μN = {load:g} N" for load in loads for part in parts), "slip phases"],
         data={
             "stick load": loads,
             "stuck": [(run.radius[-1], run.at_end[-1]) for run in runs(theory.TOLERANCE)],
@@ -186,12 +186,12 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
 
 
 @STUDY.claim(
-    "A disc stuck at 1.02 and at 1.5 of the radius (9) is let go at the time of (7)",
+    "A disc stuck at 1.02 and at 1.5 of the radius (9) is released at the time of (7)",
     equation="(7)",
     unit="rad",
     resolution=1e-2,
-    note="Turn of the master disc until the end of the first stick phase, after a start where the least force holds "
-    "the disc. In (7) stands the force that friction can give beside the moment b(ω − Ω).",
+    note="Turn of the master disc until the end of the first stick phase, from a start where the holding force is "
+    "smallest. Equation (7) uses the force that remains after the moment b(ω − Ω).",
     basis="reference",
     swept=("friction_force",),
 )
@@ -218,10 +218,10 @@ def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Mea
 
 
 @STUDY.claim(
-    "Sticking and a whirl that never sticks exist for the same parameters",
+    "Permanent stick and a whirl without stick exist at the same parameters",
     equation="(9), (11)",
-    note="Whether a start stuck at half the radius (9) sticks all the time, for a turn, and one on the whirl slides "
-    "all the time, for ten.",
+    note="Does a start stuck at half the radius (9) stick for a whole turn, and does a start on the whirl slide for "
+    "ten whole turns?",
 )
 def coexist(engine: Engine) -> Measured:
     """Check that at the largest friction force a disc can stick for a revolution, or whirl without sticking."""
@@ -248,11 +248,11 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
 
 @STUDY.claim(
-    "On six points the mean whirl without offset is that of exact Coulomb friction",
+    "On six points, the mean whirl without offset equals that of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     resolution=1e-6,
-    note=f"In units of μN/(βk), k and ω; means over the motion that comes back turned. {BY_REFERENCE}",
+    note=f"Relative to μN/(βk), k and ω; means over the motion that repeats up to a rotation. {BY_REFERENCE}",
     swept=("friction_force",),
 )
 def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.CIRCLES) -> Measured:
@@ -271,8 +271,8 @@ def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.
         components=("radius", "frequency", "spin"),
         system=theory.on_six_points(theory.CENTRED),
         source=theory.SOURCE_CENTRED,
-        note=f"In radius it differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
-        "1e-9 from 0.001 N on: slip is along the circle then, at all points.",
+        note=f"Its radius differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
+        "1e-9 from 0.001 N on, where all points slip along the circle.",
         data={"six circle load": loads, "six circle": found.value},
     )
 
@@ -283,12 +283,11 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
 
 
 @STUDY.claim(
-    "On six points the mean place and spin of the self-centred disc are those of exact Coulomb friction",
+    "On six points, the mean position and spin of the self-centred disc equal those of exact Coulomb friction",
     equation="(19)–(21)",
     kind="trajectory",
     resolution=1e-7,
-    note="Means in units of X0 and ω over the motion that comes back after a sixth of a turn. "
-    + BY_REFERENCE,
+    note="Means relative to X0 and ω over the motion that repeats after a sixth of a turn. " + BY_REFERENCE,
     swept=("friction_force",),
 )
 def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
@@ -315,8 +314,8 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
     equation="(7)",
     kind="trajectory",
     resolution=2e-3,
-    note="Displacement on the master disc in units of the radius, and spin less ω in units of ω, half as long "
-    f"again after the start as (7) has it for the continuous ring; at {theory.OUTSIDE[-1]:g} of the radius (9). "
+    note="Displacement on the master disc relative to the radius, and (spin − ω)/ω, after 1.5 times the release time "
+    f"of (7) for the continuous ring; at {theory.OUTSIDE[-1]:g} of the radius (9). "
     f"{BY_REFERENCE}",
     swept=("friction_force",),
 )

@@ -36,7 +36,7 @@ PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
 
 SOURCE = (
     'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
-    "are our choice, the paper leaves them out"
+    "are our choice, the paper omits them"
 )
 
 SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
@@ -82,8 +82,8 @@ LARGEST_LOAD = 0.2
 BRANCH_START = 0.1
 BRANCH_END = 1.0
 BRANCH_STEP = 0.24
-"""First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the fraction by which
-successive crossings fall."""
+"""First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the relative
+decrease of successive crossings."""
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
 """Friction forces in N of whirls before the branch."""
@@ -96,7 +96,7 @@ FOLD_STEP = 0.12
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
-"""Offsets X0 in m at which the fold of the whirl and the ends of the other motions are computed."""
+"""Offsets X0 in m for the fold of the whirl and the ends of the other motions."""
 
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
@@ -185,7 +185,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
-    """Return the largest μN in N at which the self-centred equilibrium is stable; its end if it is always stable."""
+    """Return the largest μN in N of a stable self-centred equilibrium; its end if it is always stable."""
     end = last_load(disc)
 
     def growth(logarithm: float) -> float:
@@ -213,7 +213,7 @@ def smallest_load(disc: DiscOnDisc) -> float:
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
-    """Return the friction force in N at which the equilibrium loses its stability, to first order in β.
+    """Return the friction force in N where the equilibrium loses its stability, to first order in β.
 
     Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Small additional slip u = ż − iωz is
     resisted by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies
@@ -236,7 +236,7 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
 
 
 def marginal_ratio(law: IsotropicContact | None) -> float:
-    """Return the α of the whirl, tan α = R|S|/U, at which an eigenvalue other than the phase's is zero."""
+    """Return the α of the whirl, tan α = R|S|/U, where an eigenvalue other than the phase's is zero."""
 
     def growth(alpha: float) -> float:
         whirl = whirl_at(CENTRED, alpha, law)
@@ -316,7 +316,7 @@ def smooth(found: Sequence[Orbit]) -> Data:
 
 
 def rests() -> Data:
-    """Return μN, radius and spin of the equilibria, and the largest μN at which they are stable."""
+    """Return μN, radius and spin of the equilibria, and the largest μN of stable equilibria."""
     end = last_load(RING)
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer if the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
@@ -329,7 +329,7 @@ def rests() -> Data:
 
 
 def sticking() -> Data:
-    """Return friction forces at which the disc can stick, and the radius (9)."""
+    """Return friction forces that allow permanent stick, and the radius (9)."""
     loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
     return {
         "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])

@@ -94,20 +94,20 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
 LOADS = [load for load, _ in theory.CIRCLES]
 
 OBSERVED = (
-    "Orders of the distance in radius and spin, extrapolated; model error: the extrapolation's own step. The limit "
-    "of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
+    "Orders of the deviations of radius and spin, extrapolated. Model error: the change due to extrapolation. The "
+    "limit of the spin, ω − b(ω − Ω)/(b + R²βk/(2(ω − k))) = "
     f"{theory.spin_of_large_whirl(theory.RING):.6f} rad/s, follows from F = 1 and M = RW/(2U). Friction forces: "
     f"{', '.join(f'{load:g}' for load in LOADS[theory.ORDERS])} N."
 )
 
 
 @STUDY.claim(
-    "Without offset the whirl has radius, frequency and spin of the three balances, stable or not",
+    "Without offset, the whirl has the radius, frequency and spin of the three balances, stable or not",
     equation="(19), (20)",
     resolution=1e-6,
-    note="In units of μN/(βk), k and ω; the second of the two at the same μN is unstable. Measured: the state that "
-    "the engine itself brings back, turned about the axis. Predicted: radial, tangential and torsional balance on "
-    "the continuous ring.",
+    note="Relative to μN/(βk), k and ω; the second of two whirls at the same μN is unstable. Measured: the state "
+    "that repeats in the engine up to a rotation. Predicted: radial, tangential and torsional balance on the "
+    "continuous ring.",
     basis="reference",
     swept=("friction_force",),
 )
@@ -156,7 +156,7 @@ def error_of_23(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The whirl's radius tends to the pin's μN/(βk), its spin to a limit without μN, both like (μN)⁻²",
+    "The whirl's radius tends to the pin's μN/(βk), and its spin to a limit independent of μN, both like (μN)⁻²",
     equation="(11)",
     kind="order",
     resolution=0.1,
@@ -171,7 +171,7 @@ def limit_of_large_loads(engine: Engine) -> Measured:
 
 
 def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
-    """Compare ``orders`` in the friction force with the orders at which radius and spin converge to ``others``."""
+    """Compare the orders of convergence of radius and spin to ``others`` in the friction force with ``orders``."""
     found = circles_of(engine, theory.CENTRED)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
     observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])
@@ -189,18 +189,18 @@ def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[flo
 # --- Whirls with an offset: periodic orbits, shifted and changed by the offset.
 
 EXTRAPOLATED = (
-    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated; model error: the "
-    "extrapolation's own step."
+    f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated. Model error: the change "
+    "due to extrapolation."
 )
 
 
 @STUDY.claim(
-    "With the offset the whirls, stable or not, are the periodic orbits of exact Coulomb friction",
+    "With the offset, the whirls equal the periodic orbits of exact Coulomb friction, stable or not",
     equation="(19), (20)",
     kind="trajectory",
     unit="s, m, rad/s",
     resolution=1e-6,
-    note="The second of the two at the same μN is the unstable one. Found by shooting with the engine; predicted: "
+    note="The second of two whirls at the same μN is unstable. Measured: shooting with the engine. Predicted: "
     f"the reference at tolerance {TIGHTEST:g}.",
     swept=("friction_force",),
 )
@@ -223,10 +223,10 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) 
         at={"μN in N": loads},
         components=(
             "period in s",
-            "least radius in m",
-            "greatest radius in m",
-            "least spin in rad/s",
-            "greatest spin in rad/s",
+            "smallest radius in m",
+            "largest radius in m",
+            "smallest spin in rad/s",
+            "largest spin in rad/s",
             "mean spin in rad/s",
         ),
         data={"orbit load": loads, "orbit": found.value},
@@ -279,8 +279,8 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
     equation="(18)",
     kind="order",
     resolution=0.05,
-    note=f"Order for {EXTRAPOLATED} Not in the paper, whose (18) is for the pin: here it is the linear response of "
-    "the circle to the offset, which turns backwards in the axes that turn with it.",
+    note=f"Order for {EXTRAPOLATED} This is not in the paper, whose (18) is for the pin. Here the shift is the "
+    "linear response of the circle to the offset, which turns backwards in the axes that turn with the circle.",
     basis="reference",
     swept=("offset",),
 )
@@ -316,8 +316,8 @@ def offset_changes_size(engine: Engine) -> Measured:
             2.0,
             ("radius", "spin"),
         ),
-        note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m they change by {radius / circle.radius - 1.0:.2g} of "
-        f"themselves and {spin - circle.spin:.2g} rad/s.",
+        note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m, the radius changes by {radius / circle.radius - 1.0:.2g} of "
+        f"itself and the spin by {spin - circle.spin:.2g} rad/s.",
     )
 
 

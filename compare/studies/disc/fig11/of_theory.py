@@ -26,13 +26,13 @@ from reference_model.systems import FloatArray
 
 
 @STUDY.claim(
-    "Shooting finds the modulated cycle, periodic up to a rotation, to which integration settles",
+    "Shooting finds the modulated cycle that integration approaches, periodic up to a rotation",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s, rad, m, rad/s",
     resolution=1e-3,
-    note="Error: the change at a smaller tolerance, and the change from the modulation before in the motion that "
-    "settles.",
+    note="Error: the change at a smaller tolerance, and the change from the previous modulation in the integrated "
+    "motion.",
 )
 def shooting() -> Measured:
     """Compare the modulated cycle found by shooting with the settled motion."""
@@ -54,9 +54,9 @@ def shooting() -> Measured:
 
 
 @STUDY.claim(
-    "The whirl is unstable on the continuous ring and on six points; by (23) it would be stable",
+    "The whirl is unstable on the continuous ring and on six points, but stable by (23)",
     equation="(19)–(23)",
-    note="So the simplified equations would not have shown the modulated cycle.",
+    note="The simplified equations would therefore not have shown the modulated cycle.",
     basis="reference",
     swept=("contact_points",),
 )
@@ -73,7 +73,7 @@ def unstable() -> Measured:
 
 
 @STUDY.claim(
-    "By (23) a small deviation from the whirl dies out as its linearisation says",
+    "By (23), a small deviation from the whirl decays as its linearisation predicts",
     equation="(23)",
     unit="1/s",
     note=f"Simulated with the reference. {whirl.NOTE}",
@@ -98,10 +98,10 @@ def dies_out_by_23() -> Measured:
 
 
 @STUDY.claim(
-    "Just above the critical X0 the steady whirl and the modulated motion are both stable",
+    "Just above the critical X0, the steady whirl and the modulated motion are both stable",
     equation="(19)–(21)",
-    note="Whether the pair of multipliers lies inside of the unit circle, and whether the spin still swings by more "
-    f"than {parameters.SWING:g} rad/s after {parameters.ENDS_UNTIL:g} s.",
+    note="Does the pair of multipliers lie inside the unit circle, and does the spin still oscillate by more "
+    f"than {parameters.SWING:g} rad/s after {parameters.ENDS_UNTIL:g} s?",
     basis="reference",
 )
 def both_stable() -> Measured:

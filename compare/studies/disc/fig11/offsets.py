@@ -35,11 +35,11 @@ from reference_model.systems import FloatArray
     kind="trajectory",
     unit="m",
     resolution=1e-3 * parameters.TRIED[1],
-    note="Measured: whirls with an offset are found by shooting with the engine, for "
-    f"{at_each('X0', parameters.TRIED)} m, and their multipliers by differences. Predicted: what one step of "
-    "Newton's method makes of that X0 with multipliers from the variational equations, integrated with the "
-    "analytic Jacobian. Error: the change at a smaller tolerance, that by a straight line for the "
-    "interpolation, and how much the linearised return map changes a shift in time.",
+    note="Measured: whirls with an offset by shooting with the engine, for "
+    f"{at_each('X0', parameters.TRIED)} m, and their multipliers by differences. Predicted: the result of one Newton "
+    "step from that X0 with multipliers from the variational equations, integrated with the "
+    "analytic Jacobian. Error: the change at a smaller tolerance, the change with linear "
+    "interpolation, and the change of a time shift by the linearised return map.",
     named={"critical offset": 0},
     swept=("offset",),
 )
@@ -73,11 +73,11 @@ def error_of_monodromy(orbit: Orbit) -> float:
 
 
 @STUDY.claim(
-    "Motions end modulated at small offsets, as a steady whirl at larger ones, and at rest beyond those",
+    "Motions end modulated at small offsets, as a steady whirl at larger offsets, and at rest beyond",
     equation="(19)–(21)",
-    note=f"From the last {parameters.LOOKED_AT:g} of {parameters.ENDS_UNTIL:g} s: the spin, averaged over a "
-    f"turn, swings by more than {parameters.SWING:g} rad/s, or the radius by more than "
-    f"{parameters.ORBITS_EXTENT:g} m. Predicted: from the critical X0 and from the one at which an eigenvalue of "
+    note=f"In the last {parameters.LOOKED_AT:g} of {parameters.ENDS_UNTIL:g} s, the spin averaged over a "
+    f"turn oscillates by more than {parameters.SWING:g} rad/s, or the radius by more than "
+    f"{parameters.ORBITS_EXTENT:g} m. Predicted: from the critical X0, and from the X0 at which an eigenvalue of "
     "the self-centred equilibrium crosses zero.",
     basis="reference",
     swept=("offset",),
@@ -135,17 +135,17 @@ NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
 
 @STUDY.claim(
-    "Single points of six, about which the disc then turns, come to rest when the reference says",
+    "Single points of six, about which the disc then turns, come to rest at the times of the reference",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s",
     resolution=1e-2,
-    note=f"{NOTE} A rest too many or too few shows as a missing number.",
+    note=f"{NOTE} A missing or additional rest makes all numbers missing.",
 )
 def points_rest(engine: Engine) -> Measured:
-    """Compare the times at which single points come to rest and slip again with the reference."""
+    """Compare the times of rest and renewed slip of single points with the reference."""
     if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
-        raise UnsupportedSystemError(f"{engine.name} does not tell when single points rest")
+        raise UnsupportedSystemError(f"{engine.name} does not report when single points rest")
     predicted = rests_of_points(_reference())
 
     def rests(tolerance: float) -> FloatArray:
@@ -167,7 +167,7 @@ def points_rest(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Within 300 s the motion on six points has the least and greatest radius and spin that the reference gives",
+    "Within 300 s, the motion on six points has the smallest and largest radius and spin of the reference",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",

@@ -19,10 +19,10 @@ FROM_THE_CYCLE = f"{CENTRED}; start {START}"
 
 COMPONENTS = ("x in m", "y in m", "angle in rad", "vx in m/s", "vy in m/s", "spin in rad/s")
 
-EXTREMES = ("least radius in m", "greatest radius in m", "least spin in rad/s", "greatest spin in rad/s")
+EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
-"""Initial state from which all contact points slip for 100 s (our choice)."""
+"""Initial state of a motion whose contact points all slip for 100 s (our choice)."""
 
 SLIDING = np.linspace(0.0, 100.0, 101)
 
@@ -44,13 +44,13 @@ AMPLITUDE = 1e-4
 """Initial size of a deviation, in units of the whirl's radius."""
 
 DURATION = 200.0
-"""Duration in s, about a period of the modulation, in which the deviation grows tenfold."""
+"""Duration in s, about a period of the modulation; the deviation grows tenfold."""
 
 TOLERANCE = 2000 * WORKING
 """Tolerance for deviations, small compared with ``AMPLITUDE``."""
 
 FOLLOWED = 900.0
-"""Time in s in which a deviation grows to the modulated cycle."""
+"""Time in s until a deviation has grown to the modulated cycle."""
 
 STEP = 1e-4
 """Finite-difference step for the linearised return map, in units of the whirl's radius."""

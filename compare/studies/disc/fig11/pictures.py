@@ -36,7 +36,7 @@ ENLARGED = 20.0
 SIDE_BANDS = 5
 
 SETTLED = 230.0
-"""Time in s from which sections and spectra are computed."""
+"""Start time in s of sections and spectra."""
 
 X0_AXIS = 0.025
 
@@ -239,7 +239,7 @@ def draw_growth(data: ByEngine) -> Figure:
         panel.set(xlabel=axis("t", "s"), title=words[:1].upper() + words[1:], xlim=(0.0, None))
         if panel.lines:
             panel.legend(loc="lower right", fontsize=9.0)
-    panels[0].set_ylabel("deviation from the whirl,\nin units of its radius")
+    panels[0].set_ylabel("deviation from the whirl,\nrelative to its radius")
     return figure
 
 
@@ -275,7 +275,7 @@ def draw_offsets(data: ByEngine) -> Figure:
         for offset in (critical, rest):
             panel.axvline(offset, color=GREY, linewidth=0.8, linestyle="--")
         panel.set(xlabel=axis("X_0", "m"), xlim=(0.0, X0_AXIS))
-    panels[0].set(ylabel=axis(r"\rho", "m") + ", least and greatest", ylim=(0.0, 0.05))
-    panels[1].set(ylabel=axis(r"\dot\varphi", "rad/s") + ", least and greatest", ylim=(1.325, 1.442))
+    panels[0].set(ylabel=axis(r"\rho", "m") + ", smallest and largest", ylim=(0.0, 0.05))
+    panels[1].set(ylabel=axis(r"\dot\varphi", "rad/s") + ", smallest and largest", ylim=(1.325, 1.442))
     panels[0].legend(loc="upper center", bbox_to_anchor=(0.61, 0.92), fontsize=9.0)
     return figure

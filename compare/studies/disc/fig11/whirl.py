@@ -21,13 +21,13 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 NOTE = (
     f"Rate and frequency of a deviation of {parameters.AMPLITUDE:g} radii, followed for {parameters.DURATION:g} "
-    "s to either side: straight lines through logarithm and phase of its share in the pair of modes. Error: "
+    "s to either side, from straight lines through logarithm and phase of its component in the pair of modes. Error: "
     "scatter about the lines, the change with twice the deviation, and at a smaller tolerance."
 )
 
 
 @STUDY.claim(
-    "A disc on {} that slides moves for 100 s as (19) to (21) say, integrated as they stand",
+    "A sliding disc on {} moves for 100 s according to (19) to (21), integrated as printed",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad, m/s, rad/s",
@@ -55,13 +55,13 @@ def slides(engine: Engine, contact: str) -> Measured:
         at={"t in s": parameters.SLIDING},
         components=parameters.COMPONENTS,
         system=disc,
-        source=f"{parameters.CENTRED}; start {parameters.SLIDING_START} is an assumption",
+        source=f"{parameters.CENTRED}; start {parameters.SLIDING_START} is our choice",
         named={f"slip for 100 s on {contact}": None},
     )
 
 
 @STUDY.claim(
-    "A small deviation from the whirl on {} grows at the rate that its linearisation gives",
+    "A small deviation from the whirl on {} grows at the rate of its linearisation",
     equation="(19)–(21)",
     unit="1/s",
     note=NOTE,
@@ -86,7 +86,7 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
 
 
 @STUDY.claim(
-    "A small deviation from the whirl on {} swings with the frequency that its linearisation gives",
+    "A small deviation from the whirl on {} oscillates at the frequency of its linearisation",
     equation="(19)–(21)",
     unit="1/s",
     note=NOTE,
@@ -112,7 +112,7 @@ def _linearised(disc: DiscOnDisc) -> str:
     if disc.contact_points is None:
         return "Predicted: the eigenvalues in the frame that turns with the whirl."
     return (
-        "Predicted: the multipliers of the whirl on points, which comes back turned after "
+        "Predicted: the multipliers of the whirl on points, which repeats up to a rotation after "
         f"{steady_whirl(disc).period:.4g} s, by the reference."
     )
 
@@ -187,13 +187,13 @@ def departure(
 
 CYCLE_NOTE = (
     f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
-    "(19) as it stands, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the "
-    "change from the modulation before, of both."
+    "(19) as printed, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the "
+    "change from the previous modulation, in both motions."
 )
 
 
 @STUDY.claim(
-    "The modulation on the continuous ring has the period, and the turn within it, that (19) gives",
+    "The modulation on the continuous ring has the period, and the turn per period, of (19)",
     equation="(19)–(21)",
     kind="trajectory",
     unit="s, rad",
@@ -214,7 +214,7 @@ def period_and_turn(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The modulated cycle on the continuous ring has the least and greatest radius and spin that (19) gives",
+    "The modulated cycle on the continuous ring has the smallest and largest radius and spin of (19)",
     equation="(19)–(21)",
     kind="trajectory",
     unit="m, rad/s",

@@ -61,10 +61,10 @@ def draw(data: ByEngine) -> Figures:
     ratio.annotate("0", (2.2, 0.19), ha="center", fontsize=12)
     ratio.set(
         xlabel=r"$J\,/\,mR^2$",
-        ylabel=r"$|v|\,/\,R\dot\varphi$ in the end",
+        ylabel=r"final $|v|\,/\,R\dot\varphi$",
         xlim=(0.42, 2.4),
         ylim=(0.1, 10.0),
-        title="Ratio in the end",
+        title="Final ratio",
     )
     plane.legend(loc="upper right")
     approach.legend(loc="upper right")

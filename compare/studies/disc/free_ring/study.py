@@ -31,14 +31,14 @@ STUDY.provides(curves=theory.curves)
     "Sliding and spinning end at the same instant, whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note="Time by which sliding ends after spinning, over that to rest: U and W, extrapolated in straight lines "
-    f"from t/T = {theory.REMAINING[1]:g}, {theory.REMAINING[0]:g} of it before. Error: the change from twice as "
-    "far away, and at a smaller tolerance.",
+    note="Delay of the end of sliding after the end of spinning, over the time to rest; U and W are extrapolated "
+    f"linearly from t/T = {theory.REMAINING[1]:g}, {theory.REMAINING[0]:g} before rest. Error: the change for "
+    "earlier samples, and at a smaller tolerance.",
 )
 def end_together(
     engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
 ) -> Measured:
-    """Compare the times at which both speeds, extrapolated, reach zero."""
+    """Compare the times when both extrapolated speeds reach zero."""
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
@@ -72,11 +72,11 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
 
 
 @STUDY.claim(
-    "Sliding and rim speed of a ring with J = mR² end in the ratio 1, whatever the start",
+    "The ratio of sliding speed to rim speed ends at 1 for a ring with J = mR², whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note=f"U/W when {theory.REMAINING[0]:g} of the time to rest is left. Error: the tolerance of both speeds, "
-    "and the change at a smaller one. Model error: what the approach to 1 leaves.",
+    note=f"U/W when {theory.REMAINING[0]:g} of the time to rest remains. Error: the tolerance of both speeds, "
+    "and the change at a smaller one. Model error: the remaining distance to 1.",
 )
 def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
     """Compare the ratio at the latest sample with 1."""
@@ -109,7 +109,7 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
 
 
 @STUDY.claim(
-    "With J = mR² the ratio of both speeds comes to 1 like exp(−A/t) with the remaining time t",
+    "For J = mR², the ratio of both speeds approaches 1 like exp(−A/t) with the remaining time t",
     equation="(19), (20)",
     unit="s",
     note="A = t·(ln(8/|ln U/W|) − 2). Predicted by the integrals over the ratio. Error: the tolerance of both "
@@ -171,12 +171,12 @@ def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLik
 
 
 @STUDY.claim(
-    "For mR²/2 < J < 2mR² the ratio ends at the balance of both decelerations, whatever the start",
+    "For mR²/2 < J < 2mR², the ratio ends at the balance of both decelerations, whatever the start",
     equation="(19), (20)",
     resolution=1e-2,
     note=f"U/W at t/T = {', '.join(f'{left:g}' for left in theory.REMAINING[:3])} of the time to rest, "
     "extrapolated to zero as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: "
-    "the change from twice as far away, and at a smaller tolerance.",
+    "the change at twice the remaining time, and at a smaller tolerance.",
     basis="reference",
     swept=("polar_inertia",),
 )
@@ -208,7 +208,7 @@ def _limit(last: float, middle: float, first: float) -> float:
 
 
 @STUDY.claim(
-    "As a power of the time left, the rim's share of the slip goes to zero for J < mR²/2, the centre's for J > 2mR²",
+    "The rim's share of slip vanishes as a power of the remaining time for J < mR²/2, the centre's for J > 2mR²",
     equation="(19), (20)",
     resolution=0.05,
     note=f"Power of W/U ~ t^(mR²/2J − 1) or U/W ~ t^(J/2mR² − 1), fitted to the last {theory.ENDING[-1]:g} to "
@@ -247,11 +247,11 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
 
 
 @STUDY.claim(
-    "Time and ways to rest are those of the integrals over the ratio",
+    "The time and the distances to rest equal the integrals over the ratio of the speeds",
     equation="(19), (20)",
     unit="s, m, rad",
     resolution=1e-8,
-    note="Predicted by integrals over the ratio U/W, without a step in time.",
+    note="Predicted: integrals over the ratio U/W, without time steps.",
     basis="reference",
     swept=("polar_inertia",),
 )
@@ -289,12 +289,12 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
 
 
 @STUDY.claim(
-    "The energy that the ring loses is the heat of friction",
+    "The energy loss of the ring equals the heat of friction",
     equation="(19), (20)",
     kind="conservation",
     resolution=1e-6,
-    note="Largest difference at any time, as a fraction of the energy at the start. Error: the tolerance, and every "
-    "second sample left out of the quadrature of μN·P(U, W).",
+    note="Largest difference at any time, relative to the initial energy. Error: the tolerance, and the change of "
+    "the quadrature of μN·P(U, W) without every second sample.",
     basis="reference",
 )
 def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
@@ -331,13 +331,13 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
 
 
 @STUDY.claim(
-    "Both speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
+    "The speeds end in a finite ratio for mR²/2 < J < 2mR², and for no other J",
     equation="(20)",
-    note="Whether the closed form of (20) has a balance of both decelerations, or has none, for "
+    note="Is there, or is there not, a balance of both decelerations in the closed form of (20)? For "
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
-    """Check for which J a balance of both decelerations exists."""
+    """Check the range of J with a balance of both decelerations."""
 
     def has_ratio(inertia: float) -> bool:
         slowing = Slowing(inertia)
@@ -350,11 +350,11 @@ def ratio_exists() -> Measured:
 
 
 @STUDY.claim(
-    "On the whole face of a uniform disc the balance of both decelerations gives the published ratio",
+    "For contact on the whole face of a uniform disc, the balance of both decelerations yields the published ratio",
     equation="(20)",
     resolution=1e-3,
-    note="Sliding over rim speed in the end, by the mean of the closed form of (20) over all radii; J = mR²/2. Model "
-    "error: half of the last digit that is published.",
+    note="Final ratio of sliding to rim speed, by the mean of the closed form of (20) over all radii; J = mR²/2. "
+    "Model error: half of the last published digit.",
 )
 def published_ratio() -> Measured:
     """Compare the balance of a full disc with the literature."""

@@ -126,7 +126,7 @@ SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and 
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)
-"""Values of J/(mR²) for which the existence of a terminal ratio is checked."""
+"""Values of J/(mR²) to check the existence of a terminal ratio."""
 
 
 def nearness(delta: ArrayLike) -> FloatArray:
@@ -163,7 +163,7 @@ def curves() -> Data:
 
 @functools.cache
 def roughly_rest(engine: Engine, throw: Throw) -> float:
-    """Return the time in s at which the ring comes to rest in ``engine``, which determines the sample times.
+    """Return the time in s when the ring comes to rest in ``engine``, which determines the sample times.
 
     It has the tolerance of the claims. At a smaller tolerance the rest moves relative to the samples by about the
     error of the sample times, so the change of a measured value includes this error.
@@ -194,12 +194,12 @@ def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
 
 
 def approach_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return the times in s at which A over the remaining time equals ``NEARNESSES``."""
+    """Return the times in s when A over the remaining time equals ``NEARNESSES``."""
     return roughly_rest(engine, throw) - expected_approach(throw) / np.array(NEARNESSES)
 
 
 def rest_of(trajectory: Trajectory) -> float:
-    """Return the time in s at which the ring comes to rest, NaN if it does not."""
+    """Return the time in s when the ring comes to rest, NaN if it does not."""
     return trajectory.phases[-1].start if trajectory.phases[-1].kind == "stick" else math.nan
 
 

@@ -39,11 +39,11 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
 
 
 @STUDY.claim(
-    "At every point of the Hopf curves a pair of eigenvalues of the whirl is imaginary",
+    "At every point of the Hopf curves, a pair of eigenvalues of the whirl is imaginary",
     equation=theory.BOTH_LAWS,
     resolution=1e-10,
-    note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which takes no part in "
-    f"the tracing. {CURVES}. Error: rounding, by the condition of the eigenvalues.",
+    note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which the tracing does "
+    f"not use. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues.",
 )
 def marginal(curves: theory.Traced | None = None) -> Measured:
     """Compute the pair's real part over its frequency at all points of ``curves``, or of the map."""
@@ -57,9 +57,10 @@ def marginal(curves: theory.Traced | None = None) -> Measured:
 
 
 @STUDY.claim(
-    "Beside the Hopf curves no other eigenvalue of the whirl grows: they are borders of its stability",
+    "At every point of the Hopf curves, all other eigenvalues of the whirl are stable: the curves bound its "
+    "stability",
     equation=theory.BOTH_LAWS,
-    note="Whether the real parts of all other eigenvalues are negative.",
+    note="Are the real parts of all other eigenvalues negative?",
 )
 def no_other_grows() -> Measured:
     """Check the other eigenvalues at all points of the Hopf curves."""
@@ -72,11 +73,11 @@ def no_other_grows() -> Measured:
 
 
 @STUDY.claim(
-    "At every point of the fold curves an eigenvalue of the whirl is zero",
+    "At every point of the fold curves, an eigenvalue of the whirl is zero",
     equation=theory.BOTH_LAWS,
     resolution=1e-8,
-    note=f"The least eigenvalue over k. {CURVES}. Error: rounding, by the condition of the eigenvalues, which grows "
-    "where a second one becomes zero.",
+    note=f"The smallest eigenvalue over k. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues, "
+    "which grow where a second one becomes zero.",
 )
 def folds() -> Measured:
     """Compute the smallest eigenvalue over k at all points of the fold curves."""
@@ -89,7 +90,7 @@ def folds() -> Measured:
 
 
 @STUDY.claim(
-    "The traced curves cross the line of Fig. 11 where a search along it finds the boundary",
+    "The traced curves cross the line of Fig. 11 where a search along this line finds the boundary",
     equation=theory.BOTH_LAWS,
     unit="N",
     resolution=1e-3 * theory.DISC.friction_force,
@@ -114,16 +115,16 @@ def crosses_line() -> Measured:
 
 
 @STUDY.claim(
-    "The centred rotation loses its stability at the closed form of the onset",
+    "The centred rotation loses its stability at the onset that the closed form predicts",
     equation=theory.BOTH_LAWS,
     unit="N",
     resolution=1e-9 * theory.DISC.friction_force,
-    note="By the root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
+    note="Measured: root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
     "of the eigenvalues.",
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    """Compare the μN at which an eigenvalue of the centred rotation becomes imaginary with the closed form."""
+    """Compare the μN of an imaginary eigenvalue of the centred rotation with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
         for speed in theory.ONSET_SPEEDS:
@@ -156,19 +157,19 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
     "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
 }
-"""Discs by the share of one parameter of Fig. 11, and a share at which the rotation is stable."""
+"""Discs by the share of one parameter of Fig. 11, and a share with stable rotation."""
 
 
 @STUDY.claim(
-    "Each parameter by itself makes the centred rotation of Fig. 11 stable where the closed form of the onset says",
+    "Each parameter alone makes the centred rotation of Fig. 11 stable where the closed form of the onset predicts",
     equation="(19), (20)",
     resolution=1e-9,
-    note="Parameters over their values of Fig. 11; the slip speed is ω − Ω, and ω stays as it is. By the root of the "
+    note="Parameters over their values in Fig. 11; the slip speed is ω − Ω at constant ω. Measured: root of the "
     "largest real part. Error: rounding of the eigenvalues.",
     named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
 )
 def remedies() -> Measured:
-    """Compare the share of each parameter at which the centred rotation becomes stable with the closed form."""
+    """Compare the share of each parameter at the border of stable rotation with the closed form."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []
@@ -190,7 +191,7 @@ def remedies() -> Measured:
 
 
 @STUDY.claim(
-    "Along the line of Fig. 11 whirls gain and lose their stability where the map says",
+    "Along the line of Fig. 11, whirls gain and lose their stability where the map predicts",
     equation=theory.BOTH_LAWS,
     resolution=1e-8,
 )
@@ -218,7 +219,7 @@ def by_whirls() -> Measured:
         error=errors,
         components=names,
         source=theory.ONE_AT_A_TIME,
-        note="The borders next to the point of Fig. 11, to either side, and how far away they are: "
+        note="Borders on either side of the point of Fig. 11, and their distances: "
         + "; ".join(dict.fromkeys(names))
         + ".",
         named=named,
@@ -226,10 +227,10 @@ def by_whirls() -> Measured:
 
 
 @STUDY.claim(
-    "On the continuous ring the whirl always loses its stability with a jump: the cycle at the border is unstable",
+    "On the continuous ring, the whirl always loses its stability with a jump: the cycle at the border is unstable",
     equation="(19), (20)",
-    note="Whether the growth of the modulation rises with its amplitude, by the third-order terms of (19), at each "
-    f"point of the Hopf curves that is farther than {theory.FAR_FROM_KINK:g} from U = W in U : W.",
+    note="Does the growth of the modulation increase with its amplitude, by the third-order terms of (19), at each "
+    f"point of the Hopf curves farther than {theory.FAR_FROM_KINK:g} from U = W in U : W?",
 )
 def jumps() -> Measured:
     """Compute the sign of the first Lyapunov coefficient along the Hopf curves."""
@@ -259,7 +260,7 @@ SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
 
 
 @STUDY.claim(
-    "At the parameters of Fig. 11 the whirl on the continuous ring is unstable",
+    "At the parameters of Fig. 11, the whirl on the continuous ring is unstable",
     equation="(19), (20)",
     note=SIGN,
 )
@@ -269,7 +270,7 @@ def unstable_on_ring() -> Measured:
 
 
 @STUDY.claim(
-    "At the parameters of Fig. 11 the whirl of (23) is stable: (23) does not have the instability there",
+    "At the parameters of Fig. 11, the whirl of (23) is stable: (23) does not show the instability",
     equation="(19), (23)",
     note=SIGN,
 )
@@ -296,10 +297,10 @@ def _side(law: str, sign: float) -> Measured:
 
 
 @STUDY.claim(
-    "A pin's whirl has no Hopf curve: it is stable for all damping wherever ω > k",
+    "A pin's whirl has no Hopf curve: it is stable at any damping wherever ω > k",
     equation="(16)",
-    note=f"Whether (16), and whether the eigenvalues say so, over ω/k from 1 to {SPEEDS[-1] / theory.K:g} and β from "
-    f"{LOW:g} to {HIGH:g} N s/m; μN and the torsion do not matter.",
+    note=f"Do (16) and the eigenvalues confirm it, over ω/k from 1 to {SPEEDS[-1] / theory.K:g} and β from "
+    f"{LOW:g} to {HIGH:g} N s/m? μN and the torsion have no effect.",
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:

@@ -28,7 +28,7 @@ from compare.studies.disc.stability_map.theory import ENDS
 from reference_model.systems import FloatArray
 
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
-SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl die out": "v"}
+SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
 """Labels and marks of simulated results."""
 
 COLOURS = {"ring": GREEN, "(23)": PURPLE}

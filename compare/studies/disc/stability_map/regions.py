@@ -27,8 +27,8 @@ Lines = Sequence[tuple[str, str, float]]
 """Plane, fixed parameter and its value, for each line."""
 
 BESIDE_CURVES = (
-    f"Discs {100.0 * theory.ASIDE:g} % from the curves to either side. Start on the whirl and a little off it "
-    "along the pair's plane, both ways."
+    f"Discs {100.0 * theory.ASIDE:g} % away from the curves on either side. Starts on the whirl, and slightly off it "
+    "in the plane of the pair in both directions."
 )
 
 
@@ -43,7 +43,7 @@ class Deviation(NamedTuple):
 
 
 @STUDY.claim(
-    "Beside the Hopf curves small deviations from the whirl grow as the pair of eigenvalues says that the map traces",
+    "Near the Hopf curves, small deviations from the whirl grow and oscillate with the eigenvalue pair of the map",
     equation="(19), (20)",
     unit="1/s",
     resolution=1e-4 * theory.K,
@@ -63,14 +63,14 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
 
 
 @STUDY.claim(
-    "Small deviations from the whirl grow on one side of the Hopf curves and die out on the other, as mapped",
+    "Small deviations from the whirl grow on one side of the Hopf curves and decay on the other, as mapped",
     equation="(19), (20)",
     note=BESIDE_CURVES,
     basis="reference",
     implied_by=rates,
 )
 def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Check on which side of the curves deviations grow."""
+    """Check the side of the curves where deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
     for one in found:
@@ -141,7 +141,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
 
 
 @STUDY.claim(
-    "In each region of the map motions end as the map says", equation="(19), (20)", basis="reference"
+    "In each region of the map, motions end as the map predicts", equation="(19), (20)", basis="reference"
 )
 def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
     """Compare the final motions with the expected ones, by default from ``starts_in_regions``."""
@@ -151,7 +151,7 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 
 
 @STUDY.claim(
-    "Just outside of the Hopf curves whirl and modulated cycle coexist, and 2 % outside only the whirl is left",
+    "Just outside the Hopf curves, whirl and modulated cycle coexist; 2 % outside, only the whirl remains",
     equation="(19), (20)",
     basis="reference",
 )

@@ -33,7 +33,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 DISC = FIG11
 K = DISC.natural_frequency
 
-SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are ours"
+SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are our choice"
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
 BOTH_LAWS = "(19), (20), (23)"
@@ -45,7 +45,7 @@ LINES = (
     ("speeds", "disc_speed", 1.3),
     ("inertia", "polar_inertia", 0.4),
 )
-"""Lines on which discs on both sides of the ring's Hopf curves are simulated: plane, fixed parameter, its value."""
+"""Lines of simulated discs on both sides of the ring's Hopf curves: plane, fixed parameter, its value."""
 
 ASIDE = 0.01
 """Relative distance of these simulations from the curves."""
@@ -60,7 +60,7 @@ STUCK = 60.0
 """Duration in s of the simulation of a disc that sticks on the axis, where nothing changes except by creep."""
 
 OUTSIDE, BEYOND = 0.003, 0.02
-"""Relative distances outside the Hopf curves at which the modulated cycle coexists with the whirl, and has gone."""
+"""Relative distances outside the Hopf curves where the modulated cycle coexists with the whirl, and is gone."""
 
 BESIDE = (1.002, 1.0, 1.0, 1.0, 1.002, 1.0)
 """Factors on x, y, angle, vx, vy, spin of a whirl for a state close to it."""
@@ -75,16 +75,16 @@ LOADS = (
 """Friction forces in N in the bifurcation diagram."""
 
 SLOW_LOADS = (0.0208, 0.0211)
-"""Friction forces in N at which the whirl is stable but disturbances decay slowly."""
+"""Friction forces in N where the whirl is stable but disturbances decay slowly."""
 
 FAR_FROM_KINK = 0.02
 """Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
 
 ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
-"""Speeds ω in rad/s at which eigenvalues determine the onset."""
+"""Speeds ω in rad/s of the onsets by eigenvalues."""
 
 NEAR = 1e-3
-"""Relative distance from a border at which the whirl has the stability of that side."""
+"""Relative distance from a border where the whirl has the stability of that side."""
 
 STATE_ROUNDING = 4.0 * np.finfo(float).eps
 """Relative rounding error of the spin of a whirl computed from its α."""
@@ -170,12 +170,12 @@ def growth_of_rotation(disc: DiscOnDisc) -> float:
 
 
 def sticking_load(disc: DiscOnDisc) -> float:
-    """Return b|ω − Ω|/R, the smallest μN in N at which the centred disc can stick permanently."""
+    """Return b|ω − Ω|/R, the smallest μN in N that lets the centred disc stick permanently."""
     return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed) / disc.contact_radius
 
 
 def rotation(disc: DiscOnDisc) -> FloatArray:
-    """Return the state of the centred rotation, in which the shaft overcomes friction, shape (6,)."""
+    """Return the state of the centred rotation, where the shaft overcomes friction, shape (6,)."""
     against = disc.disc_speed - disc.shaft_speed
     relative_spin = against - math.copysign(
         disc.friction_force * disc.contact_radius / disc.shaft_damping, against
@@ -184,7 +184,7 @@ def rotation(disc: DiscOnDisc) -> FloatArray:
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
-    """Return the parameter value at which a pair of the whirl crosses the imaginary axis, and its error.
+    """Return the parameter value where a pair of the whirl crosses the imaginary axis, and its error.
 
     The value is NaN if no pair crosses within ``NEAR`` (relative) of ``near``.
     """
@@ -236,7 +236,7 @@ def section() -> Data:
 
 SETTLED = 600.0
 WATCHED = 350.0
-"""Time in s after which motions have settled, and length in s of the final interval that is evaluated."""
+"""Time in s until motions have settled, and length in s of the final interval that is evaluated."""
 
 SLOWLY_SETTLED = 2400.0
 """Settling time in s just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
@@ -289,14 +289,14 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
     answers = asked(as_said, SETTLING_TOLERANCE)
     found = ends[SETTLING_TOLERANCE]
     differing = [
-        f"{end} in place of {start.end} for {changes(start.disc)}"
+        f"{end} instead of {start.end} for {changes(start.disc)}"
         for end, start in zip(found, starts, strict=True)
         if end != start.end
     ]
     return found, answers_of(
         *answers,
-        source="Fig. 11 with X0 = 0; one parameter at a time is another",
-        note=f"Whether each motion ends as said after {at_each('t', sorted({one.duration for one in starts}))} s: "
+        source="Fig. 11 with X0 = 0; one parameter at a time differs",
+        note=f"Predicted ends of the motions after {at_each('t', sorted({one.duration for one in starts}))} s: "
         + ", ".join(f"{start.end} for {changes(start.disc)}" for start in starts)
         + f". {'; '.join(differing)}".rstrip("; "),
     )

@@ -1,4 +1,4 @@
-"""What engines make of Modelica's CoupledClutches, beside its exact motion; and the published result beside that."""
+"""Claims: engines and the published result against the exact motion of Modelica's CoupledClutches."""
 
 from __future__ import annotations
 
@@ -52,19 +52,19 @@ from reference_model.systems import FloatArray
 
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]
-"""To the end; the order in the step is asked for while all clutches slip."""
+"""Steps in s of the runs that continue to the end. The claim about the order only needs the initial slip phase."""
 
 EVENTS = tuple(
-    f"clutch {clutch + 1} {'holds' if mode == STUCK else 'lets go'} at {time:.4f} s"
+    f"clutch {clutch + 1} {'sticks' if mode == STUCK else 'releases'} at {time:.4f} s"
     for time, clutch, mode in switches()
 )
 OF_ORDER = (
-    "Largest error of a speed. Numerical error: scatter about the power law; model error: its next term."
+    "Largest error of a speed. Numerical error: scatter about the power law. Model error: the next term."
 )
 
 
 def curves() -> Data:
-    """Return the exact speeds and what the published ones are off by, for the figure."""
+    """Return the exact speeds and the deviations of the published ones, for the figure."""
     t = np.linspace(0.0, UNTIL, 1501)
     record = published()
     off = record.speeds - first_and_slips(exact().states(record.times)[1])
@@ -106,36 +106,36 @@ def _is_native(engine: Engine) -> bool:
 
 def _check_has_epsilon(engine: Engine) -> None:
     if _is_native(engine):
-        raise UnsupportedSystemError("Exudyn's own connector holds by bristles and has no ε")
+        raise UnsupportedSystemError("Exudyn's own connector sticks by bristles and has no ε")
 
 
 HALVED = (
-    "That of the finest run. Numerical error: twice the largest change from the next coarser one, whose errors of "
+    "Result of the finest run. Numerical error: twice the largest change from the next coarser run, whose errors of "
     "first order are twice as large."
 )
 
 
 def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Return the first of ``runs``, each twice as coarse as the one before, and its error."""
+    """Return the first of ``runs`` and its error; each run is twice as coarse as the previous one."""
     return runs[0], 2.0 * float(np.max(np.abs(runs[0] - runs[1])))
 
 
 @STUDY.claim(
-    "Three clutches in a row take four rotors through slip and stick as under Coulomb friction",
+    "Three clutches in a row move four rotors through slip and stick as exact Coulomb friction does",
     kind="trajectory",
     unit="rad/s",
     resolution=1e-3,
     note=HALVED,
 )
 def moves(engine: Engine) -> Measured:
-    """Compare speeds with the exact ones."""
+    """Compare the speeds with the exact ones."""
     runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
     found, error = _finest([run.at(SHOWN) for run in runs])
     note = (
-        f"By Exudyn's CoordinateSpringDamperExt with bristles of {BRISTLES[0][1]:g} N m/rad, implicit steps of "
+        f"Exudyn's CoordinateSpringDamperExt with bristles of {BRISTLES[0][1]:g} N m/rad and implicit steps of "
         f"{BRISTLES[0][0]:g} s; the coarser run has a quarter of that stiffness and twice that step."
         if _is_native(engine)
-        else f"By add_ring_friction with ε = {EPSILONS[0]:g} m/s, explicit."
+        else f"add_ring_friction with ε = {EPSILONS[0]:g} m/s, explicit."
     )
     return Measured(
         predicted=_speeds(SHOWN),
@@ -150,13 +150,13 @@ def moves(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Each clutch begins to hold and lets go at the times of Coulomb friction",
+    "Each clutch sticks and releases at the times of exact Coulomb friction",
     unit="s",
     resolution=1e-3,
-    note=f"When the slip passes ε = {EPSILONS[0]:g} m/s, the nearest time of each kind. {HALVED}",
+    note=f"Times when the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
 )
 def switches_on_time(engine: Engine) -> Measured:
-    """Compare the times at which slip falls below ε, or rises above it, with those of the events."""
+    """Compare the times when the slip falls below ε, or rises above it, with the times of the events."""
     _check_has_epsilon(engine)
     times, error = _finest(
         [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
@@ -165,7 +165,7 @@ def switches_on_time(engine: Engine) -> Measured:
 
 
 def _passings(run: Run, epsilon: float) -> FloatArray:
-    """Return when the slip of each event passes ``epsilon`` (rad/s), nearest to it; NaN where it never does."""
+    """Return for each event the nearest time (s) when the slip passes ``epsilon`` (rad/s), or NaN."""
     found = []
     for time, clutch, mode in switches():
         above = np.abs(run.slips[:, clutch]) - epsilon
@@ -180,16 +180,16 @@ def _passings(run: Run, epsilon: float) -> FloatArray:
 
 
 @STUDY.claim(
-    "Four rotors under a torque on the first gain the angular momentum that it gives",
+    "Four rotors gain the angular momentum that the torque on the first rotor supplies",
     kind="conservation",
     unit="kg m²/s",
     resolution=1e-8,
-    note="At the end. Numerical error: eight times what the runs of the first claim differ by; rounding, which grows "
-    "as the root of the number of steps; and the impulse of the largest torque in the gaps that solve_dynamic leaves "
-    "at breaks, which all runs share.",
+    note="At the end. Numerical error: eight times the difference between the runs of the first claim; rounding, "
+    "which grows as the root of the number of steps; and the impulse of the largest torque in the gaps that "
+    "solve_dynamic leaves at breaks in all runs.",
 )
 def momentum(engine: Engine) -> Measured:
-    """Compare what the rotors have at the end with what they began with and the impulse of the torque."""
+    """Compare the final angular momentum with the initial one plus the impulse of the torque."""
     from exudyn_models.solver.breaks import GAP
 
     gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # in s
@@ -204,15 +204,15 @@ def momentum(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Under implicit steps too the clutches take four rotors through slip and stick as under Coulomb friction",
+    "With implicit steps, the clutches move four rotors through slip and stick as exact Coulomb friction does",
     kind="trajectory",
     unit="rad/s",
     resolution=1e-3,
     note=f"At steps of {STEPS[0]:g} s and ε = {SMALL_EPSILON:g} m/s. Numerical error: the largest change from a run "
-    "of four times the step: where in a step an event falls makes the errors of neighbours scatter.",
+    "with four times the step, because errors scatter with the position of an event within its step.",
 )
 def implicit(engine: Engine) -> Measured:
-    """Compare speeds with the exact ones."""
+    """Compare the speeds with the exact ones."""
     _check_has_epsilon(engine)
     fine, coarse = (_implicit(engine, float(step)).at(SHOWN) for step in FOLLOWED)
     return Measured(
@@ -225,13 +225,13 @@ def implicit(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The error of explicit runs falls like ε where clutches hold",
+    "The error of explicit runs falls like ε while clutches stick",
     kind="order",
     resolution=0.1,
     note=f"{at_each('ε in m/s', EPSILONS)}. {OF_ORDER}",
 )
 def order_in_epsilon(engine: Engine) -> Measured:
-    """Compare the power of ε with 1, before a clutch lets go: how late it is then has a logarithm of ε in it."""
+    """Compare the exponent of ε with 1 before the first release, whose delay contains a logarithm of ε."""
     _check_has_epsilon(engine)
     times = SHOWN[(SHOWN > ALL_SLIP_UNTIL + 0.01) & (SHOWN < LETS_GO_FROM)]
     return _order(EPSILONS, _explicit(engine), times, next_term=1.0)
@@ -244,7 +244,7 @@ def order_in_epsilon(engine: Engine) -> Measured:
     note=f"{at_each('step in s', STEPS)}; ε = {SMALL_EPSILON:g} m/s. {OF_ORDER}",
 )
 def order_in_step(engine: Engine) -> Measured:
-    """Compare the power of the step with 2."""
+    """Compare the exponent of the step with 2."""
     _check_has_epsilon(engine)
     runs = [_implicit(engine, float(step)) for step in STEPS]
     return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], next_term=1.0, predicted=2.0)
@@ -267,7 +267,7 @@ def _order(
 
 OF_PUBLISHED = (
     "Published by the Modelica Association: Dymola 2020x, DASSL. Numerical error: "
-    f"{ACCUMULATED:g} times its tolerance of {PUBLISHED_TOLERANCE:g}, over the largest of its kind."
+    f"{ACCUMULATED:g} times its relative tolerance of {PUBLISHED_TOLERANCE:g}, times the largest value of its kind."
 )
 SLIPS = tuple(f"slip of clutch {i}" for i in range(1, len(INERTIAS)))
 
@@ -279,12 +279,12 @@ def _published(values: FloatArray, predicted: FloatArray, components: tuple[str,
 
 
 @STUDY.claim(
-    "Modelica's published speeds of CoupledClutches are the exact ones",
+    "Modelica's published speeds of CoupledClutches equal the exact speeds",
     kind="trajectory",
     basis="independent",
     unit="rad/s",
     resolution=1e-3,
-    note=f"Where they part most. {OF_PUBLISHED}",
+    note=f"Where they differ most. {OF_PUBLISHED}",
     named={"published speed": 0},
 )
 def published_speeds() -> Measured:
@@ -294,15 +294,15 @@ def published_speeds() -> Measured:
 
 
 @STUDY.claim(
-    "Modelica's published angles of CoupledClutches are the exact ones",
+    "Modelica's published angles of CoupledClutches equal the exact angles",
     kind="trajectory",
     basis="independent",
     unit="rad",
     resolution=1e-3,
-    note=f"Where they part most. {OF_PUBLISHED}",
+    note=f"Where they differ most. {OF_PUBLISHED}",
 )
 def published_angles() -> Measured:
-    """Compare the published angle of the first rotor, and those between neighbours, with the exact ones."""
+    """Compare the published angles of the first rotor and between neighbours with the exact ones."""
     predicted = first_and_slips(exact().states(published().times)[0])
     return _published(
         published().angles, predicted, ("angle of rotor 1", *(f"angle of {one}" for one in SLIPS))
@@ -310,14 +310,14 @@ def published_angles() -> Measured:
 
 
 @STUDY.claim(
-    "Modelica's published clutches begin to hold and let go at the exact times",
+    "Modelica's published clutches stick and release at the exact times",
     basis="independent",
     unit="s",
     resolution=1e-3,
     note=OF_PUBLISHED,
 )
 def published_switches() -> Measured:
-    """Compare the times at which a published mode changes with those of the events."""
+    """Compare the times of changes of a published mode with the times of the events."""
     times, modes = published().times, published().modes
     found = []
     for time, clutch, mode in switches():
@@ -330,14 +330,14 @@ def published_switches() -> Measured:
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
-# --- Figure of the coupled clutches: speeds, what runs are off by, and how that falls.
+# --- Figure of the coupled clutches: speeds and errors of the runs
 
 EXACT = 1e-7
-"""In rad/s: below this the axis of errors ends."""
+"""In rad/s: lower end of the axis of errors."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there."""
+    """Draw the available data."""
     return {"coupled-clutches": _draw(data)} if data else {}
 
 
@@ -358,12 +358,12 @@ def _draw(data: ByEngine) -> Figure:
     for time, clutch, mode in switches():
         for panel in (speeds, errors):
             panel.axvline(time, color=GREY, linewidth=0.6, linestyle="-" if mode == STUCK else ":")
-        words = f"{clutch + 1} {'holds' if mode == STUCK else 'lets go'}"
+        words = f"{clutch + 1} {'sticks' if mode == STUCK else 'releases'}"
         speeds.annotate(words, (time, 10.6), rotation=90, ha="right", va="top", fontsize=8.0, color="0.3")
     speeds.set(ylabel="speed in rad/s", ylim=(-0.3, 10.8))
     errors.set(
         xlabel=axis("t", "s"),
-        ylabel="largest error of a speed\nin rad/s",
+        ylabel="largest speed error\nin rad/s",
         yscale="log",
         ylim=(EXACT, 0.1),
         xlim=(0.0, 1.5),
@@ -374,7 +374,7 @@ def _draw(data: ByEngine) -> Figure:
 
 
 def _error(panel: Axes, t: np.ndarray, off: np.ndarray, label: str, colour: str) -> None:
-    """Draw the largest of what speeds are off by."""
+    """Draw the largest error of the speeds."""
     panel.plot(t, np.maximum(np.max(np.abs(off), axis=1), EXACT), color=colour, linewidth=1.0, label=label)
 
 

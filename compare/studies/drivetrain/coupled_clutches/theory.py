@@ -1,4 +1,4 @@
-"""The exact motion, and the published one."""
+"""The exact and the published motion, and the rotors in Exudyn."""
 
 from __future__ import annotations
 
@@ -15,69 +15,69 @@ from numpy.typing import NDArray
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
-# --- Modelica.Mechanics.Rotational.Examples.CoupledClutches, as its sources have it, and how finely it is run.
+# --- Parameters of Modelica.Mechanics.Rotational.Examples.CoupledClutches, from its sources, and of the runs
 
 INERTIAS = (1.0, 1.0, 1.0, 1.0)
-"""In kg m²."""
+"""Inertias of the rotors in kg m²."""
 
 SPEED = 10.0
-"""Of the first rotor at the start in rad/s; the others rest."""
+"""Initial speed of the first rotor in rad/s; the others are at rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
-"""Amplitude in N m and frequency in Hz of what acts on the first rotor."""
+"""Amplitude in N m and frequency in Hz of the torque on the first rotor."""
 
 RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
-"""The clutches' cgeo in m, their coefficient of sliding friction, their peak, and the largest load in N."""
+"""Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load in N of each clutch."""
 
 OPENS = 0.2
-"""Frequency in Hz of the cosine by which the load of the first clutch falls, and is 0 from its first root on."""
+"""Frequency in Hz of the cosine that unloads the first clutch; the load stays 0 after its first root."""
 
 OPEN_FROM = 0.25 / OPENS
 ENGAGED_FROM = (0.4, 0.9)
-"""In s, of the second and the third clutch, with the whole load at once."""
+"""In s, when the second and the third clutch receive the whole load at once."""
 
 BREAKS = (*ENGAGED_FROM, OPEN_FROM)
 UNTIL = 1.5
-"""In s."""
+"""End of the motion in s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
-"""When speeds are compared, in s: not at 1 s, 0.3 ms before a clutch lets go, but 5 ms from any event or more."""
+"""Times of the compared speeds in s, at least 5 ms from any event. A clutch releases 0.3 ms after 1 s."""
 
 EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""In m/s, at the radius of 1 m: rad/s."""
+"""In m/s, which at the radius of 1 m equals rad/s."""
 
 TOLERANCE = 1e-9
-"""Of explicit steps, in rad/s: a millionth of what the smallest ε changes."""
+"""Tolerance of explicit steps in rad/s, a millionth of the effect of the smallest ε."""
 
 SMALL_EPSILON = 1e-5
-"""In m/s, of implicit steps: it changes a tenth of what the shortest of ``STEPS`` does, or less."""
+"""ε of implicit runs in m/s. Its effect is at most a tenth of the effect of the shortest of ``STEPS``."""
 
 STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""Of implicit runs, in s."""
+"""Steps of implicit runs in s."""
 
 ALL_SLIP_UNTIL = 0.7
-"""In s: a time of ``SHOWN`` up to which all clutches that are closed slip."""
+"""In s, one of ``SHOWN``; up to this time all closed clutches slip."""
 
 LETS_GO_FROM = 0.82
-"""In s, after the second clutch holds and the first one does, and before that lets go."""
+"""In s, a time while the first and the second clutch stick, before the first one releases."""
 
 NUMERICAL_DAMPING = 0.8
-"""The spectral radius of generalised-α: below 1, so that what a jump of friction excites dies away."""
+"""Spectral radius of generalised-α, below 1 to damp out vibrations that a jump of friction excites."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
-"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector: all errors double from one to the next.
+"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector. All errors double from each to the next.
 
-The bristle's damping in N m s/rad is twice the root of its stiffness, the critical one of a rotor of 1 kg m².
+The damping of the bristle in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
 """
 
 DECAY = 1e-4
-"""In rad/s: over which slip static friction of that connector falls to the sliding one."""
+"""Range of slip in rad/s where the friction of that connector falls from its static to its sliding value."""
 
 PUBLISHED_TOLERANCE = 1e-6
-"""Relative, with which the published result was integrated, by DASSL."""
+"""Relative tolerance of DASSL in the published result."""
 
 ACCUMULATED = 10.0
-"""By how much larger than the tolerance, which is that of a step, the error of the whole motion is taken to be."""
+"""Assumed ratio of the error of the whole motion to the tolerance of a step."""
 
 
 def first_load(time: float) -> float:
@@ -132,7 +132,7 @@ def exact() -> Motion:
 
 @functools.cache
 def switches() -> list[tuple[float, int, int]]:
-    """Return time in s, clutch and new mode where a clutch begins to hold, or lets go, by friction alone."""
+    """Return times in s, clutch numbers and new modes of all events that friction alone causes."""
     found = [
         (time, clutch, mode)
         for clutch in range(len(INERTIAS) - 1)
@@ -144,7 +144,7 @@ def switches() -> list[tuple[float, int, int]]:
 
 @dataclass(frozen=True)
 class Published:
-    """The published times in s, speeds in rad/s and angles in rad of the first rotor and of each slip, and modes."""
+    """Published times in s, modes, and speeds (rad/s) and angles (rad) of the first rotor and of each slip."""
 
     times: FloatArray
     speeds: FloatArray
@@ -154,7 +154,7 @@ class Published:
 
 @functools.cache
 def published() -> Published:
-    """Return every tenth row of the published result, and those beside its events.
+    """Return every tenth row of the published result, and the rows next to its events.
 
     Source: Modelica Association, MAP-LIB_ReferenceResults, Modelica.Mechanics.Rotational.Examples.CoupledClutches,
     Dymola 2020x, DASSL at a tolerance of 1e-6.
@@ -175,39 +175,39 @@ def published() -> Published:
 
 
 def first_and_slips(values: FloatArray) -> FloatArray:
-    """Return the first rotor's and the differences of neighbours from what each rotor has, both of shape (n, 4)."""
+    """Return values of the first rotor and differences between neighbours, shape (n, 4) like ``values``."""
     return np.column_stack((values[:, 0], np.diff(values, axis=1)))
 
 
-# --- The four rotors in Exudyn: with our contact, and with Exudyn's own connector with bristles.
+# --- The four rotors in Exudyn, with our contact and with Exudyn's own connector with bristles
 
 
 @dataclass(frozen=True)
 class Run:
-    """Speeds of the rotors in rad/s, shape (n, 4), after each step, at ``times`` in s."""
+    """Speeds of the rotors in rad/s, shape (n, 4), at the ``times`` in s of all steps."""
 
     times: FloatArray
     speeds: FloatArray
 
     def at(self, times: FloatArray) -> FloatArray:
-        """Return the speeds at other times, of which a run from break to break has those of the breaks twice."""
+        """Return the interpolated speeds at other times. The run contains each break twice."""
         return np.column_stack([np.interp(times, self.times, speed) for speed in self.speeds.T])
 
     @property
     def slips(self) -> FloatArray:
-        """Of the clutches in rad/s, shape (n, 3)."""
+        """Slips of the clutches in rad/s, shape (n, 3)."""
         return np.diff(self.speeds, axis=1)
 
 
 class _Rotors:
-    """The rotors, the torque on the first one, and a sensor of each speed."""
+    """The rotors with a speed sensor on each, and the torque on the first one."""
 
     def __init__(self) -> None:
         import exudyn as exu
         import exudyn.itemInterface
 
         items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # lives as long as its model
+        self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.markers, self.sensors = [], [], []
         for inertia, speed in zip(INERTIAS, (SPEED, 0.0, 0.0, 0.0), strict=True):
@@ -227,7 +227,7 @@ class _Rotors:
         self.mbs.AddLoad(drive)
 
     def settings(self, step: float, begin: float = 0.0, end: float = UNTIL) -> Any:
-        """Return the settings of a run with steps of ``step`` in s."""
+        """Return the settings of a run with this ``step`` in s."""
         import exudyn as exu
 
         settings = exu.SimulationSettings()
@@ -250,10 +250,10 @@ class _Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` in s with ``add_ring_friction`` at ε in m/s, explicit or by steps of ``step`` in s.
+    """Return the run to ``until`` in s with ``add_ring_friction`` at ε in m/s.
 
-    Such steps are implicit. It ends, and goes on, at the times of ``SHOWN`` too: speeds there are the run's own, and
-    not interpolated.
+    The run takes implicit steps of ``step`` in s, or explicit steps if there is no ``step``. It also stops at the
+    times ``SHOWN``, so speeds there are not interpolated.
     """
     import exudyn as exu
 
@@ -282,10 +282,10 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
 
 
 def with_bristles(step: float, stiffness: float) -> Run:
-    """Return the run with Exudyn's own connector, of bristle ``stiffness`` in N m/rad, by steps of ``step`` in s.
+    """Return the run with Exudyn's own connector, for a bristle ``stiffness`` in N m/rad and a ``step`` in s.
 
-    It has no load: its torques are set before each step, which leaves slip of second order in the step. A clutch
-    without load is switched off, since its bristle would go on to hold on to where it stuck last.
+    The connector has no input for the load, so a function sets its torques before each step. The resulting slip is
+    of second order in the step. A clutch without load is switched off, because its bristle would keep its grip.
     """
     import exudyn as exu
     import exudyn.itemInterface

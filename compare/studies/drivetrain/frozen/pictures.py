@@ -1,4 +1,4 @@
-"""Figures of the drivetrain at frozen speeds: places of rest, whirls, the map of modulation and a modulated whirl."""
+"""Figures of the drivetrain at frozen speeds: positions of rest, whirls, maps of modulation and a modulated whirl."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from compare.studies.toolkit.drivetrain_bench import passenger_car
 MM = 1e3
 
 NO_WHIRL = "#d0d0d0"
-"""Hatched, so that it is not taken for a growth of zero."""
+"""The hatching distinguishes it from a growth of zero."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there."""
+    """Draw the available data."""
     figures = {}
     if engines_in(data):
         figures["drivetrain-steady"] = draw_steady(data)
@@ -38,7 +38,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_steady(data: ByEngine) -> Figure:
-    """Draw where the disc rests below the onset, and radius and frequency of its whirl above."""
+    """Draw the positions of rest below the onset, and radius and frequency of the whirl above it."""
     figure, (place, radius, frequency) = new_figure(ncols=3, width=13.0, height=4.0, width_ratios=(1.1, 1, 1))
     car = passenger_car()
     x0 = MM * car.offset
@@ -86,7 +86,7 @@ def draw_steady(data: ByEngine) -> Figure:
 
 
 def draw_maps(theory: Data) -> Figure:
-    """Draw growth and decay of the modulation, and where the whirl is on the stop or the clutch locks up."""
+    """Draw the growth rate of the modulation, and where the disc touches the stop or the clutch locks up."""
     from matplotlib.colors import SymLogNorm
 
     figure, (left, right) = new_figure(ncols=2, width=12.0, height=4.4, sharey=True)
@@ -108,28 +108,28 @@ def draw_maps(theory: Data) -> Figure:
         ylabel="torque in N m",
         title=f"Load {100.0 * SURPLUS:.0f} % more than the torque needs",
     )
-    right.set(xscale="log", xlabel="surplus of load over what the torque needs", title=f"{SPEED:.0f} rpm")
+    right.set(xscale="log", xlabel="relative surplus of the load", title=f"{SPEED:.0f} rpm")
     for panel, words, where, colour in (
         (left, "no whirl: the clutch locks up", (0.05, 0.62), BLACK),
         (left, "on the stop", (0.62, 0.42), "white"),
-        (left, "in the play, modulated", (0.42, 0.12), "white"),
-        (left, "in the play,\nsteady", (0.05, 0.12), "white"),
+        (left, "within the play, modulated", (0.42, 0.12), "white"),
+        (left, "within the play,\nsteady", (0.05, 0.12), "white"),
         (right, "no whirl: the clutch locks up", (0.5, 0.85), BLACK),
         (right, "on the stop", (0.4, 0.745), BLACK),
-        (right, "in the play, modulated", (0.12, 0.25), BLACK),
+        (right, "within the play, modulated", (0.12, 0.25), BLACK),
     ):
         panel.annotate(words, where, xycoords="axes fraction", color=colour)
     speed, torque, surplus = MODULATED
     left.plot(speed, torque, "*", color=BLACK, markersize=10.0)
     right.plot(surplus, torque, "*", color=BLACK, markersize=10.0)
-    bar = figure.colorbar(mesh, ax=[left, right], label="growth of the modulation in 1/s")
+    bar = figure.colorbar(mesh, ax=[left, right], label="growth rate of the modulation in 1/s")
     bar.set_ticks([-1.0, -1e-1, -1e-2, 0.0, 1e-2, 1e-1, 1.0])
     bar.set_ticklabels(["−1", "−0.1", "−0.01", "0", "0.01", "0.1", "1"])
     return figure
 
 
 def draw_modulated(data: ByEngine) -> Figure:
-    """Draw radius and slip of the modulated whirl, as they grow into a cycle on the stop."""
+    """Draw how radius and slip of the modulated whirl grow into a cycle on the stop."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=4.6, sharex=True)
     car = passenger_car()
     for engine in engines_in(data):

@@ -1,4 +1,4 @@
-"""The steady motion of the drivetrain, and the onset of its vibrations."""
+"""Claims: steady motion of the drivetrain and onset of its vibrations."""
 
 from __future__ import annotations
 
@@ -39,28 +39,28 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 
-# --- The speed above which the clutch disc does not stay on the engine's axis: closed form, reference and Exudyn.
+# --- Onset speed, where the disc leaves the engine's axis: closed form, reference and Exudyn
 
 IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
 
 NAMED = {f"onset at {words}": i for i, words in enumerate(IN_WORDS)}
 
 ONSET_NOTE = (
-    "D = μN·∂F/∂U at U = 0, averaged over the facings, is their damping of small motions, which turns with the "
-    "flywheel. The zero of the real part of the radial eigenvalue over ω; numerical error: rounding of that "
-    "eigenvalue, by its condition, over the slope."
+    "D = μN·∂F/∂U at U = 0, averaged over the facings, is the damping of small motions by friction; it turns with "
+    "the flywheel. The onset is the zero of the real part of the radial eigenvalue over ω. Numerical error: "
+    "rounding of that eigenvalue, from its condition number, divided by the slope."
 )
 
 
 @STUDY.claim(
-    "Exudyn's linearisation of the whole drivetrain: the centred disc becomes unstable at ω = k(1 + β/D)",
+    "By Exudyn's linearisation of the whole drivetrain, the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
     note=ONSET_NOTE,
     named=NAMED,
 )
 def loses_stability(engine: Engine) -> Measured:
-    """Compare what Exudyn's linearisation says; the flywheel is the car's own, free to turn."""
+    """Compare the onset in Exudyn's linearisation, where the car's flywheel turns freely."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
@@ -81,14 +81,14 @@ def loses_stability(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The reference's eigenvalues of the reduced disc: the centred disc becomes unstable at ω = k(1 + β/D)",
+    "By the reference's eigenvalues of the reduced disc, the centred disc becomes unstable at ω = k(1 + β/D)",
     unit="rad/s",
     resolution=1e-9,
     note=ONSET_NOTE,
     named=NAMED,
 )
 def reduced_disc_loses_stability() -> Measured:
-    """Compare what the reference says of the reduced disc."""
+    """Compare the onset of the reference's reduced disc."""
     car = centred_car()
 
     def matrix(speed: float, slip: float, torque: float) -> FloatArray:
@@ -117,7 +117,7 @@ def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
 
 
 def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float) -> tuple[float, float]:
-    """Return at which speed the eigenvalue nearest to ``frequency`` has no real part, and the error."""
+    """Return the speed of zero real part of the eigenvalue nearest to ``frequency``, and its error."""
 
     def radial(speed: float) -> tuple[float, float]:
         balanced, _ = matrix_balance(matrix(speed))
@@ -132,23 +132,23 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
     return speed, 2.0 * radial(speed)[1] / slope
 
 
-# --- Steady motions of the clutch disc on the bench against those of the reference's reduced disc.
+# --- Steady motions of the clutch disc on the bench and of the reference's reduced disc
 #
-# With the shaft's axis beside the engine's the disc comes to rest in space below the onset; with both on one
-# line it whirls on its stop above.
+# Below the onset and with an offset of the shaft from the engine, the disc comes to rest in space. Above the onset
+# and without offset, it whirls on its stop.
 
 NOTE = (
     f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
-    "slowest mode. Numerical error: the change at a smaller tolerance, what is left of the transient by its "
-    f"change in the last {theory.SEEN:g} decay times, and of the prediction the change with finer rings of the "
-    "annulus; the largest counts for all, since one alone may be right by chance."
+    "slowest mode. Numerical error: the change at a smaller tolerance, the remaining transient according to its "
+    f"change in the last {theory.SEEN:g} decay times, and the change of the prediction with finer rings of the "
+    "annulus. The largest error counts for all values, because a single small one may be a coincidence."
 )
 
 
 class Steady(NamedTuple):
-    """A steady motion on the bench at ``speed`` in rpm, and what the reference says of it; shape (3,) each.
+    """A steady motion on the bench at ``speed`` in rpm, measured and predicted by the reference, shape (3,) each.
 
-    x and y in m, or in a whirl radius in m and frequency in rad/s, and the slip in rad/s.
+    The values are x and y in m, or for a whirl the radius in m and the frequency in rad/s, and the slip in rad/s.
     """
 
     speed: float
@@ -157,7 +157,7 @@ class Steady(NamedTuple):
 
 
 @STUDY.claim(
-    "Below the onset the clutch disc comes to rest in space where the reference's reduced disc does",
+    "Below the onset, the clutch disc comes to rest in space at the position of the reference's reduced disc",
     unit="m",
     note=NOTE,
 )
@@ -174,7 +174,7 @@ def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
 
 
 @STUDY.claim(
-    "Above the onset the clutch disc whirls on its stop, on the circle of the reference's reduced disc",
+    "Above the onset, the clutch disc whirls on its stop with the radius of the reference's reduced disc",
     unit="m",
     note=NOTE,
 )
@@ -185,7 +185,7 @@ def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
 
 
 @STUDY.claim(
-    "Above the onset the clutch disc whirls with the frequency of the reference's reduced disc",
+    "Above the onset, the clutch disc whirls at the frequency of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
 )
@@ -195,7 +195,7 @@ def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measur
 
 
 @STUDY.claim(
-    "At rest in space and in the whirl the clutch disc slips as the reference's reduced disc does",
+    "At rest in space and in the whirl, the clutch disc has the slip of the reference's reduced disc",
     unit="rad/s",
     note=NOTE,
 )
@@ -214,7 +214,7 @@ def _measured(
     components: Sequence[str] = (),
     data: Mapping[str, ArrayLike] | None = None,
 ) -> Measured:
-    """Compare the quantities at ``place``, of the disc with ``offset`` in m."""
+    """Compare the values at index ``place`` for a disc with ``offset`` in m."""
     predicted = np.array([one.predicted.value[place] for one in motions])
     return Measured(
         predicted=predicted,
@@ -236,7 +236,7 @@ def _shown(motions: Sequence[Steady]) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
-    """Return the states of rest at ``speeds`` in turns a minute, with the car's offset."""
+    """Return the states of rest at ``speeds`` in rpm, with the car's offset."""
     car = theory.balanced_car()
 
     def one(speed: float) -> Steady:
@@ -255,7 +255,7 @@ def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
 
 @functools.lru_cache(maxsize=2)
 def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
-    """Return the whirls at ``speeds`` in turns a minute, without offset."""
+    """Return the whirls at ``speeds`` in rpm, without offset."""
     car = theory.balanced_car()
 
     def one(speed: float) -> Steady:
@@ -273,7 +273,7 @@ def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
 
 
 def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
-    """Return ``quantities(rings)`` of the reference, and the change with finer rings as their error."""
+    """Return ``quantities(rings)`` of the reference, with the change for finer rings as error."""
     found = quantities(RINGS)
     return Measurement(found, np.abs(found - quantities(theory.FINER)))
 
@@ -281,9 +281,9 @@ def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
 def _settled(
     car: Drivetrain, operation: Operation, rate: float, start: complex, *, whirling: bool
 ) -> Measurement:
-    """Return x, y and slip, or in a whirl radius, frequency and slip, when all that decays has.
+    """Return x, y and slip, or for a whirl radius, frequency and slip, after all transients.
 
-    ``rate`` in 1/s is that of the slowest mode.
+    ``rate`` in 1/s is the decay rate of the slowest mode.
     """
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:

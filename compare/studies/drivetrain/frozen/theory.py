@@ -1,9 +1,9 @@
-"""What the reference says of the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
+"""Predictions of the reference for the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
 
-The small motions have five coordinates: x and y of the disc's centre, its angle φ, that of the engine θ and that of
-the vehicle ψ. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates; the
-transpose of that map puts friction on the disc and its whole reaction, the moment −(M + z×F), on the engine. In axes
-that turn with the whirl its state rests, so that its stability is an eigenvalue problem.
+The small motions have five coordinates: x and y of the disc's centre, its angle φ, the angle θ of the engine and ψ of
+the vehicle. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The
+transpose of this map applies friction to the disc and its whole reaction, the moment −(M + z×F), to the engine. In
+axes that turn with the whirl, the whirl is a fixed point, so its stability is an eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel
 
 
-# --- At which speeds, torques and loads the car's clutch is looked at, and how exactly.
+# --- Speeds, torques and loads of the car's clutch, and accuracy
 
 
 def balanced_car() -> Drivetrain:
@@ -50,78 +50,78 @@ def balanced_car() -> Drivetrain:
 
 
 FINER = 24
-"""Rings of the reference's annulus, in place of 16, which show their error."""
+"""Rings of the reference's annulus instead of 16, to estimate their error."""
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
-"""Torque in N m and slip in rad/s at which the onset is sought."""
+"""Torque in N m and slip in rad/s for each onset."""
 
 TORQUE, SLIPPING = 80.0, 12.0
-"""N m and rad/s of the bench: about what the run-up has."""
+"""Torque in N m and slip in rad/s on the bench, similar to the run-up."""
 
 BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
-"""Speeds of the bench in turns a minute, below and above the onset."""
+"""Speeds of the bench in rpm, below and above the onset."""
 
 DECAYS, SEEN = 20.0, 5.0
-"""Length of a run in decay times of its slowest mode, and how many of them before its end the rest is inferred."""
+"""Length of a run in decay times of its slowest mode, and how many of them show the remaining transient."""
 
 START = 3e-4
-"""In m: from where a whirl starts, at rest and within the play."""
+"""Initial position in m of a whirl, at rest and within the play."""
 
 SAMPLE = 5e-4
-"""In s, on the bench."""
+"""Sampling interval on the bench in s."""
 
 MODULATED = (6000.0, 0.6, 0.1)
-"""Speed in turns a minute, torque in N m, and by how much the load is more than the torque needs."""
+"""Speed in rpm, torque in N m, and relative surplus of the load over the load that this torque needs."""
 
 WHIRLS = (MODULATED, (3800.0, 1.3, 0.05), (4500.0, 8.0, 0.01))
-"""The same: the second whirl is not modulated, the third is on the stop."""
+"""More whirls with such values. The second is not modulated, the third touches the stop."""
 
 BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
-"""Of load, and torques in N m: from a small whirl to one that all but reaches the stop."""
+"""Relative surplus of the load, and torques in N m, from a small whirl to one that almost reaches the stop."""
 
 BETWEEN = (3900.0, 4300.0)
-"""Speeds in turns a minute below and above the border."""
+"""Speeds in rpm below and above the border."""
 
 TIME = 0.4
-"""In s: for how long small deviations are followed."""
+"""Duration in s of the runs with small deviations."""
 
 DEVIATION = 3e-3
-"""As a part of the radius."""
+"""Initial deviation relative to the radius."""
 
 TOLERANCE = 20 * WORKING
-"""Of the runs that are subtracted from each other."""
+"""Tolerance of the runs whose difference is taken."""
 
 PUSH, UNTIL = 0.2, 6.0
-"""The same of the modulated motion: first deviation, and when it ends, in s."""
+"""For the modulated motion: initial deviation relative to the radius, and end in s."""
 
 ROUGHER = 80.0
-"""Its tolerance over the usual one."""
+"""For the modulated motion: ratio of its tolerance to the usual one."""
 
 CYCLE_SAMPLE = 2e-3
-"""In s, of the modulated motion."""
+"""Sampling interval of the modulated motion in s."""
 
 SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""Of the map in turns a minute, from just above the natural frequency."""
+"""Speeds of the map in rpm, from just above the natural frequency."""
 
 TORQUES = np.geomspace(0.2, 60.0, 32)
-"""Of the maps in N m."""
+"""Torques of the maps in N m."""
 
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
-"""Of the load, over what the torque needs."""
+"""Relative surplus of the load over the load that the torque needs."""
 
 SURPLUS, SPEED = 0.1, 6000.0
-"""Of the map over speeds, and of that over surpluses."""
+"""Surplus in the map over speeds, and speed in rpm in the map over surpluses."""
 
 
 ENGINE, VEHICLE, ANGLE = 0, 1, 4
-"""Places of θ, ψ and φ among the coordinates; x and y lie between them."""
+"""Indices of θ, ψ and φ among the coordinates; x and y lie between them."""
 
 CENTRE = slice(2, 4)
 
 
 @dataclass(frozen=True)
 class CarWhirl:
-    """A steady whirl of the clutch disc in a car whose engine and load both give a constant torque.
+    """A steady whirl of the clutch disc in a car whose engine and load both have a constant torque.
 
     Parameters
     ----------
@@ -130,9 +130,9 @@ class CarWhirl:
     radius : float
         ρ in m.
     friction_force, torque : float
-        μN of both facings in N, and what the load takes, in N m.
+        μN of both facings in N, and torque of the load in N m.
     engine_torque : float
-        In N m: the engine drives the whirl too, with the moment ρ·βκρ of friction about its axis.
+        In N m. The engine also drives the whirl, with the moment ρ·βκρ of friction about its axis.
 
     """
 
@@ -146,23 +146,23 @@ class CarWhirl:
 
     @property
     def place(self) -> complex:
-        """Of the centre at the start, in m."""
+        """Initial position of the centre in m."""
         return complex(self.radius)
 
     @property
     def velocity(self) -> complex:
-        """Of the centre at the start, in m/s."""
+        """Initial velocity of the centre in m/s."""
         return 1j * self.frequency * self.radius
 
 
 def whirl_under_surplus(
     car: Drivetrain, engine_speed: float, torque: float, surplus: float
 ) -> CarWhirl | None:
-    """Return the whirl of a clutch pressed by a factor of 1 + ``surplus`` more than the torque needs, or None.
+    """Return the whirl of a clutch whose load exceeds the load that the torque needs by ``surplus``, or None.
 
-    A centred disc under that load would lock up. The whirl takes a part of the moment of friction away: the slip of
-    the centre over that of the rim is such that M(U, S) is what the torque needs. This ratio gives the force, the
-    force the radius, ρ·β·κ(ρ) = μN·F, and that the slip: S = (ω − κ)ρ over the ratio.
+    A centred disc would lock up under this load. The whirl reduces the friction moment: the ratio of the slip U of
+    the centre to the slip S of the rim is such that M(U, S) equals the torque. This ratio determines the force, and
+    the force determines the radius, ρ·β·κ(ρ) = μN·F. The slip is then S = (ω − κ)ρ, divided by the ratio.
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)
@@ -185,7 +185,7 @@ def whirl_under_surplus(
 
 @functools.lru_cache(maxsize=64)
 def _ratio_of_moment(law: Annulus, needed: float) -> float:
-    """Return U/S in m at which the moment per newton is ``needed`` (m)."""
+    """Return the ratio U/S in m for the moment ``needed`` per unit of friction force (m)."""
     widest = 10.0 * law.outer_radius
     return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
 
@@ -196,7 +196,7 @@ def support_of(car: Drivetrain) -> Support:
 
 
 def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = 16) -> FloatArray:
-    """Return A of the small motions (θ, ψ, x, y, φ and rates), shape (10, 10), when the centre is on the x axis."""
+    """Return A of small motions (θ, ψ, x, y, φ and rates), shape (10, 10), with the centre on the x axis."""
     x, omega, law = whirl.radius, whirl.engine_speed, facings(car, rings)
     place_to_slip, rate_to_slip = np.zeros((3, 5)), np.zeros((3, 5))  # of u_x, u_y, S
     place_to_slip[:2, CENTRE] = -omega * QUARTER_TURN
@@ -206,7 +206,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = 16) -> FloatA
     slip = 1j * (whirl.frequency - omega) * x
     force, _ = law.force_and_moment(slip, whirl.slip, 0.0)
     changes = whirl.friction_force * law.jacobian(slip, whirl.slip, 0.0)[:, :3]
-    # The moment on the disc is that with which friction resists S: as a force that belongs to S it counts negative.
+    # Friction resists S with the moment on the disc. As a generalised force of S, this moment has a negative sign.
     put = rate_to_slip.T @ np.diag([1.0, 1.0, -1.0])
     stiffness, damping = -put @ changes @ place_to_slip, -put @ changes @ rate_to_slip
     fx, fy = whirl.friction_force * force.real, whirl.friction_force * force.imag
@@ -227,19 +227,19 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = 16) -> FloatA
 def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
     """Return the matrix of small motions in axes that turn with ``frequency`` (rad/s), shape (8, 8).
 
-    The state is x, y, the twist φ − ψ, which is all that matters of the angles, and the rates of θ, ψ, x, y, φ.
+    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ. Only the twist of the angles has an effect.
     """
     turned = matrix.copy()
     for first in (2, 7):
         turned[first : first + 2, first : first + 2] -= frequency * QUARTER_TURN
-    turned[ANGLE] -= turned[VEHICLE]  # nothing depends on θ, nor on ψ but through the twist
+    turned[ANGLE] -= turned[VEHICLE]  # nothing depends on θ, and on ψ only through the twist
     return turned[2:, 2:]
 
 
 def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
-    """Return the six eigenvalues in 1/s that belong neither to the free phase nor to the free speed of the car.
+    """Return six eigenvalues in 1/s, without those of the free phase and the free speed of the car.
 
-    The one that decays slowest comes first.
+    The slowest decay comes first.
     """
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
@@ -253,12 +253,12 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return the lines of the steady motions, and where whirls are modulated; of all places one in ``every``."""
+    """Return the curves of steady motions and the maps of modulation, at one point in ``every``."""
     return _lines_of_reference(balanced_car(), every) | _maps_of_modulation(centred_car(), every)
 
 
 def _lines_of_reference(car: Drivetrain, every: int) -> Data:
-    """Return the reference's x, y at rest and radius, frequency of a whirl over the speed in turns a minute."""
+    """Return x, y at rest, and radius and frequency of a whirl, of the reference over the speed in rpm."""
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]
     fast = np.linspace(onset + 5.0, 6200.0, 25)[::every]
@@ -274,9 +274,9 @@ def _lines_of_reference(car: Drivetrain, every: int) -> Data:
 
 
 def _maps_of_modulation(car: Drivetrain, every: int) -> Data:
-    """Return growth rates in 1/s of the modulation over (torque, speed) and over (torque, surplus).
+    """Return growth rate (1/s) of the modulation and radius (m) over (torque, speed) and over (torque, surplus).
 
-    NaN where no whirl keeps the clutch from locking up. The radius in m, too, which tells whether it is on the stop.
+    NaN if the clutch locks up because there is no whirl. The radius shows whether the disc touches the stop.
     """
     speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
     return {
@@ -297,15 +297,15 @@ def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -
     return np.array([slowest.real, whirl.radius])
 
 
-# --- The car's drivetrain in Exudyn, in a whirl.
+# --- The car's drivetrain in Exudyn, in a whirl
 
 
 def build(
     car: Drivetrain, whirl: CarWhirl, *, deviation: float = 0.0, regularisation: float = EPSILON
 ) -> DrivetrainModel:
-    """Return the drivetrain in a whirl between an engine and a load of constant torque.
+    """Return the drivetrain in a whirl, with an engine and a load of constant torque.
 
-    The radius is larger by the part ``deviation``.
+    ``deviation`` enlarges the radius by this fraction.
     """
     from exudyn_models import build_drivetrain
 
@@ -323,7 +323,7 @@ def build(
     return model
 
 
-# --- The study that the claims are declared in.
+# --- The study of all claims
 
 STUDY = Study.beside(
     __file__,

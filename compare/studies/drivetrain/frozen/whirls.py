@@ -1,7 +1,7 @@
-"""The modulated whirl of the clutch disc: eigenvalues of the whole drivetrain, growth and the cycle that follows.
+"""The modulated whirl of the clutch disc: eigenvalues of the whole drivetrain, growth and the resulting cycle.
 
-A clutch that is pressed more than its torque needs may still slip, because a whirl takes a part of the moment of
-friction away. Slip and radius of such a whirl swing about each other, and where the map says so the swing grows.
+A clutch may slip although its load exceeds the load that its torque needs, because a whirl reduces the friction
+moment. Slip and radius of this whirl oscillate together; the map shows where the oscillation grows.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 Matrix = Callable[[theory.CarWhirl], FloatArray]
-"""Of the small motions about a whirl, see ``state_matrix_of``."""
+"""State matrix of small motions about a whirl, see ``state_matrix_of``."""
 
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
-    """Return the matrix by Exudyn's linearisation."""
+    """Return the state matrix from Exudyn's linearisation."""
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 
@@ -40,15 +40,15 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
 
 
 @STUDY.claim(
-    "Exudyn's linearisation about a whirl has the eigenvalues that the reference's law of friction gives",
+    "Exudyn's linearisation about a whirl has the eigenvalues that follow from the reference's friction law",
     unit="1/s",
     resolution=1e-9,
-    note="In axes that turn with the whirl. Of ten eigenvalues the six that do not belong to angles, phase and "
-    "speed, which are free. Friction of the reference enters by hand, with its whole reaction on the engine. "
+    note="In axes that turn with the whirl. Six of the ten eigenvalues; the other four belong to free angles, phase "
+    "and speed. The prediction contains the reference's friction with its whole reaction on the engine. "
     "Numerical error: the change with finer rings of the reference's annulus, and rounding.",
 )
 def linearised(engine: Engine) -> Measured:
-    """Compare the eigenvalues about three whirls."""
+    """Compare the eigenvalues of three whirls."""
     car = centred_car()
     by_exudyn = _by_exudyn(car)
     found, expected, errors = [], [], []
@@ -60,7 +60,7 @@ def linearised(engine: Engine) -> Measured:
         errors.append(np.max(np.abs(matched(finer, predicted) - predicted)))
     scale = max(abs(value) for values in expected for value in values)
     whirls = [
-        f"{speed:g} turns a minute with {torque:g} N m and {100.0 * surplus:g} % of load too much"
+        f"{speed:g} rpm with {torque:g} N m and {100.0 * surplus:g} % too much load"
         for speed, torque, surplus in theory.WHIRLS
     ]
     return Measured(
@@ -74,16 +74,16 @@ def linearised(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A whirl in the play is modulated above the speed where an eigenvalue by the reference's friction is imaginary",
-    unit="turns a minute",
+    "A whirl within the play is modulated above the speed at which the reference's eigenvalue becomes unstable",
+    unit="rpm",
     resolution=1.0,
-    note=f"With {100.0 * theory.BORDER_SURPLUS:g} % of load too much. Measured: the speed at which Exudyn's "
+    note=f"With {100.0 * theory.BORDER_SURPLUS:g} % too much load. Measured: the speed at which Exudyn's "
     "linearisation about the whirl has an imaginary eigenvalue. Numerical error: rounding of both eigenvalue "
     "problems, and the change with finer rings of the reference's annulus.",
     named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
 )
 def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
-    """Compare the speeds above which the modulation grows, sought ``between`` two (turns a minute)."""
+    """Compare the speeds above which the modulation grows; the search lies ``between`` two speeds in rpm."""
     car = centred_car()
 
     def borders(matrix: Matrix) -> FloatArray:
@@ -104,7 +104,7 @@ def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Mea
 def _border(
     car: Drivetrain, matrix: Matrix, torque: float, between: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return the speed in turns a minute, and its error by the rounding of the eigenvalue; NaN if there is none."""
+    """Return the speed in rpm and its error from rounding of the eigenvalue; NaN if there is none."""
 
     def growth(speed: float) -> tuple[float, float]:
         whirl = theory.whirl_under_surplus(car, speed * RPM, torque, theory.BORDER_SURPLUS)
@@ -123,14 +123,14 @@ def _border(
 
 
 @STUDY.claim(
-    "Small deviations from a whirl in the play grow and turn with the eigenvalue of its modulation",
+    "Small deviations from a whirl within the play grow and oscillate with the eigenvalue of its modulation",
     unit="1/s",
     note=f"Two runs that start {100.0 * theory.DEVIATION:g} % of the radius outside and inside of the whirl; the "
-    f"part of their difference that belongs to the mode, after {theory.TIME:g} s. Numerical error: the change "
+    f"component of their difference in the mode, after {theory.TIME:g} s. Numerical error: the change "
     "with twice the deviation, and at a smaller tolerance.",
 )
 def growth(engine: Engine) -> Measured:
-    """Compare the eigenvalue with which deviations from the modulated whirl grow in a run."""
+    """Compare the eigenvalue of growing deviations from the modulated whirl in a run."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)
@@ -160,7 +160,7 @@ def growth(engine: Engine) -> Measured:
 
 
 def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
-    """Return the state in axes that turn with the whirl, as ``in_turning_axes`` orders it, at both ends, (2, 8)."""
+    """Return the initial and the final state in axes that turn with the whirl, ordered as in ``in_turning_axes``."""
     motion = build(car, whirl, deviation=deviation).run(
         theory.TIME, sample_every=theory.TIME, tolerance=tolerance
     )
@@ -176,13 +176,13 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
 
 
 @STUDY.claim(
-    "Energy is balanced in the modulated whirl of the clutch disc",
+    "The energy balance closes in the modulated whirl of the clutch disc",
     kind="conservation",
     resolution=1e-6,
-    basis="self-check",  # the model's own law of friction gives the heat
+    basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
-    """Check the energy of the modulated motion up to ``until`` s, and keep it for the figure."""
+    """Check the energy of the modulated motion up to ``until`` in s, and keep the motion for the figure."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     motions = [

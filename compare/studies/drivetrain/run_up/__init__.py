@@ -1,4 +1,4 @@
-"""The car's drivetrain runs up from idle to 6000 turns a minute while its clutch slips under control."""
+"""The car's drivetrain runs up from idle to 6000 rpm with a controlled slip of the clutch."""
 
 from compare.studies.drivetrain.run_up.pictures import animations, draw
 from compare.studies.drivetrain.run_up.study import STUDY

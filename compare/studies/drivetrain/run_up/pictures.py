@@ -32,26 +32,26 @@ MM = 1e3
 CYAN = "#58e0ff"
 
 OPEN = 0.7
-"""Angle in rad at which the cut of the cover faces the viewer."""
+"""Angle in rad that turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
-"""By which radial motion is enlarged in three dimensions."""
+"""Magnification of radial motion in the pictures."""
 
 SHOWN = (2000.0, 3100.0, 5000.0)
-"""Turns a minute of the pictures."""
+"""Speeds of the pictures in rpm."""
 
 FRAMES = 15
-"""Of each slow motion."""
+"""Number of frames of each slow motion."""
 
 SIZE = (330, 280)
-"""Width and height of a frame's drivetrain in pixels."""
+"""Width and height of the drivetrain in a frame, in pixels."""
 
 STEP = math.radians(48.0)
-"""By which the engine turns from one frame to the next."""
+"""Rotation of the engine per frame in rad."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there."""
+    """Draw the available data."""
     figures: dict[str, Figure] = {}
     if engines_in(data):
         figures["drivetrain-run-up"] = draw_run_up(data)
@@ -61,7 +61,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_run_up(data: ByEngine) -> Figure:
-    """Draw radius and slip over the engine's speed, with what the reference predicts at frozen speeds."""
+    """Draw radius and slip over the engine's speed, with the predictions of the reference at frozen speeds."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=6.0, sharex=True, height_ratios=(3, 1))
     car = passenger_car()
     for engine in engines_in(data):
@@ -75,7 +75,7 @@ def draw_run_up(data: ByEngine) -> Figure:
             color=colour,
             alpha=0.35,
             lw=0.0,
-            label=f"{engine}: least to largest",
+            label=f"{engine}: smallest to largest",
         )
         speed, least, largest = envelope(found, found["slip"])
         slip.fill_between(speed, least, largest, color=colour, alpha=0.5, lw=0.0)
@@ -104,7 +104,7 @@ def draw_run_up(data: ByEngine) -> Figure:
 
 
 def envelope(found: Data, values: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the speed in turns a minute, and least and largest value, in every second turn of the engine."""
+    """Return speed (rpm), smallest and largest value for every two turns of the engine."""
     angle, speed = found["engine"].T
     starts = np.unique(np.floor(angle / (4.0 * math.pi)), return_index=True)[1]
     middle = np.add.reduceat(speed, starts) / np.diff(np.append(starts, len(speed)))
@@ -112,7 +112,7 @@ def envelope(found: Data, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def draw_waterfall(data: ByEngine) -> Figure:
-    """Draw the spectrum of x + iy over the engine's speed; what circles backwards has a negative frequency."""
+    """Draw the spectrum of x + iy over the engine's speed; backward motion has a negative frequency."""
     engine = engines_in(data)[0]
     figure, (panel,) = new_figure(width=9.5, height=5.4)
     speed, orders, amplitude = order_spectrum(data[engine])
@@ -158,7 +158,7 @@ def draw_waterfall(data: ByEngine) -> Figure:
 
 
 def draw_pictures(data: ByEngine) -> Figure:
-    """Draw flywheel, disc and shaft below the onset, near it and in the whirl."""
+    """Draw the drivetrain below the onset, near resonance and in the whirl."""
     from exudyn_models.drivetrain.picture import draw_drivetrain
 
     found = data[engines_in(data)[0]]
@@ -180,7 +180,7 @@ def show(panel: Axes, image: Any, title: str) -> None:
 
 
 def time_of(found: Data, turns: float) -> float:
-    """Return when the engine reaches a speed in turns a minute, but for its ripple."""
+    """Return the time when the speed of the engine without its ripple reaches ``turns`` (rpm)."""
     angle, times = found["engine"][:, 0], found["times"]
     smooth = np.polyfit(times, angle, 4)
     return float(np.interp(turns * RPM, np.polyval(np.polyder(smooth), times), times))
@@ -195,7 +195,7 @@ def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
 
 
 def animations(data: ByEngine) -> dict[str, bytes]:
-    """Draw slow motions of some turns at three speeds: the drivetrain, and the orbit of the disc's centre."""
+    """Draw slow motions of two turns at three speeds: the drivetrain, and the orbit of the disc's centre."""
     if not engines_in(data):
         return {}
     from exudyn_models.drivetrain.picture import draw_drivetrain

@@ -1,4 +1,4 @@
-"""The car's drivetrain runs up from idle to 6000 turns a minute while its clutch slips under control."""
+"""The car's drivetrain runs up from idle to 6000 rpm with a controlled slip of the clutch."""
 
 from __future__ import annotations
 
@@ -29,46 +29,46 @@ from compare.studies.toolkit.drivetrain_bench import (
 )
 from reference_model.systems import FloatArray
 
-# --- The run-up: how the engine pulls, and how the slip of the clutch is held.
+# --- The run-up: torque of the engine and control of the slip
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 IDLE, TOP = 800.0, 6000.0
-"""In turns a minute."""
+"""Speeds in rpm."""
 
 TORQUE, RIPPLE = 100.0, 1.0
-"""Mean torque of the engine in N m, and what its firing order adds to it, as a part of the mean."""
+"""Mean torque of the engine in N m, and amplitude of its firing order relative to the mean."""
 
 SLIP, GAIN = 12.0, 0.05
-"""Slip to hold in rad/s, and by which part of itself the load grows with each rad/s too much."""
+"""Target slip in rad/s, and relative increase of the load per rad/s of excess slip."""
 
 TOLERANCE = 6.4e-6
-"""In the units of the state: the balance of energy is known to 2.5e-7 with it, where 1e-6 is asked."""
+"""In the units of the state. The energy balance then has an error of 2.5e-7; the claim allows 1e-6."""
 
 LINES_APART = 0.06
-"""In orders of the engine: what lies between unbalance and whirl at least, above the onset."""
+"""Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
 
 SAMPLE = 5e-4
-"""In s: 20 times in a turn at 6000 turns a minute."""
+"""Sampling interval in s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
-"""Length of a window of the spectrum in turns of the engine, and samples in each turn."""
+"""Length of a window of the spectrum in turns of the engine, and samples per turn."""
 
 
 def duration(car: Drivetrain, top: float) -> float:
-    """Return how many s the mean torque takes to bring engine and vehicle from idle to ``top`` (turns a minute)."""
+    """Return the time in s until the mean torque has accelerated engine and vehicle from idle to ``top`` (rpm)."""
     inertia = car.engine_inertia + car.disc_inertia + car.vehicle_inertia
     return (top - IDLE) * RPM * inertia / TORQUE
 
 
 def transmitted(car: Drivetrain) -> float:
-    """Return what of the mean torque goes through the clutch, in N m."""
+    """Return the part of the mean torque that the clutch transmits, in N m."""
     behind = car.disc_inertia + car.vehicle_inertia
     return TORQUE * behind / (car.engine_inertia + behind)
 
 
-# --- What the reference says of the reduced disc at the run-up's speeds, frozen: rest, unbalance and whirl.
+# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up: rest, unbalance and whirl
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -76,7 +76,7 @@ if TYPE_CHECKING:
 
 @functools.lru_cache(maxsize=2)
 def whirls_above_onset(car: Drivetrain) -> FloatArray:
-    """Return speed in rad/s, radius in m and frequency in rad/s of the reference's whirl, shape (30, 3)."""
+    """Return speed (rad/s), radius (m) and frequency (rad/s) of the reference's whirl, shape (30, 3)."""
     torque = transmitted(car)
     speeds = np.linspace(onset_speed(car, SLIP, torque), TOP * RPM, 31)[1:]
     circles = [whirl_of(car, Operation(speed, SLIP, torque)) for speed in speeds]
@@ -84,13 +84,13 @@ def whirls_above_onset(car: Drivetrain) -> FloatArray:
 
 
 def curves(count: int = 120) -> Data:
-    """Return what the reference predicts of the reduced disc at frozen speeds, ``count`` of them below the onset."""
+    """Return the reference's predictions for the reduced disc at frozen speeds, ``count`` below the onset."""
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
     slow = np.linspace(IDLE * RPM, onset, count + 1)[:-1]
     rests = [rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
-    # Small motions of the unbalanced disc: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist) at its own speed s.
+    # Small motions of the disc with its unbalance, at its own speed s: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist)
     own = slow - SLIP
     dynamic = car.radial_stiffness - car.disc_mass * own**2
     net = (car.radial_damping + damping) * own - slow * damping
@@ -102,7 +102,7 @@ def curves(count: int = 120) -> Data:
     }
 
 
-# --- The run-up in Exudyn.
+# --- The run-up in Exudyn
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -110,7 +110,7 @@ if TYPE_CHECKING:
 
 
 def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion:
-    """Return the run-up to ``top`` (turns a minute); the load is fed forward and corrected by the slip."""
+    """Return the run-up to ``top`` (rpm), with a feedforward load that the slip corrects."""
     from exudyn_models import build_drivetrain, four_cylinder
 
     torque = transmitted(car)
@@ -128,24 +128,24 @@ def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion
     return model.run(duration(car, top), sample_every=SAMPLE, tolerance=tolerance)
 
 
-# --- The order-tracked spectrum of the disc's motion, and its strongest line.
+# --- The order-tracked spectrum of the disc's motion, and its strongest line
 
 HOP = 2 * SAMPLES
-"""From one window to the next: two turns."""
+"""Samples from one window to the next, two turns."""
 
 
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return speeds in rad/s (m,), orders (n,) and amplitudes of x + iy in m (n, m).
 
-    Sampled at equal angles of the engine, so that an order stays what it is while the speed rises.
+    The samples are at equal angles of the engine, so an order is constant although the speed increases.
     """
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
     times = np.interp(even, angle, found["times"])
     z = CubicSpline(found["times"], centre(found["disc"]))(times)
     window = np.hanning(TURNS * SAMPLES)
-    # scipy.signal has this too, but takes longer to load than a run-up to transform.
-    first = -(-(len(window) // 2) // HOP) * HOP  # the first middle whose window is within the run-up
+    # scipy.signal contains such a transform, but its import takes longer than the transform of a run-up.
+    first = -(-(len(window) // 2) // HOP) * HOP  # the first middle whose window lies within the run-up
     samples = np.lib.stride_tricks.sliding_window_view(z, len(window))[first - len(window) // 2 :: HOP]
     lines = 2 * len(window)
     spectrum = np.fft.fft(samples * (window / np.sum(window)), lines)
@@ -156,10 +156,10 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
-    """Return the speed in rad/s in each window and the order of what circles forwards the most, shape (m,) each.
+    """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    A disc that all but rests is left out, by half an order; the top lies between the lines, on a parabola through
-    three logarithms.
+    Orders below one half are excluded, so a disc that is almost at rest does not count. A parabola through three
+    logarithms locates the maximum between the lines.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))
@@ -184,13 +184,13 @@ STUDY.provides(curves=curves)
 
 @functools.lru_cache(maxsize=1)
 def _run_ups(engine: Engine, top: float) -> tuple[DrivetrainMotion, DrivetrainMotion]:
-    """Return the run-up to ``top`` (turns a minute) at two tolerances."""
+    """Return the run-up to ``top`` (rpm) at two tolerances."""
     car = passenger_car()
     return run(car, TOLERANCE, top), run(car, TOLERANCE / COARSENING, top)
 
 
 def _shown(motion: DrivetrainMotion) -> Data:
-    """Return what spectrum and figures are made of."""
+    """Return the data of the spectrum and the figures."""
     return {
         "times": motion.times,
         "engine": np.column_stack((motion.engine_angle, motion.engine_speed)),
@@ -204,26 +204,26 @@ def _parameters() -> dict[str, float | str]:
 
 
 @STUDY.claim(
-    "Energy is balanced in the run-up of the whole drivetrain",
+    "The energy balance closes in the run-up of the whole drivetrain",
     kind="conservation",
     resolution=1e-6,
-    basis="self-check",  # the model's own law of friction gives the heat
+    basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, top: float = TOP) -> Measured:
-    """Check the energy of the run-up to ``top`` (turns a minute), and keep it for the figures."""
+    """Check the energy of the run-up to ``top`` (rpm), and keep the motion for the figures."""
     motions = _run_ups(engine, top)
     measured = balance_of([motion.energy for motion in motions], _parameters())
     return replace(measured, data=_shown(motions[0]))
 
 
 @STUDY.claim(
-    "The run-up's strongest line is the unbalance below the natural frequency, the reference's whirl above the onset",
+    "The strongest line of the run-up is the unbalance below the natural frequency and the whirl above the onset",
     resolution=0.5 * LINES_APART,
 )
 def lines(engine: Engine, top: float = TOP) -> Measured | None:
     """Compare the order of the strongest forward line in each window of the spectrum.
 
-    A run-up that is shorter than a window claims nothing.
+    Return None if the run-up is shorter than a window.
     """
     motions = _run_ups(engine, top)
     if motions[0].engine_angle[-1] < 2.0 * math.pi * TURNS:
@@ -243,8 +243,8 @@ def lines(engine: Engine, top: float = TOP) -> Measured | None:
         at={"speed in rpm": speeds[chosen] / RPM},
         parameters=_parameters(),
         note=f"Orders of the engine in windows of {TURNS} turns, {np.count_nonzero(below)} below "
-        f"{natural_frequency(car) / RPM:.0f} and {np.count_nonzero(above)} above {circling[0] / RPM:.0f} turns a "
-        f"minute; a parabola through the top. Predicted: 1 − slip/ω, and the whirl at frozen speeds without offset. "
-        f"Between the two lines lie {LINES_APART:g} orders or more. Model error: 1/{TURNS} of an order, what a "
-        "window of so many turns resolves. Numerical error: the largest change at a smaller tolerance.",
+        f"{natural_frequency(car) / RPM:.0f} rpm and {np.count_nonzero(above)} above {circling[0] / RPM:.0f} rpm, "
+        "with a parabola through the maximum. Predicted: 1 − slip/ω, and the reference's whirl at frozen speeds "
+        f"without offset. Both lines are at least {LINES_APART:g} orders apart. Model error: 1/{TURNS} of an order, "
+        "the resolution of a window. Numerical error: the largest change at a smaller tolerance.",
     )

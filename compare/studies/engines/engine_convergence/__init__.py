@@ -1,4 +1,4 @@
-"""How fast the engines converge: in tolerance, in step, and in the slip speed that smooths the friction law."""
+"""Convergence of the engines with the tolerance, with the step, and with the slip speed that regularises friction."""
 
 from compare.studies.engines.engine_convergence.pictures import draw
 from compare.studies.engines.engine_convergence.study import STUDY

@@ -1,4 +1,4 @@
-"""Figures of the study of convergence."""
+"""Figures of the convergence study."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw error over step and ε, over tolerance, and over work."""
+    """Draw the error over step and ε, over tolerance, and over work."""
     figures = {
         "engine-convergence-tolerance": _draw_tolerance(data),
         "engine-convergence-work": _draw_work(data),
@@ -48,7 +48,7 @@ def _draw_orders(found: Data) -> Figure:
     for solver in SOLVERS:
         h, errors = found[f"{solver.name}: steps"], found[f"{solver.name}: sliding"][:, 0]
         steps.loglog(h, errors, **_marked(solver.look, solver.name))
-        if solver.name != "TrapezoidalIndex2":  # its errors are those of generalised-α to 2 %
+        if solver.name != "TrapezoidalIndex2":  # its errors equal those of generalised-α to 2 %
             _power(steps, h[[0, -1]], (h[-1], errors[-1]), solver.order, f"$h^{solver.order}$")
     steps.set(xlabel=axis("h", "s"), ylabel="error in m, m/s", xlim=(None, 1.3))
     steps.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
@@ -81,7 +81,7 @@ def _draw_tolerance(data: ByEngine) -> Figure:
     for panel, kind, title, unit in zip(
         panels,
         ("sliding", "sticking"),
-        ("sliding pin", "first stick and release"),
+        ("Sliding pin", "First stick and release"),
         ("m, m/s", "s"),
         strict=True,
     ):
@@ -90,7 +90,7 @@ def _draw_tolerance(data: ByEngine) -> Figure:
             panel.loglog(tolerances, errors, **_marks(engine))
             middle = len(errors) // 2
             _power(panel, tolerances[[0, -1]], (tolerances[middle], errors[middle]), 1, "")
-        panel.plot([], [], **curve("theory", "in proportion"))
+        panel.plot([], [], **curve("theory", "proportional"))
         panel.set(xlabel="tolerance", ylabel=f"error in {unit}", title=title)
     _legend_below(figure, panels)
     return figure
@@ -104,7 +104,7 @@ def _draw_work(data: ByEngine) -> Figure:
         for panel, kind, title in zip(
             panels[2 * row : 2 * row + 2],
             ("sliding", "stick-slip"),
-            ("sliding pin, 2 × 20 s", "with nine stick phases, 60 s"),
+            ("Sliding pin, 2 × 20 s", "Nine stick phases, 60 s"),
             strict=True,
         ):
             for engine in engines_in(data):

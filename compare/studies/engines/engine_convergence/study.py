@@ -1,4 +1,4 @@
-"""How fast the engines converge: in tolerance, in step, and in the slip speed that smooths the friction law."""
+"""Convergence of the engines with the tolerance, with the step, and with the slip speed that regularises friction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("reference", "exudyn"), seconds=3.0)
 
 
-# ---------------------------------------------------------------- in the tolerance
+# ---------------------------------------------------------------- with the tolerance
 
 
 @STUDY.claim(
@@ -27,13 +27,13 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     equation="(1), (10)",
     kind="order",
     resolution=0.1,
-    note="Against (10) in polar form at tolerance 3e-14. Error and error estimate of an integrator of order n are "
-    "both of that order in its step, so that the step is ~ tolerance^(1/n), the exponent 1, and the next term "
-    "smaller by one step. Least squares with that term; numerical error: 95 % interval from the scatter; model "
-    "error: what the term changes.",
+    note="Compared with (10) in polar form at tolerance 3e-14. Error and error estimate of an integrator of order n "
+    "have the same order in the step. The step is therefore ~ tolerance^(1/n), the exponent is 1, and the next term "
+    "is smaller by one power of the step. Least squares with this term. Numerical error: 95 % interval from the "
+    "scatter. Model error: the effect of the term.",
 )
 def sliding(engine: Engine, with_work: bool = True) -> Measured:
-    """Find the exponent with which the error of sliding pins falls with the tolerance."""
+    """Compare the exponent of the tolerance in the error of sliding pins with 1."""
     scan = theory.SCANS[engine.name]
     errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
@@ -60,12 +60,12 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     equation="(6), (7)",
     kind="order",
     resolution=0.2,
-    note="Root mean square over the first stick and release of every start, against the reference at tolerance "
+    note="Root mean square over the first stick and release of every start, compared with the reference at tolerance "
     f"{TRUTH:g}. Exponent and errors as for the sliding pin.",
     basis="reference",
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
-    """Find the exponent with which the errors of stick and release times fall with the tolerance."""
+    """Compare the exponent of the tolerance in the errors of stick and release times with 1."""
     scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(
@@ -95,7 +95,7 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
 
 
 def _events(run: theory.Simulate, tolerance: float) -> FloatArray:
-    """Return when pins stick and let go, in s, from one of ``STICKING_STARTS`` after the other."""
+    """Return the stick and release times in s for all ``STICKING_STARTS``."""
     times = (0.0, theory.STICKING_UNTIL)
     return np.concatenate(
         [run(FIG5, start, times, tolerance=tolerance).stick_times for start in theory.STICKING_STARTS]
@@ -104,24 +104,25 @@ def _events(run: theory.Simulate, tolerance: float) -> FloatArray:
 
 @functools.cache
 def _exact_events() -> tuple[FloatArray, float]:
-    """Return the same times as exactly as the reference has them, and how far they are off."""
+    """Return these times by the reference at its tightest tolerance, and their error."""
     exact = _events(simulate, TRUTH)
     return exact, theory.root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
 
-# ---------------------------------------------------------------- in the step
+# ---------------------------------------------------------------- with the step
 
 
 def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Measured | None]:
-    """Declare the claim for the solvers of each order, which the sentence names."""
+    """Declare one claim per order; it applies to all solvers of that order."""
     for order, superscript in {4: "⁴", 6: "⁶", 2: "²"}.items():
         STUDY.claim(
-            f"The error of a sliding pin falls like h{superscript} with {{}} at a fixed step h",
+            f"With {{}} at a fixed step h, the error of a sliding pin falls like h{superscript}",
             equation="(1), (10)",
             kind="order",
             resolution=0.2,
-            note="Orders observed while halving the step are extrapolated to h = 0. Model error: the extrapolation's "
-            "own step; numerical error: its change from one step to the next.",
+            note="Orders observed in successive halvings of the step, extrapolated to h = 0. Model error: the "
+            "change due to extrapolation. Numerical error: change of the extrapolated value from one step to the "
+            "next.",
             each={solver.name: solver for solver in theory.SOLVERS if solver.order == order},
         )(function)
     return function
@@ -129,10 +130,10 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
 
 @of_every_order
 def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
-    """Find the order of one of Exudyn's solvers at a fixed step."""
+    """Compare the order of one of Exudyn's solvers at a fixed step with its declared order."""
     if engine.name != "exudyn":
         return None
-    import exudyn_models  # the command line must start without it
+    import exudyn_models  # deferred, because the command line must start without it
 
     run = exudyn_models.simulate_fixed_step
     rows = np.array([theory.of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
@@ -159,25 +160,25 @@ def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Meas
     )
 
 
-# ---------------------------------------------------------------- in the slip speed that smooths friction
+# ---------------------------------------------------------------- with the slip speed that regularises friction
 
 HOW = (
-    f"Against the reference at tolerance {TRUTH:g}. Least squares with a term smaller by ε; numerical error: 95 "
-    f"% interval from the scatter, and the change at tolerance {COARSENING * theory.TOLERANCE:g}; model error: "
-    "what the term changes."
+    f"Compared with the reference at tolerance {TRUTH:g}. Least squares with a next term smaller by ε. Numerical "
+    f"error: 95 % interval from the scatter, and the change at tolerance {COARSENING * theory.TOLERANCE:g}. Model "
+    "error: the effect of the next term."
 )
 
 
 @STUDY.claim(
-    "The error of the first stick falls like ε² with the slip speed ε that smooths the friction law",
+    "The error of the first stick time falls like ε² with the slip speed ε that regularises friction",
     equation="(6)",
     kind="order",
     resolution=0.1,
-    note="The law is exact down to ε, and the slip left there is over in a time ~ ε whose error is ~ ε². "
+    note="The law is exact above ε, and the remaining slip ends after a time ~ ε, whose error is ~ ε². "
     + HOW,
 )
 def first_stick(engine: Engine) -> Measured | None:
-    """Find the exponent of the error of the first stick in ε."""
+    """Compare the exponent of ε in the error of the first stick time with 2."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -190,7 +191,7 @@ def first_stick(engine: Engine) -> Measured | None:
         return float(theory.gap(found.stick_times[:1], first)[0])
 
     errors = np.array([error(epsilon, theory.TOLERANCE) for epsilon in theory.FIRST_REGULARISATIONS.tolist()])
-    # The tolerance weighs most at the smallest ε.
+    # The tolerance has the largest effect at the smallest ε.
     noise = abs(
         error(float(theory.FIRST_REGULARISATIONS[-1]), COARSENING * theory.TOLERANCE) - float(errors[-1])
     )
@@ -209,7 +210,10 @@ def first_stick(engine: Engine) -> Measured | None:
 
 
 class Smoothing(NamedTuple):
-    """Errors of later events and, last, of the state over ``REGULARISATIONS``, shape (ε, n), and their exponents."""
+    """Errors of later events and, in the last column, of the state over ``REGULARISATIONS``; and their exponents.
+
+    The errors have the shape (ε, n).
+    """
 
     errors: FloatArray
     exponents: FloatArray
@@ -225,7 +229,7 @@ class Smoothing(NamedTuple):
     note=HOW,
 )
 def later_events(engine: Engine) -> Measured | None:
-    """Find the exponents of the errors of all events after the first stick in ε."""
+    """Compare the exponents of ε in the errors of all events after the first stick with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -252,7 +256,7 @@ def later_events(engine: Engine) -> Measured | None:
     note=HOW,
 )
 def state(engine: Engine) -> Measured | None:
-    """Find the exponent of the error of the state in ε."""
+    """Compare the exponent of ε in the error of the state with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -270,7 +274,7 @@ def state(engine: Engine) -> Measured | None:
 
 @functools.lru_cache(maxsize=1)
 def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
-    """Return the errors of events and state over ε, which two claims share; takes the simulation to be measured."""
+    """Return the errors of events and state over ε by the given simulation, which two claims share."""
     start, until = FIG5_STARTS["whirl"], (0.0, 20.0)
     exact = simulate(FIG5, start, until, tolerance=TRUTH)
 
@@ -279,10 +283,10 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
         state = theory.root_mean_square(found.at_end - exact.at_end)
         return np.append(theory.gap(found.stick_times, exact.stick_times), state)[
             1:
-        ]  # the first stick falls faster
+        ]  # without the first stick, whose error falls faster
 
     by_epsilon = np.array([errors(epsilon, theory.TOLERANCE) for epsilon in theory.REGULARISATIONS.tolist()])
-    # The tolerance weighs most at the smallest ε.
+    # The tolerance has the largest effect at the smallest ε.
     noise = np.abs(errors(float(theory.REGULARISATIONS[-1]), COARSENING * theory.TOLERANCE) - by_epsilon[-1])
     exponents, numerical, model = np.transpose(
         [
@@ -298,11 +302,12 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
     equation="(6), (7)",
     unit="s per m/s",
     note="Shift of the first release over ε, RK44 with four steps in mε/μN, extrapolated to ε = 0. Predicted: creep "
-    "with w = ε·a/g all through the stick phase under exact friction, where m·a is the force of (6). Model error: "
-    "the extrapolation's own step; numerical error: its change from one ε to the next, and at twice the step.",
+    "at the slip speed w = ε·a/g during the stick phase of exact friction, where m·a is the force of (6). Model "
+    "error: the change due to extrapolation. Numerical error: change of the extrapolated value from one ε to the "
+    "next, and at twice the step.",
 )
 def creep(engine: Engine) -> Measured | None:
-    """Compare the first release of both starts of Fig. 5 per ε with creep."""
+    """Compare the shift of the first release per ε with creep, for both starts of Fig. 5."""
     if engine.name != "exudyn":
         return None
     import exudyn_models

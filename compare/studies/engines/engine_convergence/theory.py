@@ -1,4 +1,4 @@
-"""The motions against which errors are measured, and how creep shifts a release."""
+"""Exact motions as references for errors, and the shift of a release by creep."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
 
-# --- Starts, tolerances, steps and slip speeds at which the engines' errors are measured.
+# --- Starts, tolerances, steps and slip speeds of the measurements
 
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
-"""Near to the whirl and a third farther out: the pin slides all the time (our choice)."""
+"""Near the whirl and a third farther out, where the pin always slides (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
-"""In s: multiples of every step, so that a solver's own states are looked at and not its interpolation."""
+"""In s, multiples of every step, so the samples are a solver's own states and not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""As those of Fig. 5, where vx is 0 and 0.03 m/s; each pin sticks and lets go once in the first 8 s."""
+"""Like the starts of Fig. 5, where vx is 0 and 0.03 m/s. Each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
-"""In s."""
+"""Duration in s."""
 
 
 def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
@@ -40,17 +40,17 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Scan:
-    """The tolerances at which one engine is measured, and how its error is expected to follow them.
+    """Tolerances of the measurements of one engine, and the expected dependence of its error on them.
 
     Parameters
     ----------
     order : int
-        Of the integrator. Its error estimate is of the same order in the step, so the step is ~ tolerance^(1/order)
-        and the error ~ tolerance; the next term is smaller by one power of the step.
+        Order of the integrator. Its error estimate has the same order in the step. The step is therefore
+        ~ tolerance^(1/order), the error ~ tolerance, and the next term is smaller by one power of the step.
     sliding, sticking, work : array
-        Tolerances for both exponents, between a pin's first few steps and rounding, and for error over work.
+        Tolerances for both exponents, between the first few steps and rounding, and for the plot of error over work.
     sticking_term : float
-        Power of the tolerance by which the next term is smaller where the pin sticks.
+        Ratio of the next term to the first if the pin sticks, as a power of the tolerance.
 
     """
 
@@ -73,37 +73,37 @@ SCANS = {
         order=5,
         sliding=_tolerances(1e-4, 1e-10, 4),
         sticking=_tolerances(1e-6, 1e-8, 2),
-        sticking_term=1.0,  # ε = 100·tolerance outweighs the step: the next term is ε²
+        sticking_term=1.0,  # ε = 100·tolerance has a larger effect than the step, so the next term is ε²
         work=_tolerances(1e-4, 1e-9, 1),
     ),
 }
 
 
 REGULARISATIONS = np.geomspace(1e-4, 10**-6.5, 6)
-"""ε in m/s for the motion through three stick phases."""
+"""ε in m/s for the motion with three stick phases."""
 
 FIRST_REGULARISATIONS = np.geomspace(1e-3, 10**-5.5, 11)
-"""ε in m/s for the first stick alone."""
+"""ε in m/s for the first stick phase."""
 
 CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
 """ε in m/s for the first release by RK44, whose step must be below 2.8·mε/μN = 31 s²/m·ε."""
 
 TOLERANCE = WORKING / 10
-"""Tolerance at which ε dominates all other errors."""
+"""Tolerance so small that ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
-"""In s: past all nine stick phases on the way to the whirl."""
+"""In s, until after the last of nine stick phases on the way to the whirl."""
 
 WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
-"""In s: fixed steps through stick phases, where ε has to follow the step."""
+"""Fixed steps in s through stick phases, where ε must be proportional to the step."""
 
 
 def smallest_regularisation(step: float) -> float:
-    """Return ε in m/s for which RK44, stable up to 2.8·mε/μN, resolves sticking with ``step``."""
+    """Return ε in m/s such that RK44, stable up to 2.8·mε/μN, resolves stick at this ``step`` in s."""
     return step * FIG5.friction_force / FIG5.mass / 1.5
 
 
-SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are assumptions: 20 s without sticking"
+SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are our choice: 20 s without stick"
 
 
 def root_mean_square(values: FloatArray) -> float:
@@ -129,16 +129,16 @@ def sliding_truth() -> tuple[FloatArray, float]:
 
 @functools.cache
 def stick_slip_truth() -> FloatArray:
-    """Return the states on Fig. 5's way to the whirl by the reference at its tightest, shape (time, 4)."""
+    """Return the states on the way to the whirl of Fig. 5 by the reference at its tightest, shape (time, 4)."""
     return simulate(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, tolerance=TRUTH).states
 
 
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
-    """Return by how much creep shifts the end of a stick phase under exact friction, in s for each m/s of ε.
+    """Return the shift of the end of a stick phase by creep, in s per m/s of ε.
 
-    A stuck pin under F = −μN·v/ε creeps with w = ε·a/g, where m·a is the force that friction has to balance (eq. 6)
-    and g = μN/m. In the frame of the disc that moves it by (ε/g)·∫a·exp(−iωt)dt, in closed form since a is linear in
-    z = z₀·exp(iωt). Release is where |a| = g (eq. 7): the shift is −d|a|/dε over d|a|/dt.
+    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force that friction must balance (eq. 6) and
+    g = μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt. The integral has a closed form because
+    a is linear in z = z₀·exp(iωt). The release occurs at |a| = g (eq. 7), so the shift is −d|a|/dε over d|a|/dt.
     """
     omega = 1j * pin.disc_speed
     spring = pin.stiffness / pin.mass
@@ -153,14 +153,14 @@ def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     return -(pull.conjugate() * slope * creep).real / grows
 
 
-# --- Errors of simulations, and the work they take.
+# --- Errors and cost of simulations
 
 Simulate = Callable[..., Trajectory]
 
 
 def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
     """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time in s."""
-    began = time.process_time()  # unlike wall time it does not count what other studies do on the same cores
+    began = time.process_time()  # in contrast to wall time, other studies on the same cores do not affect it
     trajectories = [run(FIG5, start, SLIDING_TIMES, **how) for start in SLIDING_STARTS]
     spent = time.process_time() - began
     truth, _ = sliding_truth()
@@ -169,7 +169,7 @@ def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
 
 
 def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
-    """Simulate Fig. 5's way to the whirl; return the error (m, m/s), evaluations, and processor time in s."""
+    """Simulate the way to the whirl of Fig. 5; return error (m, m/s), evaluations, and processor time in s."""
     began = time.process_time()
     trajectory = run(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, **how)
     spent = time.process_time() - began
@@ -178,18 +178,18 @@ def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
-    """Return how far the events found are off; without numbers where there are too many or too few of them."""
+    """Return the errors of the events, or NaN if their number differs from the exact one."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
 
 
-# --- Exudyn's solvers at a fixed step: their declared orders, and how they are drawn.
+# --- Exudyn's solvers at a fixed step
 
 
 @dataclass(frozen=True)
 class Solver:
-    """One of Exudyn's solvers at a fixed step: declared order, steps in s, and how it is drawn.
+    """One of Exudyn's solvers at a fixed step: declared order, steps in s, and plotting style.
 
-    ``sticks`` says whether its work is shown for a motion with stick phases too.
+    ``sticks`` is True if the figure also shows its work for a motion with stick phases.
     """
 
     name: str

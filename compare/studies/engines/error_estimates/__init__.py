@@ -1,4 +1,4 @@
-"""What the error bars of all claims are worth: true errors of random motions beside their estimates."""
+"""Reliability of the error bars of all claims: true errors of random motions compared with their estimates."""
 
 from compare.studies.engines.error_estimates.study import STUDY
 

@@ -1,4 +1,4 @@
-"""What the error bars of all claims are worth: true errors of random motions beside their estimates."""
+"""Reliability of the error bars of all claims: true errors of random motions compared with their estimates."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from compare.output.figures import BLACK, Axes, Figure, curve, engine_style, eng
 from compare.studies.toolkit.random_systems import between
 
 PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
-"""Estimate over true error where errors are in proportion to the tolerance."""
+"""Ratio of estimate to true error if errors are proportional to the tolerance."""
 
 KNOWN_FROM = (
-    "Every number with the estimate that all claims take. True errors are against closed forms, or the reference at "
+    "Every number has the estimate that all claims use. True errors refer to closed forms, or to the reference at "
     f"tolerance {theory.EXACT:g}."
 )
 
@@ -57,16 +57,16 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
 
 
 @STUDY.claim(
-    f"In the median the estimate is not more than {theory.MOST_OVER_ESTIMATE:g} times the true error: {{}}",
+    f"The median ratio of estimate to true error is at most {theory.MOST_OVER_ESTIMATE:g}: {{}}",
     kind="trajectory",
     resolution=theory.MOST_OVER_ESTIMATE - PROPORTIONAL,
-    note=f"{KNOWN_FROM} Where errors are in proportion to the tolerance the ratio is {SAFETY:g}·(1 − "
-    f"1/{COARSENING:g}) = {PROPORTIONAL:g} by construction; where no error depends on the tolerance, as in the "
-    f"closed form of stick, it is rounding as allowed for over rounding as known, {ROUNDING / theory.KNOWN:g}.",
+    note=f"{KNOWN_FROM} If errors are proportional to the tolerance, the ratio is {SAFETY:g}·(1 − 1/{COARSENING:g}) "
+    f"= {PROPORTIONAL:g} by construction. If errors do not depend on the tolerance, as in the closed form of stick, "
+    f"it is the allowed rounding over the known rounding, {ROUNDING / theory.KNOWN:g}.",
     each=tuple(theory.PROBLEMS),
 )
 def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
-    """Take the median of the estimate over the true error, in one kind of motion."""
+    """Compare the median ratio of estimate to true error in one kind of motion with its expected value."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=PROPORTIONAL,
@@ -80,23 +80,23 @@ def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> M
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
-    """Return the calibration of one kind of problem, in its part of ``motions`` over all that can be simulated."""
+    """Return the calibration of one kind of problem; ``motions`` are shared by all kinds that can be simulated."""
     each = -(-motions // len(simulated(engine)))
     return theory.calibrated(engine, drawn(kind, each))
 
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def drawn(kind: str, motions: int) -> tuple[tuple[theory.Problem, float], ...]:
-    """Return ``motions`` problems of a kind, each with its tolerance: every engine is asked the same."""
+    """Return ``motions`` problems of a kind, each with its tolerance; they are the same for every engine."""
     random = np.random.default_rng(
         [theory.SEED, list(theory.PROBLEMS).index(kind)]
-    )  # of its own for each kind
+    )  # a separate stream for each kind
     return tuple((theory.PROBLEMS[kind](random), between(random, *theory.TOLERANCES)) for _ in range(motions))
 
 
 @functools.lru_cache(maxsize=1)
 def simulated(engine: Engine) -> tuple[str, ...]:
-    """Return the kinds of problems that ``engine`` promises to simulate."""
+    """Return the kinds of problems that ``engine`` can simulate."""
     return tuple(
         kind
         for kind, problem in theory.PROBLEMS.items()
@@ -104,16 +104,16 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     )
 
 
-# --- Estimates beside true errors, for each kind of motion.
+# --- Figures of estimates and true errors for each kind of motion
 
 SMALLEST, LARGEST = 0.3, 3e3
-"""Ratios of estimate and true error that the figure shows; an arrow says that there are others beyond."""
+"""Range of the ratios in the figure; an arrow stands for larger ones."""
 
 COLUMNS = 3
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw estimates over true errors, and how far they lie above."""
+    """Draw estimates against true errors, and the spread of their ratio."""
     return {"error-estimates": _scatter(data), "error-estimates-spread": _spread(data)}
 
 
@@ -127,7 +127,7 @@ def _scatter(data: ByEngine) -> Figure:
         for engine in engines_in(data):
             if f"{kind}: errors" in data[engine]:
                 errors, estimates = (data[engine][f"{kind}: {what}"] for what in ("errors", "estimates"))
-                right = errors > 0.0  # what is right to the last bit has no place here
+                right = errors > 0.0  # the logarithmic axis has no place for zero
                 seen += [errors[right], estimates[right]]
                 look = points(engine, markersize=3.0, markeredgewidth=0.6)
                 panel.loglog(errors[right], estimates[right], **look)
@@ -135,8 +135,8 @@ def _scatter(data: ByEngine) -> Figure:
             _draw_bounds(panel, np.concatenate(seen))
     for panel in panels[len(kinds) :]:
         panel.axis("off")
-    figure.supxlabel("true error, over the largest number", fontsize=11.0)
-    figure.supylabel("estimate, over the largest number", fontsize=11.0)
+    figure.supxlabel("true error, relative to the largest number", fontsize=11.0)
+    figure.supylabel("estimate, relative to the largest number", fontsize=11.0)
     panels[0].legend(loc="upper left", fontsize=9.0)
     return figure
 

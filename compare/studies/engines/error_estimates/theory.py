@@ -1,4 +1,4 @@
-"""Random motions that are known: in closed form, or by the reference at a far tighter tolerance."""
+"""Random motions with an exact solution, in closed form or by the reference at a far tighter tolerance."""
 
 from __future__ import annotations
 
@@ -35,18 +35,18 @@ from reference_model.formulas.pin import (
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-# --- How many motions are drawn, from what, and what error bars must reach.
+# --- Number and distribution of the motions, and requirements for the error bars
 
 MOTIONS = 360
-"""Random motions for an engine, as many of every kind of problem that it can simulate."""
+"""Number of random motions per engine, equal for every kind of problem that the engine can simulate."""
 
 TOLERANCES = (1e-7, 1e-5)
-"""Between these the tolerance of a motion is drawn."""
+"""Range of the random tolerance of a motion."""
 
 SEED = 20
 
 LEAST_COVERAGE, MOST_OVER_ESTIMATE = 0.99, 30.0
-"""What error bars must reach to mean something, in each kind of motion."""
+"""Requirements for the error bars in each kind of motion."""
 
 SOURCE = (
     f"assumption: parameters, starts, times and tolerances (from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}) "
@@ -54,33 +54,33 @@ SOURCE = (
 )
 
 KNOWN = 4.0 * np.finfo(float).eps
-"""To this fraction of its largest number an exact motion is known: a sine, a root and a product are rounded as much.
+"""Relative accuracy of an exact motion, with respect to its largest number: rounding of a sine, a root and a product.
 
-A smaller true error is a coincidence of two roundings, and a ratio to it says nothing about an estimate.
+A smaller true error is a coincidence of two roundings, so its ratio to an estimate means nothing.
 """
 
 EXACT = 100.0 * TRUTH
-"""Tolerance of the reference where there is no closed form: a thousandth of the smallest that is asked about."""
+"""Tolerance of the reference if there is no closed form, a thousandth of the smallest tolerance of a motion."""
 
 SMALL_OFFSET = 1e-7
-"""X0/ρ_c of the response. What is of second order in it is as small beside it; errors are ~ tolerance/X0."""
+"""X0/ρ_c in the response. Terms of second order are smaller by this factor, and errors are ~ tolerance/X0."""
 
 SAMPLES = 16
-"""Of a turn of the whirl, for its mean: exact for the two harmonics that there are."""
+"""Samples per turn of the whirl; their mean is exact for both harmonics."""
 
 THROWS = ((0.7, 20.0), (0.8, 60.0), (1.3, 50.0), (1.5, 15.0))
-"""J/(mR²) of the thrown rings and atan(W/U) in degrees at the start.
+"""J/(mR²) of the thrown rings, and atan(W/U) in degrees at the start.
 
-Not 1, where the end is in the integrals like exp(−A/t): they are good to 1e-11 there, and to 1e-13 elsewhere.
+J/(mR²) is not 1, because the integrals then end like exp(−A/t) and have errors of 1e-11 instead of 1e-13.
 """
 
 
-# --- Calibration of error estimates: how far they are from the true errors of motions that are known exactly.
+# --- Calibration of error estimates with the true errors of exactly known motions
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A motion of which the exact value of some numbers is known.
+    """A motion with numbers whose exact values are known.
 
     Parameters
     ----------
@@ -89,11 +89,11 @@ class Problem:
     start : array of shape (4,) or (6,)
         State at ``times[0]``.
     times : array of shape (n,)
-        In s.
+        Times in s.
     quantity : callable
-        Reads the numbers off a trajectory, shape (m,); fewer where the motion has none of some.
+        Returns the numbers of a trajectory, shape (m,), or fewer if the trajectory lacks some.
     exact : array of shape (m,)
-        What they should be.
+        Exact values of the numbers.
 
     """
 
@@ -104,21 +104,21 @@ class Problem:
     exact: FloatArray
 
     def measured(self, engine: Engine, tolerance: float) -> FloatArray:
-        """Return the numbers that ``engine`` gives, shape (m,); none where one of them is missing."""
+        """Return the numbers from ``engine``, shape (m,), all NaN if one of them is missing."""
         found = self.quantity(engine.simulate(self.system, self.start, self.times, tolerance=tolerance))
         return found if found.shape == self.exact.shape else np.full(self.exact.shape, math.nan)
 
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """True and estimated errors of the n numbers of several motions, as fractions of the largest number of each.
+    """True and estimated errors of the n numbers of several motions, relative to the largest number of each motion.
 
     Parameters
     ----------
     motion : array of shape (n,)
-        To which motion a number belongs, from 0 on.
+        Motion of each number, from 0.
     errors, estimates : array of shape (n,)
-        Dimensionless; not a number where the engine gave none.
+        Dimensionless; NaN if the engine did not provide the number.
 
     """
 
@@ -128,39 +128,39 @@ class Calibration:
 
     @property
     def motions(self) -> int:
-        """How many there are."""
+        """Number of motions."""
         return int(self.motion[-1]) + 1
 
     @functools.cached_property
     def _covered(self) -> FloatArray:
-        """Of each motion, the fraction of its numbers whose true error lies within the estimate."""
+        """Fraction of the numbers of each motion whose true error lies within the estimate."""
         within = np.bincount(self.motion, self.errors <= self.estimates)  # False for NaN
         return np.asarray(within / np.bincount(self.motion))
 
     @property
     def coverage(self) -> float:
-        """Fraction of numbers whose true error lies within the estimate; every motion counts as much."""
+        """Fraction of numbers whose true error lies within the estimate; all motions have equal weight."""
         return float(np.mean(self._covered))
 
     @property
     def coverage_noise(self) -> float:
-        """Standard error of the coverage, that of a mean over motions: the numbers of one of them go together."""
+        """Standard error of the coverage as a mean over motions, because the numbers of a motion are correlated."""
         return float(np.std(self._covered, ddof=1) / math.sqrt(self.motions))
 
     @property
     def ratios(self) -> FloatArray:
-        """Estimates over true errors, those at least ``KNOWN``, shape (n,); 0 without a number."""
+        """Ratios of estimates to true errors, at least ``KNOWN``, shape (n,); 0 for a missing number."""
         ratios = self.estimates / np.maximum(self.errors, KNOWN)
         return np.where(np.isnan(ratios), 0.0, ratios)
 
     @property
     def over_estimate(self) -> float:
-        """Median of estimate over true error."""
+        """Median ratio of estimate to true error."""
         return float(np.median(self.ratios))
 
 
 def calibrated(engine: Engine, problems: Iterable[tuple[Problem, float]]) -> Calibration:
-    """Return true and estimated errors of ``engine`` in problems, each at its tolerance."""
+    """Return true and estimated errors of ``engine`` for each problem at its tolerance."""
     motion, errors, estimates = [], [], []
     for i, (problem, tolerance) in enumerate(problems):
         measured, estimate = refined(functools.partial(problem.measured, engine), tolerance)
@@ -171,7 +171,7 @@ def calibrated(engine: Engine, problems: Iterable[tuple[Problem, float]]) -> Cal
     return Calibration(np.concatenate(motion), np.concatenate(errors), np.concatenate(estimates))
 
 
-# --- Random motions that are known: in closed form, or by the reference at a far tighter tolerance.
+# --- Random motions with an exact solution
 
 
 def _at_end(trajectory: Trajectory) -> FloatArray:
@@ -179,12 +179,12 @@ def _at_end(trajectory: Trajectory) -> FloatArray:
 
 
 def _duration(random: Generator, system: System) -> float:
-    """Draw from one to two turns of the support's own oscillation, in s."""
+    """Draw a duration in s of one to two periods of the support's own oscillation."""
     return between(random, 2.0 * math.pi, 4.0 * math.pi) / system.natural_frequency
 
 
 def _damped(system: System, start: complex, velocity: complex, t: float) -> tuple[complex, complex]:
-    """Return place and velocity of a damped oscillator about the offset, without friction."""
+    """Return position and velocity of a damped oscillator about the offset, without friction."""
     decay = system.damping / (2.0 * system.mass)
     own = cmath.sqrt(complex(system.natural_frequency**2 - decay**2))
     w = start - system.offset
@@ -195,7 +195,7 @@ def _damped(system: System, start: complex, velocity: complex, t: float) -> tupl
 
 
 def oscillator(random: Generator) -> Problem:
-    """Let a pin without friction oscillate about the offset, damped."""
+    """Draw a damped oscillation of a pin about the offset, without friction."""
     pin = replace(any_pin(random), friction_force=0.0)
     place = vector(random, abs(pin.offset))
     velocity = vector(random, abs(pin.offset) * pin.natural_frequency)
@@ -205,7 +205,7 @@ def oscillator(random: Generator) -> Problem:
 
 
 def shaft(random: Generator) -> Problem:
-    """Let a disc without friction follow the shaft, with the lag of first order."""
+    """Draw a motion of a disc without friction, whose spin follows the shaft with a first-order lag."""
     disc = replace(any_disc(random, None), friction_force=0.0)
     place = vector(random, abs(disc.offset))
     velocity = vector(random, abs(disc.offset) * disc.natural_frequency)
@@ -221,7 +221,7 @@ def shaft(random: Generator) -> Problem:
 
 
 def stick(random: Generator) -> Problem:
-    """Let a pin turn with the disc until (7) lets it go: a state on the way, and when it is let go."""
+    """Draw a pin that turns with the disc until its release by (7): a state before it, and the time of release."""
     while True:
         pin = any_pin(random)
         place = cmath.rect(farthest(pin) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
@@ -240,10 +240,10 @@ def stick(random: Generator) -> Problem:
 
 
 def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
-    """Return place, velocity and time of release in units of the radius and the disc's speed: all are about one.
+    """Return position, velocity and release time in units of the radius and the disc speed, all of order 1.
 
-    In metres and seconds places would be small beside the time, and so rounding of the largest number far above
-    theirs.
+    In metres and seconds, positions would be small compared with the time, and rounding of the time would exceed
+    their errors.
     """
     omega, start = trajectory.system.disc_speed, trajectory.states[0]
     state = trajectory.states[1] / math.hypot(start[0], start[1]) / (1.0, 1.0, omega, omega)
@@ -251,7 +251,7 @@ def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
 
 
 def whirl(random: Generator) -> Problem:
-    """Let a centred pin go round on the circle (11)."""
+    """Draw a motion of a centred pin on the circle (11)."""
     pin = replace(any_pin(random), offset=0.0)
     turning, t = 1j * whirl_frequency(pin), _duration(random, pin)
     place = cmath.rect(whirl_radius(pin), random.uniform(-math.pi, math.pi))
@@ -261,7 +261,7 @@ def whirl(random: Generator) -> Problem:
 
 
 def response(random: Generator) -> Problem:
-    """Take the mean of a whirl with a small offset, in units of it: the exact response of first order."""
+    """Draw a whirl with a small offset; its mean divided by the offset is the exact first-order response."""
     pin = any_pin(random)
     pin = replace(pin, offset=SMALL_OFFSET * whirl_radius(pin))
     found, turning = first_order_whirl_response(pin), 1j * whirl_frequency(pin)
@@ -282,7 +282,7 @@ def _mean_over_offset(trajectory: Trajectory) -> FloatArray:
 
 
 def free_ring(random: Generator) -> Problem:
-    """Throw a ring on a table: how far it slides and turns, and when it rests."""
+    """Draw a ring thrown on a table: the distances that it slides and turns, and the time of rest."""
     inertia, degrees = THROWS[int(random.integers(len(THROWS)))]
     time, slid, turned = _unit_stop(inertia, degrees)
     mass, radius = between(random, 0.1, 10.0), between(random, 0.03, 1.0)
@@ -313,7 +313,7 @@ def free_ring(random: Generator) -> Problem:
 
 @functools.cache
 def _unit_stop(inertia: float, degrees: float) -> tuple[float, float, float]:
-    """Return time and ways until a ring rests that is thrown with √(U² + W²) = 1 m/s, for μN = m·(1 m/s²)."""
+    """Return time and distances until rest of a ring with √(U² + W²) = 1 m/s at the start and μN/m = 1 m/s²."""
     angle = math.radians(degrees)
     return Slowing(inertia).stop(math.cos(angle), math.sin(angle))[:3]
 
@@ -323,23 +323,23 @@ def _place_and_time_of_rest(trajectory: Trajectory) -> FloatArray:
 
 
 def _generic(random: Generator, system: System) -> Problem:
-    """Take any motion; the reference says at a far tighter tolerance where it leads."""
+    """Return any motion, whose exact end comes from the reference at a far tighter tolerance."""
     start, times = any_start(random, system), np.array([0.0, _duration(random, system)])
     return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=EXACT).at_end)
 
 
 def pin(random: Generator) -> Problem:
-    """Let a pin slip, and stick where it happens to."""
+    """Draw a motion of a pin with slip and possibly stick."""
     return _generic(random, any_pin(random))
 
 
 def ring(random: Generator) -> Problem:
-    """Let a disc slip on a continuous ring."""
+    """Draw a slipping disc on a continuous ring."""
     return _generic(random, any_disc(random, None))
 
 
 def points(random: Generator) -> Problem:
-    """Let a disc slip on three to six points."""
+    """Draw a slipping disc on three to six points."""
     return _generic(random, any_disc(random, int(random.integers(3, 7))))
 
 
@@ -354,4 +354,4 @@ PROBLEMS: Mapping[str, Callable[[Generator], Problem]] = {
     "any motion of a ring": ring,
     "any motion of points": points,
 }
-"""By what they are about."""
+"""Functions that draw a problem, by kind."""

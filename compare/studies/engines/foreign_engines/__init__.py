@@ -1,4 +1,4 @@
-"""What foreign engines make of the paper's systems, from data recorded with them: laws, orders, errors over time."""
+"""Foreign engines in the systems of the paper, from recorded data: friction laws, orders and errors over time."""
 
 from compare.studies.engines.foreign_engines.study import STUDY
 

@@ -1,4 +1,4 @@
-"""What foreign engines make of the paper's systems, from data recorded with them: laws, orders, errors over time."""
+"""Claims about recorded motions of foreign engines: friction laws, orders, and errors over computing time."""
 
 from __future__ import annotations
 
@@ -33,23 +33,23 @@ from compare.studies.engines.foreign_engines.theory import (
 )
 
 ORDER = (
-    "Orders observed while the step is halved, extrapolated to 0. Model error: the extrapolation's own step; "
-    "numerical error: its change from one step to the next."
+    "Orders observed in successive halvings of the step, extrapolated to 0. Model error: the change due to "
+    "extrapolation. Numerical error: change of the extrapolated value from one step to the next."
 )
 SCATTERED_ORDER = (
-    "Orders observed while the step is halved, by least squares with a term smaller by one step, since errors "
-    "scatter with where in a step the contact begins to stick. Model error: what that term changes; numerical "
-    "error: 95 % interval from the scatter."
+    "Orders observed in successive halvings of the step, by least squares with a next term of one order more, "
+    "because errors scatter with the position within a step at which stick begins. Model error: the effect of that "
+    "term. Numerical error: 95 % interval from the scatter."
 )
 LAW = (
-    "How far it is off the exact one, recorded and extrapolated to a step of 0. Predicted by our own "
-    "integration of that law, smoothed over 1e-5 m/s. Numerical error: what the last halving changes of the "
-    "extrapolation, the digits that are recorded, and eight times the change at an eighth of the smoothing."
+    "Deviation from the exact motion, recorded and extrapolated to a step of 0. Predicted by our own integration of "
+    "that law, smoothed over 1e-5 m/s. Numerical error: the change of the extrapolation in the last halving, the "
+    "recorded digits, and eight times the change at an eighth of the smoothing."
 )
 
 
 def curves() -> Data:
-    """Return the recorded ladders: seconds and error of each run."""
+    """Return computing time and error of each recorded run."""
     return {
         f"{recording.name}: {case}": runs[:, [SECONDS, ERROR]]
         for recording in ladders.recorded()
@@ -66,60 +66,61 @@ STUDY = Study.beside(
 
 
 _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
-"""Declares an order that steps of ever half the length show."""
+"""Declares a claim about the order of convergence."""
 
 _of_law = functools.partial(
     STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
 )
-"""Declares how far a law of friction leads off the exact motion."""
+"""Declares a claim about the deviation from the exact motion due to another friction law."""
 
 
-@_of_order("Steps of order 1: the error of a sliding pin falls in proportion to the step")
+@_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
 def slides() -> Measured:
-    """Compare with order 1."""
+    """Compare the orders with 1."""
     return _orders(1.0, FIRST_ORDER, ("slip",))
 
 
 @STUDY.claim(
-    "The error of a pin that sticks falls in proportion to a fixed step, whatever the order of the steps in slip",
+    "The error of a sticking pin falls in proportion to a fixed step, whatever the order of the integrator in slip",
     kind="order",
     basis="independent",
     resolution=0.5,
     note=SCATTERED_ORDER,
 )
 def sticks() -> Measured:
-    """Compare with order 1."""
+    """Compare the orders with 1."""
     return _orders(1.0, STICKING, ("stick-slip", "release"), scatters=True)
 
 
-@_of_order("Steps of order 1: the error of a disc on six points falls in proportion to the step")
+@_of_order("With steps of order 1, the error of a disc on six points falls in proportion to the step")
 def disc_slides() -> Measured:
-    """Compare with order 1."""
+    """Compare the orders with 1."""
     return _orders(
         1.0, tuple(name for name in FIRST_ORDER if name not in SINGLE_PRECISION + OFF_FOR_DISCS), ("disc",)
     )
 
 
 @_of_order(
-    "A pyramid or a box in place of the cone is another law: the errors of pin and disc do not fall with the step"
+    "With a friction pyramid or box, which differ from the cone, the errors of pin and disc do not fall with the step"
 )
 def axes_stay_off() -> Measured:
-    """Compare with order 0."""
+    """Compare the orders with 0."""
     return _orders(0.0, BY_AXIS, ("slip", "disc"))
 
 
 @_of_order(
-    "Bullet's cone and Chipmunk's joints are another law for a disc: the error does not fall with the step"
+    "With Bullet's cone and Chipmunk's joints, which differ from Coulomb's law, a disc's error does not fall with "
+    "the step"
 )
 def disc_stays_off() -> Measured:
-    """Compare with order 0."""
+    """Compare the orders with 0."""
     return _orders(0.0, OFF_FOR_DISCS, ("disc",))
 
 
 def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
-    """Return the orders of errors of the ``wanted`` settings in the number of steps, in each of ``cases``."""
+    """Compare the observed orders of the ``wanted`` settings in each of ``cases`` with ``predicted``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     runs = {(name, case): halvings(by_name[name].runs[case]) for case in cases for name in wanted}
     found = [
@@ -146,43 +147,43 @@ def _orders(
 
 
 @_of_law(
-    "A pin whirls by Bullet's and DART's boxes as by friction for each axis of the world",
+    "With Bullet's and DART's boxes, a pin whirls as with friction that is bounded along each axis separately",
     equation=CASES["whirl"].equation,
 )
 def box_whirls() -> Measured:
-    """Compare with our integration of a box."""
+    """Compare the deviation with our integration of a box."""
     return _as_far_off_as(box, "whirl", BOXES)
 
 
 @_of_law(
-    "A pin whirls by MuJoCo's pyramid as by friction along the nearest axis of the world",
+    "With MuJoCo's pyramid, a pin whirls as with friction along the nearest axis of the world",
     equation=CASES["whirl"].equation,
 )
 def pyramid_whirls() -> Measured:
-    """Compare with our integration of a pyramid."""
+    """Compare the deviation with our integration of a pyramid."""
     return _as_far_off_as(pyramid, "whirl", PYRAMIDS)
 
 
 @_of_law(
-    "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction for each axis does",
+    "Bullet's and DART's boxes hold a stuck pin too long, by as much as friction bounded along each axis does",
     equation=CASES["release"].equation,
 )
 def box_releases() -> Measured:
-    """Compare with our integration of a box."""
+    """Compare the deviation with our integration of a box."""
     return _as_far_off_as(box, "release", BOXES)
 
 
 @_of_law(
-    "MuJoCo's pyramid lets a stuck pin go too early, by as much as friction along the nearest axis does",
+    "MuJoCo's pyramid releases a stuck pin too early, by as much as friction along the nearest axis does",
     equation=CASES["release"].equation,
 )
 def pyramid_releases() -> Measured:
-    """Compare with our integration of a pyramid."""
+    """Compare the deviation with our integration of a pyramid."""
     return _as_far_off_as(pyramid, "release", PYRAMIDS)
 
 
 def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
-    """Return how far the ``wanted`` settings, of order 1, are off in a case, beside ``law``."""
+    """Compare the deviations of the ``wanted`` settings, of order 1, in a case with the deviation by ``law``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
@@ -200,17 +201,18 @@ def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
 
 
 @STUDY.claim(
-    "A box around Coulomb's cone lets a stuck pin go later than the cone does, a pyramid within it at once",
+    "A box around Coulomb's cone releases a stuck pin later than the cone, and a pyramid inside it releases it at "
+    "once",
     equation="(6), (7)",
     unit="s",
     resolution=1e-2,
-    note="By our own integration of these laws, smoothed over 1e-5 m/s. Predicted: how much later the force of (6) "
-    "exceeds |F_x|, |F_y| <= μN, and |F_x| + |F_y| <= μN, than F <= μN, (7). Numerical error: eight times the change "
-    "at an eighth of the smoothing.",
+    note="By our own integration of these laws, smoothed over 1e-5 m/s. Predicted: the delay after F = μN, (7), "
+    "until the force of (6) violates |F_x|, |F_y| <= μN, or |F_x| + |F_y| <= μN. Numerical error: eight times the "
+    "change at an eighth of the smoothing.",
     named={"late by a box": 0, "late by a pyramid": 1},
 )
 def holds_longer() -> Measured:
-    """Compare how much later than by Coulomb's law a stuck pin is let go with the roots of (6) for these laws."""
+    """Compare the delay of release after Coulomb's law with the roots of (6) for these laws."""
     times, errors = np.transpose([release_by(law) for law in (box, pyramid)])
     exact = release_where(abs)
     by_axes = (
@@ -228,15 +230,16 @@ def holds_longer() -> Measured:
 
 
 @STUDY.claim(
-    "Solved for zero slip, a stuck pin moves along tangents: it drifts outwards by ω²h/2 of its radius per second",
+    "Contact solved for zero slip moves a stuck pin along tangents: its radius grows by the fraction ω²h/2 per "
+    "second",
     basis="independent",
     unit="m",
     resolution=1e-4,
-    note="Predicted: |(1 + iωh)ⁿ − exp(iωnh)| times the radius, which is off by ω²h/2 per second to first order. "
-    "Numerical error: a unit in the last digit that is recorded.",
+    note="Predicted: |(1 + iωh)ⁿ − exp(iωnh)| times the radius, which to first order grows by ω²h/2 per second. "
+    "Numerical error: a unit in the last recorded digit.",
 )
 def creeps() -> Measured:
-    """Compare with places that go from w to (1 + iωh)·w in each step where a pin sticks."""
+    """Compare the deviations with positions that go from w to (1 + iωh)·w in each step of a stuck pin."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     runs = np.concatenate([by_name[name].runs["stuck"] for name in TANGENTS])
     names = [
@@ -252,7 +255,7 @@ def creeps() -> Measured:
     )
 
 
-# --- Figures of the study of foreign engines.
+# --- Figures of the study of foreign engines
 
 COLOURS = {
     "MuJoCo": PURPLE,
@@ -266,26 +269,26 @@ COLOURS = {
 }
 
 MARKERS = "os^Dv"
-"""Of an engine's settings; our force, the last one of each, has a dotted line and a cross."""
+"""Markers of an engine's own settings; our force, the last setting of each engine, has a dotted line and crosses."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw error over time for the pin, sliding and sticking, and for the disc."""
+    """Draw the error over computing time, for a sliding pin, a sticking pin and a disc."""
     if "theory" not in data:
         return {}
     ladders = data["theory"]
     pin, (slides, sticks) = new_figure(ncols=2, width=9.6, height=6.2)
-    _draw(slides, ladders, "slip", "it slides")
-    _draw(sticks, ladders, "stick-slip", "it sticks nine times")
+    _draw(slides, ladders, "slip", "Sliding pin")
+    _draw(sticks, ladders, "stick-slip", "Pin that sticks nine times")
     disc, (panel,) = new_figure(width=9.6, height=6.2)
-    _draw(panel, ladders, "disc", "six points")
+    _draw(panel, ladders, "disc", "Disc on six points")
     for figure, first in ((pin, slides), (disc, panel)):
         _legend(figure, first)
     return {"foreign-engines-pin": pin, "foreign-engines-disc": disc}
 
 
 def _legend(figure: Figure, panel: Axes) -> None:
-    """Put a legend below all panels, with engines one after the other in as many columns as the longest allows."""
+    """Put a legend below all panels; the engine with most settings determines the number of columns."""
     from matplotlib.lines import Line2D
 
     engines: dict[str, list[Any]] = {}
@@ -309,11 +312,11 @@ def _draw(panel: Axes, ladders: Data, case: str, title: str) -> None:
     for name, look in _looks([key.removesuffix(f": {case}") for key in ladders if key.endswith(f": {case}")]):
         seconds, errors = ladders[f"{name}: {case}"].T
         panel.loglog(seconds, errors, label=name, **look)
-    panel.set(xlabel="time of one core in s", ylabel="largest error in m", title=title)
+    panel.set(xlabel="time on one core in s", ylabel="largest error in m", title=title)
 
 
 def _looks(names: list[str]) -> list[tuple[str, dict[str, Any]]]:
-    """Return each name with its look: a colour for an engine, a marker for a setting, our own engines broad."""
+    """Return the style of each name: colour by engine, marker by setting, wide lines for our own engines."""
     looks: list[tuple[str, dict[str, Any]]] = []
     settings: dict[str, int] = {}
     for name in names:

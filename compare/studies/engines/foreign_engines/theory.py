@@ -1,4 +1,4 @@
-"""Tables of all recorded settings: how far off, at what cost, how they were set."""
+"""Recorded settings of foreign engines: friction laws, errors, orders and tables."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Case, Recor
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 
-# --- Which recorded settings share a law of friction or an order, and what is listed of all.
+# --- Groups of recorded settings by friction law and order, and parameters of the tables
 
 FIRST_ORDER = (
     "MuJoCo, elliptic cone",
@@ -35,79 +35,79 @@ FIRST_ORDER = (
     "Rapier, contact",
     "Jolt, contact",
 )
-"""Settings whose steps are of order 1 where contact slides, and whose friction is Coulomb's, at least for a pin."""
+"""Settings with steps of order 1 during slip and with Coulomb friction, at least for a pin."""
 
 SINGLE_PRECISION = ("Box2D, friction joint", "Rapier, contact", "Jolt, contact")
-"""Settings whose rounding grows beyond the error of a step before that is halved often."""
+"""Settings whose rounding exceeds the error of a step after few halvings."""
 
 OFF_FOR_DISCS = ("Bullet, cone", "Chipmunk, pivot joint")
-"""Settings that know Coulomb's friction for a pin, and another law for a disc on several points."""
+"""Settings with Coulomb friction for a pin, but with a different law for a disc on several points."""
 
 BOXES, PYRAMIDS = ("Bullet, box", "DART, Dantzig", "DART, PGS"), ("MuJoCo, pyramidal cone",)
 
 BY_AXIS = PYRAMIDS + BOXES
-"""Settings whose friction knows two axes of the world instead of a direction."""
+"""Settings whose friction depends on two axes of the world instead of the direction of slip."""
 
 STICKING = (
     *(name for name in FIRST_ORDER if name not in ("Drake, SAP", "Drake, lagged", *SINGLE_PRECISION)),
     "MuJoCo, elliptic cone, RK4",
     "MuJoCo, our force",
 )
-"""Settings with Coulomb friction and steps of a fixed length, that can be halved four times before errors grow."""
+"""Settings with Coulomb friction and fixed steps that can be halved four times before errors grow."""
 
 TANGENTS = (
     *("Bullet, cone", "Bullet, box", "DART, NSGS", "DART, FBF", "DART, Dantzig", "DART, PGS"),
     *("Chipmunk, pivot joint", "Box2D, friction joint"),
 )
-"""Settings that leave no slip at the end of a step in which contact sticks, and whose rounding does not show."""
+"""Settings that leave no slip at the end of a step during stick, and whose rounding is negligible."""
 
 WANTED = 1e-3
-"""Error in m, the time to which is listed: the largest that shows in no picture of the paper."""
+"""Error in m whose computing time the table lists, the largest that is invisible in the figures of the paper."""
 
 HALVED = 0.02
-"""How far the quotient of two numbers of steps may be from 2, as steps divide the interval between output times."""
+"""Allowed deviation of the ratio of step numbers from 2, because steps divide the interval between output times."""
 
 
-# --- The recorded ladders of runs with ever smaller tolerance, and what is read off them.
+# --- Recorded series of runs with decreasing tolerance
 
 
 @functools.cache
 def recorded() -> tuple[Recording, ...]:
-    """Return all recordings, read once."""
+    """Return all recordings; the files are read once."""
     return recordings()
 
 
 def halvings(runs: FloatArray) -> FloatArray:
-    """Return those last of ``runs`` between which the step was halved each time, shape (m, columns)."""
+    """Return the last of ``runs`` among which each step is half of the previous one, shape (m, columns)."""
     ratios = runs[1:, STEPS] / runs[:-1, STEPS]
     strange = np.nonzero(np.abs(ratios - 2.0) > HALVED)[0]
-    # A ladder may end in a step that is the engine's smallest.
+    # A series may end with the smallest step of the engine.
     if strange.size and strange[-1] == len(ratios) - 1:
         return halvings(runs[:-1])
     return runs[strange[-1] + 1 :] if strange.size else runs
 
 
-# --- What engines do that are not Coulomb's: friction that knows two axes of the world, and stick along tangents.
+# --- Deviations from Coulomb's law in engines: friction that depends on two axes, and stick along tangents
 
 Law = Callable[[complex, float], complex]
-"""Friction against a slip in m/s, as a fraction of μN, smoothed over a slip speed ε in m/s."""
+"""Friction as a function of the slip in m/s and the smoothing slip speed ε in m/s, as a fraction of μN."""
 
 
 def box(slip: complex, epsilon: float) -> complex:
-    """Return what each axis has by itself: up to √2 times too large."""
+    """Return friction that is bounded along each axis separately, which is up to √2 times too large."""
     x, y = slip.real, slip.imag
     return -complex(x / max(abs(x), epsilon), y / max(abs(y), epsilon))
 
 
 def pyramid(slip: complex, epsilon: float) -> complex:
-    """Return what takes most power out of the slip with |F_x| + |F_y| <= μN: all along the axis nearest to it."""
+    """Return the friction with |F_x| + |F_y| <= μN that dissipates most: it acts along the axis nearest to slip."""
     x, y = slip.real, slip.imag
     share = min(max(0.5 + 0.5 * (abs(x) - abs(y)) / epsilon, 0.0), 1.0)
     return -complex(share * x / max(abs(x), epsilon), (1.0 - share) * y / max(abs(y), epsilon))
 
 
 def creep(steps: int) -> float:
-    """Return how far ``steps`` along tangents of its circle carry a stuck pin off it, in m, the largest over time."""
+    """Return the largest deviation in m of a stuck pin that moves in ``steps`` along tangents of its circle."""
     case = CASES["stuck"]
     i = np.linspace(0, steps, len(case.times))
     h = float(case.times[-1]) / steps
@@ -115,7 +115,7 @@ def creep(steps: int) -> float:
 
 
 def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
-    """Return what ``solve_ivp`` makes of ``case`` under ``law``, smoothed over a slip of ``epsilon`` m/s."""
+    """Return the solution of ``case`` by ``solve_ivp`` under ``law``, smoothed over the slip ``epsilon`` in m/s."""
     pin = case.system
 
     def friction(slip_x: float, slip_y: float, *_: float) -> tuple[float, float, float]:
@@ -132,9 +132,10 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 
 
 def release_by(law: Law) -> tuple[float, float]:
-    """Return when a stuck pin is let go by ``law`` in s, and the error of that, see ``refined``.
+    """Return the time in s when ``law`` releases a stuck pin, and its error, see ``refined``.
 
-    That is when its slip along an axis of the world, which creeps below ε as long as friction holds it, comes to ε.
+    While friction holds the pin, its slip along each axis of the world creeps below ε. The release is the time
+    when it reaches ε.
     """
     case = CASES["release"]
     turning = 1j * case.system.disc_speed
@@ -153,7 +154,7 @@ def release_by(law: Law) -> tuple[float, float]:
 
 
 def release_where(held: Callable[[complex], float]) -> float:
-    """Return when a stuck pin's pull, as a fraction of μN, leaves ``held`` <= 1, in s, by (6) in closed form."""
+    """Return the time in s when ``held`` of the force (6) over μN on a stuck pin exceeds 1, in closed form."""
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])
     carried = pin.stiffness - pin.mass * pin.disc_speed**2 + 1j * pin.damping * pin.disc_speed
@@ -169,9 +170,9 @@ def release_where(held: Callable[[complex], float]) -> float:
 
 
 def error_of(law: Law, name: str) -> tuple[float, float]:
-    """Return how far off a pin is by that ``law`` in the case of that ``name``, in m, and the error of that number.
+    """Return the deviation in m of a pin under ``law`` from the exact motion of the case ``name``, and its error.
 
-    It is from the change at smaller ε and tolerance, see ``refined``.
+    The error is estimated from the change at smaller ε and tolerance, see ``refined``.
     """
     case = CASES[name]
     pin = case.system
@@ -188,29 +189,29 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
     return float(value), float(error)
 
 
-# --- What each recorded engine makes of each case: whether its motion comes to the exact one as the tolerance falls.
+# --- Claims of each recorded engine and case: does its motion converge to the exact one?
 
 OUR_FORCE = "our force"
-"""The setting of engines in which friction is none of theirs."""
+"""Setting with our force instead of the engine's own friction."""
 
 IN_SHORT = {
     "slip": ("slides", "slip"),
     "stick-slip": ("sticks 9 times", "stick"),
     "whirl": ("whirls", "slip"),
     "stuck": ("stays stuck", "stick"),
-    "release": ("lets go", "stick"),
+    "release": ("is released", "stick"),
     "disc": ("disc, 6 points", "slip"),
 }
-"""Of each case a name and whether it slips or sticks."""
+"""Short name of each case, and whether it slips or sticks."""
 
 
 def recorded_settings() -> tuple[Recorded, ...]:
-    """Return what the report's matrix shows of each setting."""
+    """Return the results of each setting for the matrix of the report."""
     return tuple(recorded_claims(recording) for recording in recorded())
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    """Return the claim of each case that one setting of an engine simulates, from its finest run."""
+    """Return the claims of one setting of an engine, one per simulated case, from the finest run."""
     claims = []
     for name, runs in recording.runs.items():
         case = CASES[name]
@@ -229,9 +230,9 @@ def recorded_claims(recording: Recording) -> Recorded:
                 source=f"Recorded on {recording.recorded} with {recording.engine} {recording.version}, "
                 f"{recording.platform}; {case.title}",
                 unit="m",
-                note="How far the finest run is off the exact motion, the largest over time. Numerical error: what "
-                "the last two refinements of the tolerance changed. Resolution: a tenth of what another law of "
-                "friction, or a pin that lets go, would change.",
+                note="Largest deviation of the finest run from the exact motion over time. Numerical error: the "
+                "changes in the last two refinements of the tolerance. Resolution: a tenth of the effect of another "
+                "friction law, or of a release.",
             )
         )
     return Recorded(
@@ -245,11 +246,11 @@ def recorded_claims(recording: Recording) -> Recorded:
     )
 
 
-# --- Tables of all recorded settings: how far off, at what cost, how they were set.
+# --- Tables of all recorded settings: error, cost and setting
 
 
 def _finest(runs: FloatArray) -> str:
-    """Return in words the error in m of the finest of ``runs``, its estimate and, of several runs, the order."""
+    """Return the error in m of the finest of ``runs``, its estimate and, for several runs, the order, as text."""
     steps, error = runs[:, STEPS], runs[:, ERROR]
     if len(runs) == 1 or not np.all(error[-2:] > 0.0):
         return f"{error[-1]:.1g}"
@@ -258,7 +259,7 @@ def _finest(runs: FloatArray) -> str:
 
 
 def time_to(wanted: float, runs: FloatArray) -> str:
-    """Return in words the processor time in ms that an error of ``wanted`` takes, between runs by powers of it."""
+    """Return the processor time in ms for the error ``wanted`` as text, interpolated between runs by a power law."""
     good = np.nonzero(runs[:, ERROR] <= wanted)[0]
     if not good.size:
         return "not reached"
@@ -270,12 +271,12 @@ def time_to(wanted: float, runs: FloatArray) -> str:
 
 
 def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> list[str]:
-    """Return ``words`` about the runs of each case."""
+    """Return the text by ``words`` about the runs of each case."""
     return [words(recording.runs[case]) if case in recording.runs else "not simulated" for case in CASES]
 
 
 def tables() -> tuple[Table, ...]:
-    """Return how far each setting is off, what it costs, and how it was set."""
+    """Return the tables of errors, costs and settings."""
     titles = tuple(case.title for case in CASES.values())
     finest = tuple((recording.name, *_of_each_case(recording, _finest)) for recording in recorded())
     cost = tuple(
@@ -288,12 +289,12 @@ def tables() -> tuple[Table, ...]:
     )
     return (
         Table(
-            "How far the finest run of each setting is off the exact motion, in m, the largest difference over time, "
-            f"± what its last two refinements, to {COARSENING:g} times less tolerance, changed: from these is the "
-            "verdict in the matrix. Orders are in the number of steps, from the last refinement.",
+            "Largest deviation over time of the finest run from the exact motion, in m, ± the changes in its last "
+            f"two refinements, each to a tolerance {COARSENING:g} times smaller. The verdicts in the matrix follow "
+            "from these numbers. Orders refer to the number of steps and come from the last refinement.",
             ("Engine, setting", *titles),
             finest,
         ),
-        Table(f"Time in ms of one core to an error of {WANTED:g} m.", ("Engine, setting", *titles), cost),
-        Table("How they were set and recorded.", ("Engine, setting", "Version", "Setting", "Recorded"), how),
+        Table(f"Time in ms on one core for an error of {WANTED:g} m.", ("Engine, setting", *titles), cost),
+        Table("Settings and recording.", ("Engine, setting", "Version", "Setting", "Recorded"), how),
     )

@@ -1,4 +1,4 @@
-"""Plain motions: state by state beside the reference, and whether velocities and forces add up along them."""
+"""Simple motions: all states compared with the reference, and integrals of velocities and forces along them."""
 
 from compare.studies.engines.trajectories.pictures import draw
 from compare.studies.engines.trajectories.study import STUDY

@@ -1,4 +1,4 @@
-"""Motions drawn from all that the studies use, until each is one that claims can be made for."""
+"""Random motions from the whole parameter range of the studies, redrawn until they suit the claims."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _pin(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stiffening(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a support that hardens, and a stop in which a body rolls round that swings out further."""
+    """Draw a pin on a hardening support, with a stop along which a body that swings far out rolls."""
     pin = _pin(random, disc_speed)
     size = abs(pin.offset)
     return replace(
@@ -75,7 +75,7 @@ def _on_points(random: Generator, disc_speed: float) -> DiscOnDisc:
 
 
 def _sliding(random: Generator, system: System) -> tuple[float, ...]:
-    """Draw a start from which the support's spring swings the body round in either sense, not through the middle."""
+    """Draw a start such that the support's spring swings the body round in either sense, not through the centre."""
     w = cmath.rect(between(random, 0.2, 0.6), random.uniform(-math.pi, math.pi))
     z = w + system.offset
     v = sign(random) * 1j * system.natural_frequency * between(random, 0.7, 1.4) * w
@@ -88,7 +88,7 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
 
 
 def _slides(motion: parameters.Motion) -> bool:
-    """Return whether forces are smooth: all slips, nothing is near to rest, a stop is always touched or never."""
+    """Return whether forces are smooth: everything slips clearly, and the stop is touched always or never."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
@@ -104,20 +104,20 @@ def _slides(motion: parameters.Motion) -> bool:
 
 
 def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin whose friction force is about what holds it against the offset."""
+    """Draw a pin whose friction force is similar to the force of the spring at the offset."""
     pin = _pin(random, disc_speed)
     return replace(pin, friction_force=pin.stiffness * abs(pin.offset) * between(random, 0.5, 2.0))
 
 
 def _stuck(random: Generator, pin: PinOnDisc) -> tuple[float, ...]:
-    """Draw a start that turns with the disc, where friction may hold the pin by (7), or not."""
+    """Draw a start that turns with the disc, at a radius where friction may or may not hold the pin by (7)."""
     z = cmath.rect(min(farthest(pin), 1.0) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
     v = 1j * pin.disc_speed * z
     return (z.real, z.imag, v.real, v.imag)
 
 
 def _sticks(motion: parameters.Motion) -> bool:
-    """Return whether (7) lets the pin go before long, and it comes to stick again for more than moments if at all."""
+    """Return whether (7) releases the pin soon, and any later stick phases are long enough."""
     pin, (x, y, *_) = motion.system, motion.start
     if not (
         isinstance(pin, PinOnDisc)
@@ -137,9 +137,9 @@ def _sticks(motion: parameters.Motion) -> bool:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random motions of one kind, drawn when they are asked for: at all ``SPEEDS``, in both senses.
+    """Random motions of one kind, drawn when they are needed: at all ``SPEEDS``, in both senses.
 
-    ``number`` tells the kind's random numbers from those of others.
+    ``number`` is part of the seed and differs from kind to kind.
     """
 
     number: int
@@ -158,7 +158,7 @@ def _drawn(kind: Drawn) -> tuple[parameters.Motion, ...]:
 
 
 def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, float]) -> parameters.Motion:
-    """Draw until the motion is one that claims can be made for."""
+    """Draw motions until one suits the claims."""
     sticks = kind.start is _stuck
     while True:
         system = kind.body(random, sense * random.uniform(*speeds))
@@ -180,7 +180,7 @@ DRAWN = {
     "pins on stops": Drawn(1, _stiffening, _sliding),
     "rings": Drawn(2, _ring, _sliding),
     "points": Drawn(3, _on_points, _sliding),
-    # From some draws, wrong engines never come to an end: they would show less than a motion that differs.
+    # For other numbers, wrong engines may never finish, which shows less than a motion that differs.
     "pins that stick": Drawn(12, _sticking, _stuck),
 }
-"""By what moves."""
+"""Random motions by kind."""

@@ -1,8 +1,8 @@
-"""The motions by hand of the study of plain motions, and from what others are drawn.
+"""Motions with given parameters, and ranges of the random motions.
 
-In the paper's parameters m, J and C are one: an engine that takes one for the other moves as it should. Here no two
-parameters are equal, so that each has a part of its own in the motion. A mistake may also be confined to a corner of
-the parameters, to a slow disc or to one that turns the other way: so motions are drawn from that whole range.
+In the paper's parameters m, J and C are all one, so an engine that confuses two of them still moves correctly. Here
+no two parameters are equal, so each has its own effect. A mistake may also occur only in a corner of the parameter
+space, for a slow disc or for one that turns the other way. Therefore random motions cover the whole range.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from reference_model import DiscOnDisc, PinOnDisc
 from reference_model.systems import System
 
 PANEL = 0.25
-"""Length in s of the pieces of time over which forces are integrated."""
+"""Length in s of the integration intervals of forces."""
 
 STICK_RESOLUTION = 5e-4
-"""In s, so that a millisecond is seen. A law that only approximates stick lets go late, at 1e-9 by some 1e-5 s."""
+"""In s, to detect a millisecond. Approximate laws of stick release late, by about 1e-5 s at a tolerance of 1e-9."""
 
 PIN = PinOnDisc(mass=1.3, stiffness=2.1, damping=0.17, friction_force=0.11, disc_speed=1.9, offset=0.07)
 
@@ -44,9 +44,9 @@ OTHER_WAY = replace(DISC, damping=0.15, disc_speed=-1.9, shaft_speed=-1.6)
 
 @dataclass(frozen=True)
 class Motion:
-    """Parameters, start, length in s, whether it sticks on its way, resolution in SI units, and where it is from.
+    """Parameters, initial state, duration in s, whether stick occurs, tolerance of the engine, resolution and source.
 
-    ``tolerance`` is that of the engine.
+    The resolution is in SI units.
     """
 
     system: System
@@ -55,9 +55,7 @@ class Motion:
     sticks: bool = False
     tolerance: float = WORKING / 10
     resolution: float = 1e-7
-    source: str = (
-        "parameters of which no two are equal, and a start from which nothing sticks, are our choice"
-    )
+    source: str = "no two parameters are equal, and nothing sticks after the start (our choice)"
 
 
 DISC_START = (0.06, 0.01, 0.2, -0.01, 0.02, 0.9)
@@ -94,31 +92,31 @@ RINGS = {
 POINTS = {"a disc on six points": Motion(SIX, DISC_START, 20.0)}
 
 MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
-"""Nowhere but in the pin that sticks does a point of the contact come to rest: there friction has a bend."""
+"""Only in the pin that sticks does a point of the contact come to rest, where friction has a kink."""
 
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
-"""What an engine is asked for that differs from another in its contact alone."""
+"""Motions for an engine that differs from another one only in its contact."""
 
 # ---------------------------------------------------------------- drawn from the whole range
 
 SEED = 8
 
 SPEEDS = ((0.1, 0.3), (0.4, 3.0), (4.1, 6.0))
-"""|ω| in rad/s: slow, as about the natural frequency, and fast. The other studies go from 0.15 to 5."""
+"""Ranges of |ω| in rad/s: slow, near the natural frequency, and fast. The other studies use 0.15 to 5."""
 
 UNTIL = 3.0
-"""In s."""
+"""Duration in s."""
 
 LEAST_SLIP = 0.15
-"""Of the largest: nothing comes near to rest where forces are integrated."""
+"""Smallest slip relative to the largest, so nothing is almost at rest where forces are integrated."""
 
 MOST_TURN = 2.0
-"""Of a disc on points in rad in a ``PANEL``: its forces turn as fast."""
+"""Largest rotation in rad of a disc on points during a ``PANEL``, because its forces turn with it."""
 
 STICKS_FOR = (0.2, 2.0)
-"""Time in s for which a pin sticks at the start."""
+"""Range of the duration in s of the initial stick phase."""
 
 MOST_PHASES = 6
 
 LEAST_SAMPLES = 4
-"""Of a stick phase, so that (7) can be asked in the middle of it."""
+"""Smallest number of samples in a stick phase, so (7) can be evaluated in its middle."""

@@ -1,4 +1,4 @@
-"""How far engines are from the reference over time, and how far they say they may be."""
+"""Figure of the deviation of each engine from the reference over time, with its error bar."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COLUMNS = 4
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the largest difference of each motion from the reference's so far, and its error bar."""
+    """Draw the largest deviation of each motion from the reference up to each time, and its error bar."""
     rows = math.ceil(len(MOTIONS) / COLUMNS)
     figure, panels = new_figure(
         ncols=COLUMNS, nrows=rows, width=11.0, height=2.6 * rows, sharex=True, sharey=True
@@ -37,7 +37,7 @@ def draw(data: ByEngine) -> Figures:
         panel.set_xlabel(axis("t", "s"))
         panel.tick_params(labelbottom=True)
     panels[0].set_ylim(0.1 * TRUTH, None)
-    figure.supylabel("largest difference of the state so far", fontsize=11.0)
+    figure.supylabel("largest deviation of the state so far", fontsize=11.0)
     named = {
         label: line for one in panels for line, label in zip(*one.get_legend_handles_labels(), strict=True)
     }

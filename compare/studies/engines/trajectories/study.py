@@ -1,4 +1,4 @@
-"""Plain motions: state by state beside the reference, and whether velocities and forces add up along them."""
+"""Simple motions: all states compared with the reference, and integrals of velocities and forces along them."""
 
 from __future__ import annotations
 
@@ -33,24 +33,24 @@ from compare.studies.engines.trajectories.theory import (
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.systems import FloatArray
 
-# --- One claim of several motions: with all their numbers, each with its own error bar.
+# --- One claim about several motions, with all their numbers and error bars
 
 Motions = Iterable[Motion]
-"""Those of which one claim is made."""
+"""The motions of one claim."""
 
 Measure = Callable[[Engine, Motion], "Measured | None"]
 MeasureAll = Callable[[Engine, Motions], "Measured | None"]
 
 
 def together(measure: Measure) -> MeasureAll:
-    """Let ``measure``, which looks at one motion, look at all of which one claim is made."""
+    """Extend ``measure``, which takes one motion, to all motions of a claim."""
 
     @functools.wraps(measure)
     def measure_all(engine: Engine, motions: Motions) -> Measured | None:
         if engine.contact_only and (isinstance(motions, Drawn) or not set(motions) <= set(ONE_OF_EACH_KIND)):
             return None
         if not all(engine.simulates(motion.system) for motion in motions):
-            # All that is missing in one sentence, not one for each claim.
+            # One sentence states everything that is missing, instead of one per claim.
             raise UnsupportedSystemError(engine.lacking(motion.system for motion in MOTIONS.values()))
         parts = [part for motion in motions if (part := measure(engine, motion)) is not None]
         return pooled(parts) if parts else None
@@ -59,7 +59,7 @@ def together(measure: Measure) -> MeasureAll:
 
 
 def pooled(parts: Sequence[Measured]) -> Measured:
-    """Return what was measured of several systems of one kind as one, with all numbers and their error bars."""
+    """Return the results of several systems of one kind as one, with all numbers and their error bars."""
     first, *others = parts
     if not others:
         return first
@@ -83,13 +83,13 @@ def pooled(parts: Sequence[Measured]) -> Measured:
 
 
 def _sizes(part: Measured) -> FloatArray:
-    """Return the size beside which errors of each number are small."""
+    """Return the reference size for the error of each number."""
     size = np.max(np.abs(part.predicted)) if part.size is None else part.size
     return np.broadcast_to(size, np.shape(part.value)).ravel()
 
 
 def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
-    """Return the smallest and the largest value of each parameter in words, or the one that all have."""
+    """Return for each parameter the common value, or the smallest and the largest value as text."""
     found: dict[str, float | str] = {}
     for name, value in parameters[0].items():
         values = [one[name] for one in parameters]
@@ -99,7 +99,7 @@ def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float 
     return found
 
 
-# --- Plain motions: state by state beside the reference, and whether velocities and forces add up along them.
+# --- The study and its motions
 
 STUDY = Study.beside(
     __file__,
@@ -111,16 +111,16 @@ STUDY = Study.beside(
 )
 
 INTEGRATED = (
-    f"What is missing in every {parameters.PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes; its "
-    "error from how the Legendre coefficients of what is integrated fall. The tolerance counts as an error of "
-    "both states besides."
+    f"Residual in every {parameters.PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes. Its error "
+    "follows from the decay of the Legendre coefficients of the integrand. In addition, the tolerance counts as an "
+    "error of both states."
 )
 
 NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
 
 
 def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
-    """Return motions by hand each for itself, and those that are drawn by kinds."""
+    """Return single motions with given parameters, and groups of random motions by kind."""
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
@@ -132,7 +132,7 @@ OF_DISCS = {
     "(19), (20)": by_name(parameters.RINGS, "rings"),
     "(19), (21)": by_name(parameters.POINTS, "points"),
 }
-"""By the equations that they follow."""
+"""Motions of discs by their equations."""
 
 
 def of_bodies(
@@ -144,9 +144,9 @@ def of_bodies(
     by_law: bool = True,
     **more: Any,
 ) -> Callable[[MeasureAll], MeasureAll]:
-    """Declare a claim of pins, and of discs on rings and on points, in the unit ``of_pins`` or ``of_discs``.
+    """Declare a claim about pins and about discs on rings and on points, in the unit ``of_pins`` or ``of_discs``.
 
-    ``by_law`` says whether it is about the equations by which they move; ``more`` is as ``Study.claim`` takes it.
+    ``by_law`` is True if the claim is about the equations of motion; ``more`` is passed to ``Study.claim``.
     """
 
     def declare(function: MeasureAll) -> MeasureAll:
@@ -158,22 +158,22 @@ def of_bodies(
     return declare
 
 
-# ---------------------------------------------------------------- what is claimed
+# ---------------------------------------------------------------- the claims
 
 
-@functools.lru_cache(maxsize=256)  # of all motions, at the tolerances of an error estimate
+@functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
 def run(engine: Engine, motion: parameters.Motion, tolerance: float) -> Trajectory:
-    """Return the motion at ``times_of(motion)``, for all claims on it."""
+    """Return the motion at ``times_of(motion)``, which all claims about it share."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
 def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
-    """Return the states of a motion, and their errors."""
+    """Return the states of a motion and their errors."""
     return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
 
 
 @of_bodies(
-    "A body moves state by state as the reference does: {}",
+    "The states of a body equal those of the reference: {}",
     of_pins="m, m/s",
     of_discs="m, rad, m/s, rad/s",
     pins=SLIDING | STICKING,
@@ -182,10 +182,10 @@ def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
 )
 @together
 def moves(engine: Engine, motion: parameters.Motion) -> Measured:
-    """Compare all states with the reference's."""
+    """Compare all states with those of the reference."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
-    # A single number may be right by chance, and so may all of them where both runs take the same steps.
+    # Single numbers may agree by chance, or all of them if both runs take the same steps.
     bar = found.largest + motion.tolerance * float(np.max(np.abs(predicted)))
     times, data = times_of(motion), {}
     if motion in NAMES:
@@ -207,7 +207,7 @@ def moves(engine: Engine, motion: parameters.Motion) -> Measured:
 
 
 @of_bodies(
-    "Places and angle change by the integrals of velocity and spin: {}",
+    "Position and angle change by the integrals of velocity and spin: {}",
     of_pins="m",
     of_discs="m, rad",
     pins=SLIDING,
@@ -216,7 +216,7 @@ def moves(engine: Engine, motion: parameters.Motion) -> Measured:
 )
 @together
 def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of places and angle in each panel with the integral of velocity and spin."""
+    """Compare the change of position and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
     return balance(
         engine,
@@ -228,7 +228,7 @@ def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
 
 
 @of_bodies(
-    "Momentum and spin change by the impulses of friction, springs and dampers: {}",
+    "Momentum and angular momentum change by the impulses of friction, springs and dampers: {}",
     of_pins="N s",
     of_discs="N s, N m s",
     pins=SLIDING,
@@ -238,7 +238,7 @@ def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
 )
 @together
 def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of momentum and spin in each panel with the integral of forces and moments."""
+    """Compare the change of momentum and angular momentum in each panel with the integral of forces and moments."""
     body = motion.system
     half = body.state_size // 2
     inertia = np.array(
@@ -260,8 +260,8 @@ def balance(
     rates: Callable[[FloatArray], FloatArray],
     components: Sequence[str],
 ) -> Measured | None:
-    """Compare what changes in each panel with the integral of what changes it; None where the motion sticks."""
-    if motion.sticks:  # there friction holds, and is none of the contact's law
+    """Compare the change of ``amounts`` in each panel with the integral of their ``rates``; None during stick."""
+    if motion.sticks:  # the friction law does not determine the force during stick
         return None
 
     def integrals(tolerance: float) -> tuple[FloatArray, FloatArray]:
@@ -288,16 +288,16 @@ def balance(
 
 
 @STUDY.claim(
-    "A body sticks and lets go when the reference does: {}",
+    "A body sticks and is released at the times of the reference: {}",
     kind="trajectory",
     unit="s",
     resolution=parameters.STICK_RESOLUTION,
-    note=f"Times of all stick phases longer than {parameters.STICK_RESOLUTION:g} s, beside those of the reference.",
+    note=f"Times of all stick phases longer than {parameters.STICK_RESOLUTION:g} s, compared with the reference.",
     each=STICKING,
 )
 @together
 def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare beginnings and ends of all stick phases with the reference's."""
+    """Compare start and end of all stick phases with those of the reference."""
     if not motion.sticks:
         return None
     predicted = stick_times(by_reference(motion))
@@ -309,16 +309,16 @@ def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
 
 
 @STUDY.claim(
-    "A body half way through a stick phase is let go when (7) says: {}",
+    "A body halfway through a stick phase is released at the time that (7) predicts: {}",
     equation="(7)",
     unit="s",
     resolution=parameters.STICK_RESOLUTION,
-    note="End of each stick phase, less what (7) says for the place in the middle of it.",
+    note="End of each stick phase minus the prediction of (7) from the position in the middle of the phase.",
     each=STICKING,
 )
 @together
 def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the ends of stick phases with (7), where the reference finds any."""
+    """Compare the ends of stick phases with (7), if the reference contains any."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None
@@ -330,11 +330,11 @@ def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
 def of_stick(
     motion: parameters.Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]
 ) -> Measured:
-    """Return what is measured of a pin's stick phases; the numbers are of each ``kind`` in turn."""
+    """Return the result for a pin's stick phases; the numbers alternate between the ``kind`` names."""
     return Measured(
         predicted=predicted,
         value=found.value,
-        # An error of the state may make the first number of two right by chance; one of the tolerance is in all.
+        # The first of two numbers may be right by chance, but an error of the tolerance affects all of them.
         error=found.largest + motion.tolerance * motion.until,
         size=1.0 / motion.system.natural_frequency,
         components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],
@@ -345,15 +345,15 @@ def of_stick(
 
 
 def started(motion: parameters.Motion) -> str:
-    """Return from where, and until when, a motion is followed."""
+    """Return the start and the duration of a motion as text."""
     return f"To t = {motion.until:g} s from {motion.start}."
 
 
-# ---------------------------------------------------------------- of other motions
+# ---------------------------------------------------------------- other motions
 
 
 def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
-    """Measure what the study claims, of each of the given motions in place of its own."""
+    """Measure the claims of the study for the given motions instead of its own."""
     declared = []
     for one in STUDY.declared:
         (like,) = next(iter(one.each.values()))

@@ -1,4 +1,4 @@
-"""The motions by the reference, and what changes places and momentum in them: integrals over panels of time."""
+"""Motions by the reference, and integrals of the rates of position and momentum over panels of time."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from reference_model.support import Support
 from reference_model.systems import FloatArray, System
 
 NODES, WEIGHTS = leggauss(10)
-"""Of Gauss's rule, on (−1, 1): forces are integrated to rounding where no point of the contact comes to rest."""
+"""Gauss's rule on (−1, 1), exact to rounding for the forces if no point of the contact comes to rest."""
 
 SLOWEST_FALL = 0.9
-"""Largest ratio of neighbouring Legendre coefficients of what is integrated."""
+"""Largest assumed ratio of neighbouring Legendre coefficients of the integrand."""
 
 
 def times_of(motion: Motion) -> FloatArray:
-    """Return bounds and Gauss nodes of all panels in their order: each panel begins with a bound."""
+    """Return the bounds and Gauss nodes of all panels in their order; each panel begins with its bound."""
     bounds = np.linspace(0.0, motion.until, round(motion.until / PANEL) + 1)
     places = np.concatenate(([0.0], 0.5 + 0.5 * NODES))
     return np.append(bounds[:-1, np.newaxis] + PANEL * places, motion.until)
@@ -32,7 +32,7 @@ def times_of(motion: Motion) -> FloatArray:
 
 @functools.cache
 def by_reference(motion: Motion) -> Trajectory:
-    """Return the motion at ``times_of(motion)`` by the reference at its tightest."""
+    """Return the motion at ``times_of(motion)`` by the reference at its tightest tolerance."""
     return simulate(motion.system, motion.start, times_of(motion), tolerance=TRUTH)
 
 
@@ -49,9 +49,9 @@ def at_nodes(states: FloatArray) -> FloatArray:
 def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
 
-    The rule with n nodes misses the Legendre coefficients from 2n on. They are taken to fall from one to the next as
-    those from the middle of the first n to the last do, and with SAFETY: where a point of the contact comes to rest
-    they fall more and more slowly, as a power of their number.
+    The rule with n nodes misses the Legendre coefficients from 2n on. The error estimate assumes that they decay at
+    the mean rate between the middle and the last of the first n coefficients, and contains SAFETY: if a point of the
+    contact comes to rest, they decay more slowly, as a power of their number.
     """
     n = len(NODES)
     project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)
@@ -63,7 +63,7 @@ def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def forces(body: System, states: FloatArray) -> FloatArray:
-    """Return the force in N, and of a disc the moment in N m, at ``states`` (shape (..., 4 or 6)) where it slips."""
+    """Return the force in N, and for a disc the moment in N m, in slipping ``states`` of shape (..., 4 or 6)."""
     law, support = contact_of(body), Support.of(body)
     half, omega = body.state_size // 2, body.disc_speed
 
@@ -82,17 +82,17 @@ def forces(body: System, states: FloatArray) -> FloatArray:
 
 
 def equation_of(motion: Motion) -> str:
-    """Return the equations of the paper by which the body moves."""
+    """Return the numbers of the paper's equations of motion for the body."""
     if isinstance(motion.system, PinOnDisc):
         return "(1)"
     return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
 
 
-# --- What is read off the stick phases of a pin: when they begin and end, and by how much release is late by (7).
+# --- Stick phases of a pin: start, end, and delay of the release after (7)
 
 
 def samples_in_stick(run: Trajectory) -> list[int]:
-    """Return the number of the sample in the middle of each stick phase that ends by release."""
+    """Return the index of the sample in the middle of each stick phase that ends by release."""
     found = []
     for phase in run.stick_phases:
         inside = np.flatnonzero((run.times > phase.start) & (run.times < phase.end))
@@ -102,21 +102,21 @@ def samples_in_stick(run: Trajectory) -> list[int]:
 
 
 def stick_times(run: Trajectory) -> FloatArray:
-    """Return beginnings and ends in s of stick phases in order, but for those shorter than ``STICK_RESOLUTION``.
+    """Return start and end in s of all stick phases longer than ``STICK_RESOLUTION``, in order.
 
-    An engine may take a moment to make up its mind: that it sticks once more for 1e-7 s changes no motion.
+    Shorter phases, such as 1e-7 s of stick before a release, do not change the motion.
     """
     lasting = [phase for phase in run.stick_phases if phase.end - phase.start > STICK_RESOLUTION]
     return np.array([time for phase in lasting for time in (phase.start, phase.end)])
 
 
 def as_many(found: FloatArray, as_in: FloatArray) -> FloatArray:
-    """Return ``found``, or no numbers where there are not as many as in ``as_in``."""
+    """Return ``found``, or NaN if the number of elements differs from ``as_in``."""
     return found if found.shape == as_in.shape else np.full(as_in.shape, math.nan)
 
 
 def late(run: Trajectory, pin: PinOnDisc, samples: list[int]) -> FloatArray:
-    """Return by how many s each phase outlasts (7), asked at a sample in it; not a number if nothing ends there."""
+    """Return the delay in s of the end of each phase after (7) at a sample in it; NaN without such a phase."""
     result = []
     for i in samples:
         time = float(run.times[i])

@@ -1,4 +1,4 @@
-"""How likely the whirl is: the basins of Fig. 5, their boundary, and how they change with the speed."""
+"""Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
 
 from compare.studies.pin.basins.study import STUDY
 

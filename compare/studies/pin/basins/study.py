@@ -1,4 +1,4 @@
-"""How likely the whirl is: the basins of Fig. 5, their boundary, and how they change with the speed."""
+"""Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
 
 from __future__ import annotations
 
@@ -73,14 +73,14 @@ STUDY = Study.beside(
 
 
 @STUDY.claim(
-    "The stick–slip orbit between the two basins of Fig. 5 comes back to its start after its period",
+    "The stick–slip orbit between the two basins of Fig. 5 returns to its start after one period",
     equation="(1), (6)",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-4,
 )
 def closes(engine: Engine) -> Measured:
-    """Compare the state after a period with that at the start."""
+    """Compare the state after one period with the state at the start."""
     orbit = saddle(FIG5)
     found = refined(
         lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
@@ -90,24 +90,24 @@ def closes(engine: Engine) -> Measured:
         value=found.value,
         error=found.largest,
         components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
-        note=f"Found by the map from release to release: period {orbit.period:.7g} s, of which it sticks "
-        f"{orbit.stick_time:.5g} s; multipliers "
+        note=f"Found by the map from release to release: period {orbit.period:.7g} s including "
+        f"{orbit.stick_time:.5g} s of stick; multipliers "
         f"{', '.join(f'{abs(value):.5g}' for value in orbit.multipliers)}.",
     )
 
 
 @STUDY.claim(
-    "The stick–slip orbit has the period, the time of stick and the multiplier that its map of releases gives",
+    "The stick–slip orbit between the basins has the period, the stick time and the multiplier of its release map",
     equation="(1), (6)",
     kind="trajectory",
     unit="s, 1",
     resolution=1e-3,
-    note=f"From release to release, and from releases {STEP:g} and {2.0 * STEP:g} rad to either side by differences "
-    "of fourth order. Error: the change at a smaller tolerance and with twice these differences.",
+    note=f"One turn from release to release, and turns from releases {STEP:g} and {2.0 * STEP:g} rad to either side "
+    "for differences of fourth order. Error: the change at a smaller tolerance and with twice these differences.",
     named={"period of the saddle": 0, "stick of the saddle": 1, "multiplier of the saddle": 2},
 )
 def returns(engine: Engine) -> Measured:
-    """Compare period, time of stick and multiplier of the saddle in the engine's own map of releases."""
+    """Compare period, stick time and multiplier of the saddle in the engine's own release map."""
     orbit = saddle(FIG5)
     releases = ReleaseMap(FIG5, ON_BOUNDARY)
 
@@ -130,25 +130,25 @@ def returns(engine: Engine) -> Measured:
         return np.array([middle.time, middle.stick_time, multiplier(STEP, tolerance)])
 
     found = refined(one_turn)
-    # Of fourth order: at twice the step it is 16 times as far off, and the change 15 times.
+    # For differences of fourth order, twice the step has 16 times the error, so the change is 15 times the error.
     bent = abs(multiplier(2.0 * STEP, WORKING) - found.value[2]) / 7.5
     return Measured(
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
         value=found.value,
         error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
-        components=("period in s", "time of stick in s", "multiplier in 1"),
+        components=("period in s", "stick time in s", "multiplier in 1"),
     )
 
 
 @STUDY.claim(
-    "Starts on either side of the boundary, which is found by shooting, come to equilibrium and whirl",
+    "Starts on either side of the computed boundary end in the equilibrium and on the whirl",
     equation="(3), (17)",
-    note=f"Starts {ASIDE:g} inside and outside of the boundary, after {AFTER:g} s: whether the "
-    "distance from the place (3) is smaller, or larger, than X0.",
+    note=f"Starts {ASIDE:g} inside and outside the boundary, after {AFTER:g} s: is the distance from the position "
+    "(3) smaller, or larger, than X0?",
     basis="reference",
 )
 def parts(engine: Engine, places: int = PLACES) -> Measured:
-    """Tell to which end starts on either side of the boundary come, at so many ``places`` of it."""
+    """Check the ends of starts on either side of the boundary, at this number of ``places`` on it."""
     rays = np.exp(2j * math.pi * np.arange(places) / places)
     ways = np.column_stack((rays.real, rays.imag))
     within = starts_at(*(WITHIN + np.zeros_like(ways)).T)
@@ -166,44 +166,45 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
 
 
 @STUDY.claim(
-    "The stable set of the saddle-type stick–slip orbit separates starts that end in equilibrium and in whirl",
-    note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting, and cubic splines. Those of "
-    "the starts that end as the other side of the splines does which are the farthest from it were asked by shooting "
-    "on which side of the saddle's stable set they are: those do not hold for which that is not their end.",
+    "The stable set of the saddle-type orbit separates the starts of the equilibrium from those of the whirl",
+    note=f"{SIDE} × {SIDE} starts by the compiled ensemble; the boundary by shooting and cubic splines. Some starts "
+    "end as if they were on the other side of the splines. For those of them that are farthest away, shooting "
+    "determines the side of the saddle's stable set, and the claim fails for a start if that is not the side of its "
+    "end.",
     basis="reference",
 )
 def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
-    """Count the starts that end otherwise than their side of the boundary says.
+    """Count the starts whose end does not match their side of the boundary.
 
-    The curve is interpolated: starts that end as its other side does are asked by shooting on which side they are.
+    The curve is interpolated, so shooting determines the side of the starts that do not match the curve.
     """
     curve, places, ends = smooth(boundary(FIG5, cells)), places_on_grid(side), ends_on_grid(FIG5, side)
     other = ends.ravel() != np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
     off = distances(beyond, curve)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Separatrix.of(saddle(FIG5))  # far tighter than by which they may miss it
+    sides = Separatrix.of(saddle(FIG5))  # far tighter than the required margin
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
     how_far = f", none farther than {off.max():.2g} from it" if len(off) else ""
-    # The others end as their side of the curve says, or lie nearer to it than those that are asked.
+    # The others match their side of the curve, or are closer to it than the starts for shooting.
     margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
     return answers_of(
         margins,
         BARELY,
         source=FROM_REST,
-        note=f"The boundary is from {len(boundary(FIG5, cells)) - 1} starts that come to the saddle; {len(off)} "
-        f"starts end as the other side of the splines does{how_far}; {len(farthest)} of these were asked.",
+        note=f"The boundary consists of {len(boundary(FIG5, cells)) - 1} starts that lead to the saddle; {len(off)} "
+        f"starts do not match their side of the splines{how_far}; shooting checked {len(farthest)} of these.",
     )
 
 
 @STUDY.claim(
-    "The share of starts that end in the equilibrium is the share of the area inside the boundary, at both speeds",
+    "The share of starts that end in the equilibrium equals the share of the area inside the boundary, at both "
+    "speeds",
     resolution=2e-3,
-    note=f"{SIDE} × {SIDE} starts by the compiled ensemble, and where those of a cell end differently a grid {FINER} "
-    "times as dense; the boundary by shooting. Numerical error: half of the finer cells through which the boundary "
-    "passes.",
+    note=f"{SIDE} × {SIDE} starts by the compiled ensemble, and a grid {FINER} times as dense in cells with "
+    "different ends; the boundary by shooting. Numerical error: half of the finer cells that contain the boundary.",
     basis="reference",
     swept=("disc_speed",),
 )
@@ -222,13 +223,13 @@ def area(side: int = SIDE, cells: int = CELLS, pins: tuple[PinOnDisc, ...] = tup
 
 
 @STUDY.claim(
-    "The plain reference finds the ends that the compiled ensemble finds",
+    "The plain reference and the compiled ensemble find the same ends",
     equation="(1), (6)",
     kind="trajectory",
-    note=f"{RECOMPUTED} starts, of which half are not farther than {ASIDE:g} from the boundary.",
+    note=f"{RECOMPUTED} starts, half of them within {ASIDE:g} of the boundary.",
 )
 def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS) -> Measured:
-    """Ask the plain reference about some of the random starts, and about some next to the boundary."""
+    """Compare the ends of some random starts, and of some starts near the boundary."""
     curve, (places, random) = smooth(boundary(FIG5, cells)), random_places(starts)
     near = curve[random.integers(len(curve), size=count // 2)]
     near = near + random.uniform(-ASIDE, ASIDE, (count // 2, 2))
@@ -240,35 +241,35 @@ def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS
             == (end == EndState.WHIRL)
             for start, end in zip(chosen, found, strict=True)
         ],
-        source="Fig. 5; random starts, half of them beside the boundary",
+        source="Fig. 5; random starts, half of them near the boundary",
     )
 
 
 @STUDY.claim(
-    "The attraction area of the self-centred equilibrium shrinks as ω grows",
-    note=f"Whether the share of the same {STARTS} random starts does not grow from one of {len(SPEEDS)} speeds to "
-    "the next.",
+    "The basin of the self-centred equilibrium shrinks as ω grows",
+    note=f"Is the share of the same {STARTS} random starts at each of {len(SPEEDS)} speeds not larger than at the "
+    "previous one?",
     basis="independent",
     swept=("disc_speed",),
 )
 def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measured:
-    """Compare the equilibrium's shares at neighbouring speeds, from the first that has a whirl on."""
+    """Compare the equilibrium's shares at neighbouring speeds, starting with the last one without a whirl."""
     shares = shares_over_speed(speeds, starts)
     rest = shares[EndState.SELF_CENTRED][:, 0]
     last = max(int(np.argmax(rest < 1.0)) - 1, 0)
-    # Equal shares are no growth; a start whose end is not known may be on either side.
+    # Equal shares are allowed; a start with an unknown end may be on either side.
     margins = -np.diff(rest[last:]) + 0.5 / starts
     open_ends = shares[EndState.UNDECIDED][last:, 0]
     return answers_of(
         margins,
         open_ends[:-1] + open_ends[1:],
-        source=f"Section 5; Fig. 5 but for ω; starts in {RECTANGLE}",
-        note=f"All come to the equilibrium up to ω = {speeds[last]:.3g} rad/s; {100.0 * rest[-1]:.2g} % still do at "
-        f"{speeds[-1]:g} rad/s.",
+        source=f"Section 5; Fig. 5 except for ω; starts in {RECTANGLE}",
+        note=f"All starts lead to the equilibrium up to ω = {speeds[last]:.3g} rad/s; {100.0 * rest[-1]:.2g} % still "
+        f"do at {speeds[-1]:g} rad/s.",
     )
 
 
-# --- Figure of the basins of Fig. 5.
+# --- Figure of the basins of Fig. 5
 
 
 def draw(data: ByEngine) -> Figures:

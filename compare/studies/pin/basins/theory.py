@@ -1,4 +1,4 @@
-"""The ends of many starts, and the boundary between them: the stable set of a stick–slip orbit of saddle type."""
+"""Ends of many starts, and the boundary between them: the stable set of a saddle-type stick–slip orbit."""
 
 from __future__ import annotations
 
@@ -17,58 +17,57 @@ from reference_model import StickSlipOrbit, basin_boundary, self_centred_equilib
 from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The plane of starts, and how their ends and the boundary between them are looked for.
+# --- The plane of starts, and parameters of the search for ends and boundary
 
 PLANE = ((-0.3, 0.5), (-0.4, 0.4))
-"""Of x0 in m and vx0 in m/s; the others are zero."""
+"""Ranges of x0 in m and vx0 in m/s; y0 and vy0 are zero."""
 
 RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
-"""The same in words."""
+"""The same ranges as text."""
 
 FROM_REST = "Fig. 5; starts from rest in y"
 
 SIDE, FINER = 334, 3
-"""Starts along each side of the plane, and into how many parts the grid is divided where their ends differ."""
+"""Starts along each side of the plane, and refinement factor of the grid where ends differ."""
 
 FASTEST = replace(FIG5, disc_speed=3.0)
-"""Fig. 5 at twice its speed: there the basin is small."""
+"""Fig. 5 at twice its speed, where the basin is small."""
 
 WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.06))}
-"""Where in the plane the boundary of each pin is looked for; that no other part of it lies elsewhere the ends of the
-grid say."""
+"""Search range for the boundary of each pin. The ends on the grid show that no part of it lies outside."""
 
 CELLS, ON_BOUNDARY = 8, 1e-5
-"""With which resolution and tolerance: splines between the points are 1.2e-3 m off, half a step of the grid."""
+"""Resolution and tolerance of the boundary. Splines between its points are 1.2e-3 off, half a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6
-"""How many starts at most are asked by shooting, and by how much in rad they must miss the saddle to be on a side."""
+"""Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
 
 UNTIL = 3000.0
-"""In s: long enough for every start to have come to its end."""
+"""Duration in s until every start has reached its end."""
 
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
-"""In rad/s."""
+"""Disc speeds in rad/s."""
 
 STARTS, SEED = 2000, 5
-"""Random starts in the plane, the same at every speed."""
+"""Number of random starts in the plane, the same at every speed, and seed."""
 
 RECOMPUTED = 16
-"""Starts whose end the plain reference is asked for, half of them next to the boundary."""
+"""Starts that the plain reference recomputes, half of them near the boundary."""
 
 SETTLED = 250.0
-"""In s: what the plain reference takes to come to one of the two ends from these."""
+"""Duration in s until the plain reference has reached one of the two ends from these starts."""
 
 STEP = 5e-3
-"""In rad: by how much other releases are off the saddle's, from which an engine's multiplier is taken."""
+"""Distance in rad of other releases from the saddle's, for an engine's multiplier."""
 
 PLACES, ASIDE = 4, 5e-3
-"""Starts on the boundary that each engine is asked about, and how far to its sides, in m and m/s."""
+"""Number of starts on the boundary for each engine, and distance from it to either side in m and m/s."""
 
 WITHIN, REACH = (0.05, -0.1), 0.4
-"""A start in the basin of the equilibrium, and how far from it all are in that of the whirl."""
+"""A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
-"""When the engines' motions have left the saddle for good, in s, and at which tolerance."""
+"""Duration in s until the engines' motions have left the saddle, and tolerance."""
 
 
 def curves(
@@ -96,7 +95,7 @@ def saddle(pin: PinOnDisc) -> StickSlipOrbit:
 
 
 def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the saddle with the tolerance that points of the boundary are to have."""
+    """Return the saddle with the tolerance for points of the boundary."""
     orbit = saddle(pin)
     return replace(orbit, problem=replace(orbit.problem, tolerance=ON_BOUNDARY))
 
@@ -117,27 +116,27 @@ def smooth(points: FloatArray, samples: int = 1000) -> FloatArray:
 
 
 def distances(points: FloatArray, curve: FloatArray) -> FloatArray:
-    """Return how far points (n, 2) are from those of a curve."""
+    """Return the distances of points (n, 2) from the points of a curve."""
     from scipy.spatial import cKDTree
 
     return np.asarray(cKDTree(curve).query(points)[0])
 
 
 def enclosed(curve: FloatArray) -> float:
-    """Return the area inside of a closed curve, shape (n, 2)."""
+    """Return the area inside a closed curve of shape (n, 2)."""
     (x, y), (x_next, y_next) = curve[:-1].T, curve[1:].T
     return 0.5 * abs(float(np.sum(x * y_next - x_next * y)))
 
 
 def inside(points: FloatArray, curve: FloatArray) -> NDArray[np.bool_]:
-    """Tell which points (n, 2) a closed curve encloses."""
+    """Return for each point (n, 2) whether a closed curve encloses it."""
     from matplotlib.path import Path
 
     return np.asarray(Path(curve).contains_points(points))
 
 
 def beyond_equilibrium(state: FloatArray) -> float:
-    """Return by how much in m a state is farther than X0 from the equilibrium: beyond it is on the whirl."""
+    """Return the distance in m of a state from the equilibrium minus X0; it is positive on the whirl."""
     (rest,) = self_centred_equilibria(FIG5)
     return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
 
@@ -149,7 +148,7 @@ def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
 
 
 def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatArray) -> Ensemble:
-    """Return what ``starts`` of shape (n, 4) end in."""
+    """Return the ends of ``starts`` of shape (n, 4)."""
     return simulate_ensemble(pin, starts, duration=UNTIL, parameters=parameters)
 
 
@@ -161,7 +160,7 @@ def places_on_grid(side: int) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
-    """Return what the starts of the grid end in, shape (side, side)."""
+    """Return the ends of the starts on the grid, shape (side, side)."""
     return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
 
 
@@ -169,8 +168,8 @@ def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
 def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
     """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
 
-    Only starts in cells of the grid of ``side`` whose corners differ are followed: the others are taken to end as the
-    corners of their cell do.
+    Only starts in cells of the grid of ``side`` whose corners have different ends are simulated. All other starts get
+    the end of the corners of their cell.
     """
     coarse = ends_on_grid(pin, side)
     cell = np.arange(FINER * (side - 1) + 1) // FINER
@@ -185,7 +184,7 @@ def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
 
 
 def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
-    """Return x0 and vx0 of the random starts, shape (starts, 2), and where further ones come from."""
+    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further ones."""
     random = np.random.default_rng(SEED)
     return np.column_stack([random.uniform(low, high, starts) for low, high in PLANE]), random
 

@@ -42,12 +42,12 @@ def draw(data: ByEngine) -> Figures:
     for panel in (plane, near):
         panel.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
         panel.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
-    plane.set_title("both")
-    near.set_title("to the equilibrium")
+    plane.set_title("Both motions")
+    near.set_title("Approach to the equilibrium")
     history.plot([], [], color=STUCK, linewidth=4.0, label="stick phases")
     history.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, None))
     history.legend(loc="upper left")
-    errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of its time in s")
+    errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of the time in s")
     errors.xaxis.set_major_locator(MaxNLocator(integer=True))
     if errors.lines:
         errors.legend()
@@ -123,7 +123,7 @@ def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
 
 
 class _View:
-    """One motion on the turning disc."""
+    """Panel of one motion on the turning disc."""
 
     TRAIL = 120  # samples
 
@@ -141,11 +141,11 @@ class _View:
 
     @property
     def moving(self) -> tuple[Artist, ...]:
-        """All that changes."""
+        """All artists that change."""
         return (*self.spokes, self.trail, self.pin, self.title)
 
     def show(self, sample: int) -> None:
-        """Move everything to where it is at that sample."""
+        """Move all artists to their positions at a sample."""
         t = float(self.times[sample])
         for i, spoke in enumerate(self.spokes):
             angle = FIG5.disc_speed * t + i * math.pi / 3.0

@@ -1,4 +1,4 @@
-"""Fig. 5: equilibrium and whirl side by side, the stick phases on the way, and the start that divides them."""
+"""Fig. 5: equilibrium and whirl side by side, the stick phases before them, and the critical start."""
 
 from __future__ import annotations
 
@@ -22,68 +22,68 @@ from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
 
-# --- Starts, lengths and tolerances with which the motions of Fig. 5 are followed.
+# --- Starts, durations and tolerances of the motions of Fig. 5
 
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
-"""Length of the runs in s; the paper does not print it. The slowest transients are down to 1e-8 by then."""
+"""Duration in s, which the paper does not print. The slowest transients have then decayed to 1e-8."""
 
 SAMPLES = 4001
 
 FURTHER_TURNS = 20
-"""Of the whirl, after a run; the last one is averaged."""
+"""Turns of the whirl after a run; the last one is averaged."""
 
 SLIDING_START = (0.9, 0.0, 0.0, 0.9)
-"""A start near to the whirl, from which the pin slides all the time (our choice)."""
+"""A start near the whirl that leads to permanent slip (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
 CAPTURE = 1e-6
-"""How well the critical initial velocity is to be known, in m/s."""
+"""Required accuracy of the critical initial velocity in m/s."""
 
 AFTERWARDS = 220.0
-"""In s: ``CAPTURE`` grows by a quarter in each turn, and must become of order one."""
+"""Duration in s. A deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
 
 SIDES_TOLERANCE = 1e-7
 
 BESIDE = 2e-5
-"""How far from that at ``SIDES_TOLERANCE`` the critical initial velocity is looked for at smaller ones, in m/s."""
+"""Half width in m/s of the search for the critical velocity, about its value at ``SIDES_TOLERANCE``."""
 
 RUNS_TOLERANCE = 5.0 * WORKING
-"""Of the runs of Fig. 5."""
+"""Tolerance of the runs of Fig. 5."""
 
 CRITICAL_TOLERANCE = WORKING / 5.0
-"""A smoothed law's critical velocity is off by some hundred times as much."""
+"""The error of the critical velocity of a regularised law is about a hundred times larger."""
 
 
-# --- The motions of Fig. 5 by other ways than an engine's: plain events, the polar form, the map of stick phases.
+# --- The motions of Fig. 5 without an engine: simple events, the polar form and the map of stick phases
 
 
 @functools.cache
 def sliding_in_polar_form(tolerance: float) -> FloatArray:
-    """Return the states of the sliding pin, shape (101, 4), by (10) and an integration of its own."""
+    """Return the states of the sliding pin, shape (101, 4), by (10) and a separate integration."""
     return simulate_polar_form(FIG5, np.array(SLIDING_START), SLIDING_TIMES, tolerance=tolerance)
 
 
 @functools.cache
 def whirl() -> Orbit:
-    """Return the periodic orbit found by shooting with the reference at its tightest."""
+    """Return the periodic orbit by shooting with the reference at its tightest tolerance."""
     return whirl_orbit(FIG5)
 
 
 @functools.cache
 def reference_events(name: str) -> FloatArray:
-    """Return all times in s at which the pin sticks and lets go, from the reference at its tightest."""
+    """Return all stick and release times in s by the reference at its tightest tolerance."""
     return simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=TRUTH).stick_times
 
 
 @functools.cache
 def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
-    """Return both times from eq. 1 with a plain event on the slip speed, and eq. 7; nothing of ``simulate``.
+    """Return both times from eq. 1 with a simple event on the slip speed, and eq. 7, without ``simulate``.
 
-    The event is at a slip speed s that falls with the tolerance; the slip that is left then lasts for
-    s/(μN/m − |a|), where ma is the force that friction must balance in stick.
+    The event occurs at a slip speed s that falls with the tolerance. The remaining slip lasts for s/(μN/m − |a|),
+    where ma is the force that friction must balance during stick.
     """
     m, C, beta, omega = FIG5.mass, FIG5.stiffness, FIG5.damping, FIG5.disc_speed
     limit = 1e4 * tolerance
@@ -119,10 +119,10 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 
 @functools.lru_cache(maxsize=8)
 def critical_velocity(engine: Engine, tolerance: float) -> float:
-    """Return vx(0) in m/s at which stick phases neither move outwards nor inwards.
+    """Return vx(0) in m/s that puts the second stick phase as far from the axis as the first.
 
-    It is no number for an engine whose pin does not stick twice, or moves the same way from both starts. At small
-    tolerances it is looked for beside that of a larger one first.
+    The result is NaN if the pin of an engine does not stick twice, or moves in the same direction from both starts.
+    At small tolerances, the search begins near the result of a larger tolerance.
     """
 
     def outward(velocity: float) -> float:
@@ -150,7 +150,7 @@ def predicted_critical_velocity() -> float:
 
 
 def outside_at_end(engine: Engine, velocity: float, tolerance: float) -> float:
-    """Return how much farther than 2·X0 from the axis the pin with vx(0) = ``velocity`` in m/s ends, in m."""
+    """Return the final distance in m from the axis minus 2·X0, for vx(0) = ``velocity`` in m/s."""
     trajectory = engine.simulate(FIG5, (0.1, 0.0, velocity, 0.0), [0.0, AFTERWARDS], tolerance=tolerance)
     return float(trajectory.radius[-1]) - 2.0 * FIG5.offset
 
@@ -166,17 +166,17 @@ def run_of(engine: Engine, name: str, tolerance: float) -> Trajectory:
 
 
 @STUDY.claim(
-    "A sliding pin moves for 100 s as (10) says, integrated independently in polar form",
+    "A pin that slides for 100 s moves according to (10), integrated independently in polar form",
     equation="(1), (10)",
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-7,
-    basis="independent",  # (10) has equations and an integration of its own
+    basis="independent",  # (10) has separate equations and a separate integration
     named={"slip for 100 s": None},
 )
 def slides(engine: Engine) -> Measured:
-    """Compare the state of a sliding pin at 101 times with (10)."""
-    # The other integrator's own error: its change at a larger tolerance.
+    """Compare the states of a sliding pin at 101 times with (10)."""
+    # The error of the other integrator is its change at a larger tolerance.
     predicted, rougher = (sliding_in_polar_form(tolerance).ravel() for tolerance in (3e-14, 2e-13))
     found = refined(
         lambda tolerance: engine.simulate(
@@ -188,7 +188,7 @@ def slides(engine: Engine) -> Measured:
         value=found.value,
         error=found.plus(np.abs(rougher - predicted)).largest,  # a single number may be right by chance
         components=[f"t = {t:g} s, {name}" for t in SLIDING_TIMES for name in components_of(FIG5)],
-        source="Fig. 5; start (0.9, 0, 0, 0.9) is an assumption: near to the whirl, without sticking",
+        source="Fig. 5; start (0.9, 0, 0, 0.9) near the whirl and without stick is our choice",
     )
 
 
@@ -214,16 +214,16 @@ def rests(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "The second start of Fig. 5 ends on the whirl, whose mean is that of the periodic orbit",
+    "The second start of Fig. 5 ends on the whirl with the mean position of the periodic orbit",
     equation="(17)",
     kind="trajectory",
     unit="m",
     resolution=1e-6 * FIG5.offset,
-    note="Predicted: the periodic orbit found by shooting with the reference at its tightest. Remaining transient: "
-    "the orbit's slowest multiplier over the time since the last stick phase.",
+    note="Predicted: the periodic orbit by shooting with the reference at its tightest tolerance. Remaining "
+    "transient: from the slowest multiplier of the orbit and the time since the last stick phase.",
 )
 def whirls(engine: Engine) -> Measured:
-    """Let the second run go on for some more turns, and average the last one."""
+    """Compare the mean position in the last of several turns after the second run with that of the orbit."""
     orbit = whirl()
     times = np.concatenate(([0.0], orbit.period * (FURTHER_TURNS + np.linspace(0.0, 1.0, 129))))
 
@@ -233,8 +233,8 @@ def whirls(engine: Engine) -> Measured:
         return np.asarray(states[1:-1, :2].mean(axis=0))
 
     found = refined(mean, RUNS_TOLERANCE)
-    multiplier = sorted(abs(value) for value in orbit.multipliers)[-2]  # the largest but that of the phase
-    # What is left of the transient after the run, from the largest deviation that it can have had at its start.
+    multiplier = sorted(abs(value) for value in orbit.multipliers)[-2]  # the largest except that of the phase
+    # The remaining transient follows from the largest possible deviation at the end of stick.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
     return Measured(
         predicted=orbit.mean,
@@ -246,16 +246,16 @@ def whirls(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin on its way to the {} first sticks when its slip by (10) ends, and is let go when (7) says",
+    "On the way to the {}, a pin first sticks when its slip by (10) ends, and is released at the time of (7)",
     equation="(7), (10)",
     kind="trajectory",
     unit="s",
     resolution=1e-3,
-    basis="independent",  # nothing of the reference's simulation takes part
+    basis="independent",  # without the reference's simulation
     each=tuple(FIG5_STARTS),
 )
 def first_stick(engine: Engine, name: str) -> Measured:
-    """Compare the first stick phase with a plain event on the slip and (7)."""
+    """Compare the first stick phase with a simple event on the slip and with (7)."""
     predicted = refined(lambda tolerance: first_stick_and_release(name, tolerance), 4e-13)
     found = _events(engine, name, lambda times: _padded(times[:2], 2))
     return Measured(
@@ -268,12 +268,13 @@ def first_stick(engine: Engine, name: str) -> Measured:
 
 
 @STUDY.claim(
-    "All stick and release times on the way to the {} are those of exact Coulomb friction",
+    "All stick and release times on the way to the {} equal those of exact Coulomb friction",
     equation="(6), (7)",
     kind="trajectory",
     unit="s",
     resolution=1e-2,
-    note="Predicted: the reference at tolerance 1e-13. A stick phase too many or too few shows as a missing number.",
+    note="Predicted: the reference at tolerance 1e-13. A missing or additional stick phase makes all numbers "
+    "missing.",
     each=tuple(FIG5_STARTS),
 )
 def all_sticks(engine: Engine, name: str) -> Measured:
@@ -301,7 +302,7 @@ def all_sticks(engine: Engine, name: str) -> Measured:
 
 
 def _events(engine: Engine, name: str, chosen: Callable[[FloatArray], FloatArray]) -> Measurement:
-    """Return the stick and release times in s that are ``chosen`` from those of a run."""
+    """Return those stick and release times in s that ``chosen`` selects from a run."""
     found = refined(lambda tolerance: chosen(run_of(engine, name, tolerance).stick_times), RUNS_TOLERANCE)
     return open_where_coarse(
         found, refined(lambda tolerance: run_of(engine, name, tolerance).states, RUNS_TOLERANCE)
@@ -309,22 +310,22 @@ def _events(engine: Engine, name: str, chosen: Callable[[FloatArray], FloatArray
 
 
 def _padded(events: FloatArray, size: int) -> FloatArray:
-    """Return ``events`` if there are ``size`` of them, and no numbers otherwise."""
+    """Return ``events``, or NaN if their number is not ``size``."""
     return events if len(events) == size else np.full(size, np.nan)
 
 
 @STUDY.claim(
-    "The initial velocity that parts the two motions of Fig. 5 is that of exact Coulomb friction",
+    "The critical initial velocity between the two motions of Fig. 5 equals that of exact Coulomb friction",
     kind="trajectory",
     unit="m/s",
     resolution=CAPTURE,
-    note="Where the second stick phase is as far from the axis as the first. Between slip phases a pin has one "
-    "degree of freedom, the radius at which it sticks, so the motions divide at the fixed point of the map from "
-    "one stick phase to the next. Predicted: the reference at tolerance 1e-12.",
+    note="At this velocity, the second stick phase is as far from the axis as the first. Between slip phases, a pin "
+    "has one degree of freedom, the radius at which it sticks. The boundary between the motions is therefore the "
+    "fixed point of the map from one stick phase to the next. Predicted: the reference at tolerance 1e-12.",
     named={"dividing velocity": 0},
 )
 def critical(engine: Engine) -> Measured:
-    """Find the initial velocity that divides both motions."""
+    """Compare the critical initial velocity with that of the reference."""
     found = _critical(engine)
     return Measured(
         predicted=predicted_critical_velocity(),
@@ -339,15 +340,15 @@ def _critical(engine: Engine) -> Measurement:
 
 
 @STUDY.claim(
-    "Starts 1e-6 m/s below and above the critical velocity end in equilibrium and whirl",
-    note="Whether the end is nearer to the axis than 2·X0, then whether it is farther; run to 220 s, from the "
-    "engine's own critical velocity.",
+    "Starts 1e-6 m/s below and above the critical velocity end in the equilibrium and on the whirl",
+    note="Is the end of the first start closer to the axis than 2·X0, and the end of the second farther away? Runs "
+    "of 220 s from the engine's own critical velocity.",
     basis="self-check",
 )
 def sides(engine: Engine) -> Measured:
-    """See what becomes of the neighbours of the engine's critical velocity."""
+    """Check the ends of both neighbours of the engine's critical velocity."""
     margins, errors = asked(functools.partial(_parted, engine), SIDES_TOLERANCE)
-    if _critical(engine).largest > CAPTURE:  # it may as well part them at another start
+    if _critical(engine).largest > CAPTURE:  # the motions may then divide at another start
         errors = np.full_like(margins, math.inf)
     return answers_of(
         margins,
@@ -357,7 +358,7 @@ def sides(engine: Engine) -> Measured:
 
 
 def _parted(engine: Engine, tolerance: float) -> FloatArray:
-    """Return by how much in m starts beside the engine's critical velocity end inside and outside of 2·X0."""
+    """Return by how much in m starts below and above the critical velocity end inside and outside 2·X0."""
     middle = critical_velocity(engine, tolerance)
     if not math.isfinite(middle):
         return np.full(2, math.nan)

@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop: what limits the amplitude "in practical application"."""
+"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
 
 from compare.studies.pin.nonlinear_support.study import STUDY
 

@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop: what limits the amplitude "in practical application"."""
+"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
 
 from __future__ import annotations
 
@@ -32,20 +32,20 @@ STUDY = Study.beside(
 )
 
 SUPPORTS = {"support": tuple(theory.PINS)}
-"""The name of the elements that belong to each support."""
+"""Labels of the elements that belong to each support."""
 
 
 @STUDY.claim(
-    "Without offset the whirl is the circle on which support and damper balance friction, at every friction force",
+    "Without offset, the whirl is the circle on which support and damper balance friction, at every friction force",
     equation="(11)",
     unit="m, rad/s",
     resolution=1e-7,
-    note=f"With {theory.LAWS}. Predicted: the root of m(μN/β)² = Cρ² + C₃ρ⁴ + C_s·ρ·max(0, ρ − gap), and μN/βρ; "
-    "the paper has C₃ = C_s = 0.",
+    note=f"With {theory.LAWS}. Predicted: the root of m(μN/β)² = Cρ² + C₃ρ⁴ + C_s·ρ·max(0, ρ − gap), and μN/βρ. In "
+    "the paper, C₃ = C_s = 0.",
     swept=("friction_force",),
 )
 def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the whirls under μN = ``loads`` in N with the closed form."""
+    """Compare the whirls at μN = ``loads`` in N with the closed form."""
     pins = [[replace(pin, friction_force=load) for load in loads] for pin in theory.PINS.values()]
     miss = 0.0
 
@@ -68,7 +68,7 @@ def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "With an offset the whirls that the engine finds by shooting are those of exact Coulomb friction",
+    "With an offset, the whirls found by shooting equal those of exact Coulomb friction",
     equation="(17)",
     kind="trajectory",
     unit="s, m",
@@ -90,23 +90,23 @@ def orbit(engine: Engine) -> Measured:
         value=found.value,
         error=found.largest + max(one.residual for one in exact),
         at=SUPPORTS,
-        components=("period in s", "least radius in m", "greatest radius in m"),
+        components=("period in s", "smallest radius in m", "largest radius in m"),
         parameters={"offset": theory.OFFSET},
     )
 
 
 @STUDY.claim(
-    "The errors of radius and frequency of the whirl by harmonic balance fall like X0²",
+    "The errors of harmonic balance in radius and frequency of the whirl fall like X0²",
     kind="order",
     resolution=0.1,
-    note="Not in the paper. The mean and one harmonic, in balance with those of the cubic force and of "
-    f"friction: exponents of their errors at X0 = {theory.OFFSETS[0]:g} … {theory.OFFSETS[-1]:g} m. The next "
-    "term is of X0⁴, since an offset to the other side makes the same orbit; without offset the balance is "
+    note="This is not in the paper. The mean and one harmonic balance those of the cubic force and of friction. "
+    f"Measured: exponents of their errors at X0 = {theory.OFFSETS[0]:g} … {theory.OFFSETS[-1]:g} m. The next term is "
+    "of the order X0⁴, because an offset to the other side leads to the same orbit. Without offset, the balance is "
     "exact.",
     swept=("offset",),
 )
 def harmonic_balance(engine: Engine) -> Measured:
-    """Fit the order in X0 of the error that the harmonic balance has."""
+    """Compare the order in X0 of the error of harmonic balance with 2."""
     pins = [replace(theory.HARDENING, offset=offset) for offset in theory.OFFSETS]
     balances = [whirl_by_harmonic_balance(pin) for pin in pins]
     balanced = np.array([(balance.radius, balance.frequency) for balance in balances])
@@ -135,7 +135,7 @@ def harmonic_balance(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin slides through the bend of the support as in exact Coulomb friction",
+    "A pin slides through the nonlinear range of the support as with exact Coulomb friction",
     equation="(1)",
     kind="trajectory",
     unit="m, m/s",
@@ -144,7 +144,7 @@ def harmonic_balance(engine: Engine) -> Measured:
     f"tolerance {TRUTH:g}.",
 )
 def slides(engine: Engine) -> Measured:
-    """Follow pins that spiral out to the whirl."""
+    """Compare pins that spiral out to the whirl with the reference."""
     pins = [replace(pin, offset=theory.OFFSET) for pin in theory.PINS.values()]
     motions = [(pin, theory.SLIDING_START, theory.SLIDING_TIMES) for pin in pins]
     found = refined(
@@ -164,7 +164,7 @@ def slides(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A pin sticks until the support, by now beyond its stop, pulls harder than friction can hold",
+    "A pin sticks until the force of the support beyond its stop exceeds the holding friction",
     equation="(6), (7)",
     kind="trajectory",
     unit="s",
@@ -172,7 +172,7 @@ def slides(engine: Engine) -> Measured:
     note=f"Predicted: the reference at tolerance {TRUTH:g}, with (6) for the force of this support.",
 )
 def sticks(engine: Engine) -> Measured:
-    """Compare when a pin comes to rest on the disc and when it lets go."""
+    """Compare the first stick and release times with the reference."""
 
     def first_stick(asked: Engine, tolerance: float) -> tuple[float, float]:
         start = FIG5_STARTS["whirl"]
@@ -188,20 +188,20 @@ def sticks(engine: Engine) -> Measured:
         error=known(found.value, found.largest),
         components=("stick", "release"),
         system=theory.STICKING,
-        source="Fig. 5, second start; μN, ω, X0 and the support are our choice, so that the pin sticks",
+        source="Fig. 5, second start; μN, ω, X0 and the support are our choice, for which the pin sticks",
     )
 
 
 @STUDY.claim(
-    "A pin started near the equilibrium comes to rest where the support's force across the radius is μN",
+    "A pin that starts near the equilibrium comes to rest where the support force across the radius is μN",
     equation="(3)",
     unit="m",
     resolution=1e-6,
-    note=f"Started {1e3 * theory.BESIDE:g} mm beside, with {theory.LAWS}. Predicted: ρ*² = X0² − d², where the "
-    "deflection d is that of the force μN.",
+    note=f"The start is {1e3 * theory.BESIDE:g} mm away, with {theory.LAWS}. Predicted: ρ*² = X0² − d² with the "
+    "deflection d under the force μN.",
 )
 def rests(engine: Engine) -> Measured:
-    """Compare where pins come to rest with the balance of forces."""
+    """Compare the positions of rest with the balance of forces."""
     pins = [replace(pin, **theory.RESTING) for pin in theory.PINS.values()]
     places = [equilibrium_position(pin) for pin in pins]
 
@@ -213,7 +213,7 @@ def rests(engine: Engine) -> Measured:
         return [run.states[1:, :2] for run in engine.simulate_many(motions, tolerance=tolerance)]
 
     found = refined(ends, theory.TOLERANCE)
-    # As in fig06: the slowest deviation decays like exp(−βt/2m).
+    # As in fig06, the slowest deviation decays like exp(−βt/2m).
     left = theory.BESIDE * math.exp(-CENTRED.damping / (2.0 * CENTRED.mass) * theory.REST_TIMES[1])
     return Measured(
         predicted=np.repeat(np.array(places)[:, np.newaxis], len(theory.REST_TIMES) - 1, axis=1),
@@ -226,17 +226,17 @@ def rests(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "Without damping the whirl grows to the radius where the support turns the pin as fast as the disc, as μN → 0",
+    "Without damping, the whirl grows until the support turns the pin as fast as the disc, in the limit μN → 0",
     unit="m",
     resolution=1e-2,
-    note="Not in the paper, which says that nonlinear radial forces usually limit the amplitude. The pin sticks "
-    "where its circle turns with the disc but for what friction holds, which is of the order of μN. Measured: "
-    f"the parabola through the radii for μN = {', '.join(f'{load:g}' for load in theory.GROWING_LOADS)} N at 0; "
-    f"error: its change by the straight line through the last two. With {theory.LAWS}.",
+    note="According to the paper, nonlinear radial forces usually limit the amplitude. The pin sticks when its "
+    "circle turns with the disc, up to an effect of the holding friction of the order μN. Measured: value at 0 of "
+    f"the parabola through the radii for μN = {', '.join(f'{load:g}' for load in theory.GROWING_LOADS)} N. "
+    f"Error: its change for the straight line through the last two. With {theory.LAWS}.",
     swept=("friction_force",),
 )
 def growth_ends(engine: Engine) -> Measured:
-    """Extrapolate the radius at which growth without damping ends to small friction forces."""
+    """Compare the final radius of growth without damping, extrapolated to μN = 0, with the closed form."""
     grown: dict[tuple[str, float, float], FloatArray] = {}
 
     def ends(tolerance: float) -> list[list[float]]:
@@ -267,7 +267,7 @@ def growth_ends(engine: Engine) -> Measured:
 
 
 def growth(engine: Engine, pin: PinOnDisc, load: float, tolerance: float, samples: int) -> FloatArray:
-    """Return time and radius of a pin without damping until it has stuck for a while, shape (samples, 2)."""
+    """Return time and radius of a pin without damping until after it has stuck, shape (samples, 2)."""
     undamped = replace(pin, damping=0.0, friction_force=load)
     times = np.linspace(0.0, theory.growing_time(undamped), samples)
     trajectory = engine.simulate(undamped, theory.first_circle(undamped), times, tolerance=tolerance)
@@ -275,15 +275,15 @@ def growth(engine: Engine, pin: PinOnDisc, load: float, tolerance: float, sample
 
 
 @STUDY.claim(
-    "The whirl of a disc on a hardening support is that of the balances of force and moment",
+    "The whirl of a disc on a hardening support satisfies the balances of force and moment",
     equation="(19), (20)",
     unit="m, rad/s",
     resolution=1e-6,
-    note="The motion that comes back turned in the engine's own flow.",
+    note="Measured: the motion of the engine that repeats up to a rotation.",
     basis="reference",
 )
 def disc_whirl(engine: Engine) -> Measured:
-    """Compare the whirl of a disc with that of the balances."""
+    """Compare the whirl of a disc with the solution of the balances."""
     whirl = whirls(theory.DISC)[0]
 
     def coming_back(tolerance: float) -> list[float]:
@@ -303,14 +303,14 @@ def disc_whirl(engine: Engine) -> Measured:
     )
 
 
-# --- Radii of the whirl over the friction force on each support, and growth without damping.
+# --- Figure of the whirl's radius over the friction force on each support, and of growth without damping
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}
 """Label and dashes of each support."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw radii of the whirl over the friction force, and growth without damping."""
+    """Draw the radius of the whirl over the friction force, and growth without damping."""
     figure, (whirl, growing) = new_figure(ncols=2, width=10.0, height=4.0)
     if "theory" in data:
         found = data["theory"]

@@ -1,4 +1,4 @@
-"""Whirls and growth on nonlinear supports: closed forms, and the reference's orbits."""
+"""Whirls and growth on nonlinear supports: closed forms and orbits of the reference."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from reference_model import Orbit, simulate
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import PinOnDisc
 
-# --- Pins and a disc on supports that harden or have a stop, and how they are started.
+# --- Pins and a disc on supports that harden or have a stop, and their starts
 
 HARDENING = replace(CENTRED, hardening=0.5)
 STOP = replace(CENTRED, stop_gap=0.6, stop_stiffness=2.0)
 PINS = {"hardening": HARDENING, "stop": STOP}
-"""Fig. 4 without its offset. The circle of each turns slower than the disc at all friction forces below."""
+"""Fig. 4 without its offset. At all friction forces below, the whirl of each pin turns slower than the disc."""
 
 LAWS = (
     f"C₃ = {HARDENING.hardening:g} N/m³ without a stop, and C_s = {STOP.stop_stiffness:g} N/m beyond "
@@ -31,22 +31,22 @@ LAWS = (
 SOURCE = "Fig. 4, with β, μN and X0 as stated; C₃, C_s and the gap are our choice, the paper names no law"
 
 LOADS = (0.04, 0.1, 0.2)
-"""μN in N; at the smallest one the pin does not reach the stop."""
+"""μN in N; at the smallest one, the pin does not reach the stop."""
 
 OFFSET = 0.1
-"""X0 in m of the orbits, that of Fig. 4."""
+"""X0 in m of the orbits, as in Fig. 4."""
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
-"""X0 in m for the order of the harmonic balance: its next term reaches 5 % of the first at the largest."""
+"""X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""
 
 RESTING = {"offset": 0.8, "friction_force": 0.9}
-"""At which support and friction balance in the bend of either law."""
+"""Offset in m and friction force in N that put the equilibrium into the nonlinear range of either law."""
 
 BESIDE = 0.005
-"""In m: how far from there pins are started."""
+"""Distance in m of the starts from the equilibrium."""
 
 REST_TIMES = np.concatenate(([0.0], np.linspace(270.0, 280.0, 11)))
-"""In s: they have come to rest by then."""
+"""In s, after the pins have come to rest."""
 
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
 SLIDING_TIMES = np.linspace(0.0, 50.0, 51)
@@ -61,38 +61,38 @@ STICKING = replace(
     stop_stiffness=1.0,
 )
 TOLERANCE = 10 * WORKING
-"""Of the motions whose error is but a hundredth of the resolution then."""
+"""Tolerance of motions whose error is then only a hundredth of the resolution."""
 
 STICKS_BY = 2.0
-"""In s, after which the pin of Fig. 5's second start has stuck and let go again."""
+"""Duration in s; the pin of Fig. 5's second start has then stuck and been released."""
 
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
 GROWING_LOADS = (0.12, 0.06, 0.03)
-"""μN in N of pins without damping; what friction alone makes of the radius where they end falls with it."""
+"""μN in N of pins without damping. The effect of friction on their final radius falls with it."""
 
 AMPLIFIED = 6.0
-"""Sum of the sizes of the weights 1/3, −2 and 8/3 of the parabola through the radii for them at 0, rounded up."""
+"""Sum of the absolute weights 1/3, −2 and 8/3 of the radii in the parabola's value at 0, rounded up."""
 
 GROWING_FROM = 0.3
-"""In m: further in, the largest of these friction forces holds a pin on the disc."""
+"""Initial radius in m; closer to the axis, the largest of these friction forces holds a pin on the disc."""
 
 FOLLOWED_ON = 0.2
-"""In s: after a pin without damping has stuck."""
+"""Duration in s after a pin without damping has stuck."""
 
 GROWN = 1e-6
-"""Tolerance of what grows to a motion of its own: only where that ends is asked."""
+"""Tolerance of growing motions; the claim only needs their ends."""
 
 
 def curves() -> Data:
-    """Evaluate the closed forms of the whirl, and follow the linear pin's growth without damping."""
+    """Return the closed forms of the whirl, and the growth of the linear pin without damping."""
     loads = np.linspace(0.0, max(LOADS), 101)[1:]
     data = {"load": loads}
     for name, pin in {"linear": CENTRED, **PINS}.items():
         data[f"{name} radius"] = np.array([whirl_radius(replace(pin, friction_force=load)) for load in loads])
     for name, pin in PINS.items():
         data[f"{name} end"] = np.array(end_of_growth(pin))
-    # On a slowly growing circle of the linear spring d(mkρ²)/dt = μNρ.
+    # On a slowly growing circle with the linear spring: d(mkρ²)/dt = μNρ
     speed = GROWING_LOADS[-1] / (2.0 * CENTRED.mass * CENTRED.natural_frequency)
     times = np.linspace(0.0, 1.4 * max(end_of_growth(pin) for pin in PINS.values()) / speed, 2)
     data["linear growth"] = np.column_stack((times, GROWING_FROM + speed * times))
@@ -101,7 +101,7 @@ def curves() -> Data:
 
 @functools.cache
 def exact_whirl(pin: PinOnDisc) -> Orbit:
-    """Return the whirl of ``pin``, found by shooting with the reference."""
+    """Return the whirl of ``pin`` by shooting with the reference."""
     return whirl_of(Engine("reference", simulate), pin, 3.0 * TRUTH)
 
 
@@ -112,7 +112,7 @@ def radius_and_frequency(orbit: Orbit) -> tuple[float, float]:
 
 
 def end_of_growth(pin: PinOnDisc) -> float:
-    """Return the radius in m at which the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
+    """Return the radius in m where the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
     excess = pin.mass * pin.disc_speed**2 - pin.stiffness
     if pin.hardening > 0.0:
         return math.sqrt(excess / pin.hardening)
@@ -120,15 +120,15 @@ def end_of_growth(pin: PinOnDisc) -> float:
 
 
 def first_circle(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Return a state on the circle on which the linear spring carries the pin."""
+    """Return a state on the circle where the linear spring carries the pin."""
     return GROWING_FROM, 0.0, 0.0, pin.natural_frequency * GROWING_FROM
 
 
 @functools.cache
 def growing_time(pin: PinOnDisc) -> float:
-    """Return the time in s until a pin without damping sticks, and a little more.
+    """Return the time in s until a pin without damping sticks, plus ``FOLLOWED_ON``.
 
-    Its angular momentum grows with μNρ, from a radius that is at least ``GROWING_FROM``.
+    Its angular momentum grows by μNρ, and its radius is at least ``GROWING_FROM``.
     """
     end = end_of_growth(pin)
     longest = pin.mass * end**2 * pin.disc_speed / (pin.friction_force * GROWING_FROM)

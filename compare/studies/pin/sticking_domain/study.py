@@ -1,4 +1,4 @@
-"""Eq. 6 to 9: where the pin sticks to the disc for ever, when it lets go elsewhere, and the resonance of both."""
+"""Eq. 6 to 9: where the pin sticks permanently, when it is released elsewhere, and the resonance of both."""
 
 from __future__ import annotations
 
@@ -58,9 +58,9 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return by how much pins inside of the radius (9) move on the disc, shape (n, 2), and which stick all the time.
+    """Return the displacements on the disc of pins inside the radius (9), shape (n, 2), and which pins always stick.
 
-    The displacement is that over the distance from the axis.
+    Displacements are relative to the distance from the axis.
     """
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
@@ -81,25 +81,25 @@ def two_revolutions(
 def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement:
     """Return the displacements of ``two_revolutions`` and their errors."""
     found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
-    # Displacements of zero have no scale of their own for rounding: that of a turn is theirs.
+    # Zero displacements have no scale for rounding, so the rounding of a turn counts.
     return found.plus(ROUNDING)
 
 
 def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = CREEP) -> bool:
-    """Return whether pins may creep so far, where they should stick, that what is read off their stick is open."""
+    """Return whether stuck pins may creep by more than ``most``, which leaves conclusions about stick open."""
     return displaced(engine, speeds).largest > most
 
 
 @STUDY.claim(
-    "A pin stuck at 0.98 of the radius (9) is at the same place of the disc two revolutions later",
+    "A pin stuck at 0.98 of the radius (9) is at the same position on the disc two revolutions later",
     equation="(9)",
     resolution=CREEP,
-    note="Displacement on the disc over the distance from the axis; starts where the least force holds the pin. "
-    "Error: the change at a smaller tolerance, by which a law that only approximates stick shows its creep.",
+    note="Displacement on the disc over the distance from the axis; starts where the holding force is smallest. "
+    "Error: the change at a smaller tolerance, which reveals the creep of a law that only approximates stick.",
     swept=("disc_speed",),
 )
 def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
-    """Measure how far pins that start inside of the radius (9) are from their place in the end."""
+    """Compare the displacement of pins that start inside the radius (9) with zero."""
     found = displaced(engine, speeds)
     return Measured(
         predicted=np.zeros_like(found.value),
@@ -114,11 +114,11 @@ def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
 @STUDY.claim(
     "A pin stuck at 0.98 of the radius (9) does not slip within two revolutions",
     equation="(8)",
-    note="Whether each of these motions has no slip phase.",
+    note="Is each of these motions without a slip phase?",
     swept=("disc_speed",),
 )
 def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
-    """See whether pins that start inside of the radius (9) stick all the time."""
+    """Check that pins that start inside the radius (9) always stick."""
     margins, errors = asked(lambda tolerance: two_revolutions(engine, speeds, tolerance)[1], TOLERANCE)
     if np.any(margins < 0.0) and creeps(engine, speeds):
         errors = np.full_like(margins, np.inf)
@@ -126,16 +126,16 @@ def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
 
 
 @STUDY.claim(
-    "A pin stuck at 1.02 and at 1.5 of the radius (9) is let go at the time that (7) predicts",
+    "A pin stuck at 1.02 and at 1.5 of the radius (9) is released at the time that (7) predicts",
     equation="(7)",
     unit="rad",
     resolution=1e-2,
-    note="Turn of the disc up to the end of the first stick phase, after a start where the least force holds the "
-    "pin. Error: the change at a smaller tolerance.",
+    note="Turn of the disc until the end of the first stick phase, from a start where the holding force is smallest. "
+    "Error: the change at a smaller tolerance.",
     swept=("disc_speed",),
 )
 def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
-    """Measure by how much the disc turns until it lets go pins outside of the radius (9)."""
+    """Compare the turn of the disc until the release of pins outside the radius (9) with (7)."""
 
     def turns(tolerance: float) -> FloatArray:
         motions = []
@@ -160,12 +160,12 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
 @functools.lru_cache(maxsize=2)
 def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
-    """Return the largest sticking radii in m at ``searched`` ω in rad/s, found by bisection, shape (n,)."""
+    """Return the largest sticking radii in m at ``searched`` ω in rad/s, by bisection, shape (n,)."""
     pins = [pin_at(speed) for speed in searched]
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
     def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
-        """Return where to look at another tolerance, which moves the radius by little."""
+        """Return the bracket for another tolerance, which moves the radius only slightly."""
         return near if np.all(np.isfinite(near)) else _anywhere(pin)
 
     def radii(tolerance: float) -> FloatArray:
@@ -183,7 +183,7 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
 
 
 def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
-    """Return the errors of ``values``; where one is missing it is open if the engine creeps, else a mistake."""
+    """Return the errors of ``values``; a missing value is open if the engine creeps, and a mistake otherwise."""
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
@@ -201,12 +201,12 @@ def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
 def _between(
     engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return between which radii in m the largest lies at which the pin sticks, by bisection.
+    """Return radii in m that enclose the largest sticking radius, by bisection.
 
-    It is looked for between the radii ``around`` first, and ever farther away from them if it is not there. It is no
-    number if it is nowhere.
+    The search begins between the radii ``around`` and extends beyond them if necessary. The result is NaN if the
+    search fails.
     """
-    # From where the least force holds the pin to where the greatest has to is half a revolution.
+    # The holding force goes from its minimum to its maximum in half a revolution.
     end = 1.02 * math.pi / pin.disc_speed
 
     @functools.cache
@@ -238,10 +238,10 @@ def _between(
     "The largest radius at which a stuck pin does not slip is (9)",
     equation="(9)",
     resolution=1e-2,
-    note=f"By bisection to {PRECISION:g} of the radius over starts that pass the angle of the greatest force. In "
-    "units of (9). Error: that of the bisection, and the change at a smaller tolerance. Neither shows an error below "
-    "1e-3: just outside, the slip grows from zero like the power 3/2 of the distance, and regularised friction hides "
-    "it (Exudyn's radii are off by 2e-4 to 6e-4 at tolerances from 1e-6 to 1e-8).",
+    note=f"By bisection to {PRECISION:g} of the radius, with starts that pass the angle of the largest force. "
+    "Relative to (9). Error: the error of the bisection, and the change at a smaller tolerance. Neither shows an "
+    "error below 1e-3, because just outside the radius the slip grows from zero like the power 3/2 of the distance. "
+    "Regularised friction hides it: Exudyn's radii have errors of 2e-4 to 6e-4 at tolerances from 1e-6 to 1e-8.",
     swept=("disc_speed",),
 )
 def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
@@ -262,12 +262,12 @@ def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
     equation="(9)",
     unit="rad/s",
     resolution=1e-3 * RESONANCE,
-    note="Where 1/A² is smallest on the parabola in ω² through the first three radii: by (9) it is one.",
+    note="Vertex of the parabola for 1/A² in ω² through the first three radii; by (9), 1/A² is such a parabola.",
     implied_by=largest,
     swept=("disc_speed",),
 )
 def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
-    """Compare where the measured radii are largest with ω*."""
+    """Compare the speed of the largest measured radius with ω*."""
     radii, error = (each[:3] for each in largest_radii(engine, searched))
     relative = np.where(np.isfinite(radii), error / radii, error)
     found, error_of_vertex = vertex(np.array(searched[:3]) ** 2, 1.0 / radii**2, relative)
@@ -279,16 +279,16 @@ def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
     equation="(9)",
     unit="rad/s",
     resolution=1e-3 * RESONANCE,
-    note="Where the right side of (9) is largest, by differences.",
+    note="Maximum of the right side of (9), by differences.",
     swept=("disc_speed", "damping"),
 )
 def resonance_of_9() -> Measured:
-    """Compare where the radius (9) is largest with ω*."""
+    """Compare the speed of the largest radius (9) with ω*."""
     found, errors, expected = [], [], []
     for damping in DAMPINGS:
         pin = replace(PIN, damping=damping)
         expected.append(resonant_disc_speed(pin))
-        # The logarithm of the radius is a parabola at its top: its vertex, and the error of that by halving.
+        # The logarithm of the radius is a parabola near its maximum; halving the width gives the error of the vertex.
         wide, narrow = (top(pin, expected[-1], width) for width in (2e-3, 1e-3))
         found.append(narrow)
         errors.append(abs(wide - narrow) + np.finfo(float).eps / (1e-3 * damping) ** 2)
@@ -297,16 +297,16 @@ def resonance_of_9() -> Measured:
         value=found,
         error=errors,
         at={"β in N s/m": DAMPINGS},
-        source=f"Fig. 4; β = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g} N s/m is ours",
+        source=f"Fig. 4; β = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g} N s/m is our choice",
     )
 
 
 @STUDY.claim(
-    "For large ω the sticking domain shrinks like 1/ω²",
+    "For large ω, the sticking domain shrinks like 1/ω²",
     equation="(9)",
     resolution=0.05,
-    note="Right side of (9) over (μN − C·X0)/(mω²). Model error: twice the first term that is left out, (ω*/ω)² at "
-    "the smallest ω.",
+    note="Right side of (9) over (μN − C·X0)/(mω²). Model error: twice the first omitted term, (ω*/ω)² at the "
+    "smallest ω.",
     swept=("disc_speed",),
 )
 def shrinks() -> Measured:
@@ -319,15 +319,15 @@ def shrinks() -> Measured:
         error=4.0 * np.finfo(float).eps,
         model=2.0 * (RESONANCE / FAST[0]) ** 2,
         at={"ω in rad/s": FAST},
-        source="Fig. 4; the values of ω are ours",
+        source="Fig. 4; the values of ω are our choice",
     )
 
 
-# --- The radius of sticking over the speed of the disc, and when pins further out are let go.
+# --- Figure of the sticking radius over the disc speed, and of the release of pins outside
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radius over the speed of the disc, the time until release, and how far it is from (7)."""
+    """Draw the radius over the disc speed, the time until release, and its deviation from (7)."""
     figure, (domain, time, error) = new_figure(ncols=3, width=12.6, height=3.7)
     if "theory" in data:
         domain.semilogy(data["theory"]["speed"], data["theory"]["radius"], **curve("theory", "eq. (9)"))
@@ -344,7 +344,9 @@ def draw(data: ByEngine) -> Figures:
         budget = curve(engine, f"{engine}: error budget", linewidth=1.0, linestyle="--")
         error.plot(speed, found["turn_error"][:, 0], **budget)
     domain.axvline(RESONANCE, color=GREY, linestyle=":", linewidth=1.0, label=r"$\omega_*$")
-    domain.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("A", "m"), title="Largest radius of sticking")
+    domain.set(
+        xlabel=axis(r"\omega", "rad/s"), ylabel=axis("A", "m"), title="Largest radius of permanent stick"
+    )
     domain.legend()
     time.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("t_r", "s"), title="Time until release")
     error.set_yscale("symlog", linthresh=1e-16)
@@ -353,7 +355,7 @@ def draw(data: ByEngine) -> Figures:
         xlabel=axis(r"\omega", "rad/s"),
         ylabel=axis(r"|\Delta(\omega\,t_r)|", "rad"),
         ylim=(-5e-17, 1.0),
-        title="Distance of the turn until release from (7)",
+        title="Deviation of the turn until release from (7)",
     )
     for panel, place in ((time, (0.62, 0.7)), (error, (0.2, 0.24))):
         handles, labels = panel.get_legend_handles_labels()

@@ -1,4 +1,4 @@
-"""The radius (9) and the turn (7) over the speed of the disc, and where the radius is largest."""
+"""The radius (9) and the turn until release (7) over the disc speed, and the speed of the largest radius."""
 
 from __future__ import annotations
 
@@ -14,47 +14,47 @@ from compare.studies.toolkit.pins import safest_angle
 from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 4, and the starts from which it sticks, or is let go.
+# --- The pin of Fig. 4, and starts of stick and of release
 
 PIN = FIG4
-SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are ours"
+SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are our choice"
 RESONANCE = resonant_disc_speed(PIN)
 
 SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)
-"""ω in rad/s of the starts inside and outside of the radius (9)."""
+"""ω in rad/s of the starts inside and outside the radius (9)."""
 
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Radii of the starts, in units of (9)."""
+"""Radii of the starts, relative to (9)."""
 
 CREEP = 1e-2
-"""Relative displacement of a stuck pin from which on it is not known whether it sticks."""
+"""Relative displacement of a stuck pin above which it is uncertain whether it sticks."""
 
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
-"""The same for a pin just outside: creep of that share of its distance to the edge may hold it for too long."""
+"""The same for a pin just outside: creep by this fraction of its distance to the edge may hold it for too long."""
 
 LATEST = 1.1
-"""How long a pin outside is watched, in units of the time that (7) predicts."""
+"""Duration for a pin outside, relative to the time that (7) predicts."""
 
 REVOLUTIONS = 2.0
-"""For which a pin inside is watched: what it must be held with has the period of a revolution."""
+"""Duration for a pin inside; the holding force has the period of one revolution."""
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
-"""ω in rad/s at which the largest sticking radius is searched; the first three are about the resonance."""
+"""ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
 
 BRACKET = (0.03, 4.0)
-"""Where the search begins, in units of X0: without regard to (9), so that it can't lead to it."""
+"""Initial bracket of the search, relative to X0. It does not use (9), so it cannot favour it."""
 
 PRECISION = 6e-5
-"""Relative, of that search."""
+"""Relative accuracy of this search."""
 
 SEARCH_TOLERANCE = 1e-7
 
 TOLERANCE = 3e-8
-"""Moderate, since a regularised law costs the more in stick the closer it comes to Coulomb's."""
+"""Moderate, because the cost of stick rises as a regularised law approaches Coulomb's."""
 
 DAMPINGS = np.geomspace(0.01, 1.3, 15)
-"""β in N s/m at which the largest radius (9) is looked for."""
+"""β in N s/m for the search of the largest radius (9)."""
 
 FAST = (10.0, 30.0, 100.0)
 """ω in rad/s far above the resonance."""
@@ -86,9 +86,10 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 
 
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
-    """Return √ of the vertex of the parabola through three points 1/A² over s = ω², and its error.
+    """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. Where one of them is missing so is the vertex, and open if they are.
+    ``relative_error`` is the error of the radii A. If a radius is missing, the vertex is missing; it is open if the
+    errors of all missing radii are infinite.
     """
 
     def found(values: FloatArray) -> float:
@@ -110,7 +111,7 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
     """Return ω in rad/s at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
     step = width * speed
-    # Beside the middle, so that the answer is not put in.
+    # The nodes are not symmetric, so the result does not contain its own prediction.
     nodes = speed + step * np.array([-0.6, 0.4, 1.4])
     low, middle, high = (sticking_radius(replace(pin, disc_speed=node)) for node in nodes)
     return float(nodes[1] + 0.5 * step * (low - high) / (low - 2.0 * middle + high))

@@ -1,4 +1,4 @@
-"""Eq. 11 to 16: the whirl without offset, where it exists, and how deviations from it develop."""
+"""Eq. 11 to 16: the whirl without offset, its existence, and deviations from it."""
 
 from compare.studies.pin.whirl_stability.pictures import draw
 from compare.studies.pin.whirl_stability.study import STUDY

@@ -1,4 +1,4 @@
-"""Figures of the study of the whirl's stability."""
+"""Figures of the whirl stability study."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw what is there: the start on the circle and the deviation, the eigenvalues, and the map."""
+    """Draw the available data: the start on the circle and the deviation, the eigenvalues, and the map."""
     figures = {"whirl-motions": draw_motions(data)} if engines_in(data) else {}
     if "theory" in data:
         figures["whirl-eigenvalues"] = draw_eigenvalues(data)
@@ -38,7 +38,7 @@ def _draw_leaving(panel: Axes, data: ByEngine) -> None:
     first = next((engine for engine in engines_in(data) if "leaving_time" in data[engine]), "")
     for engine in engines_in(data):
         found = data[engine]
-        if "leaving_time" not in found:  # what leaves the circle ends in stick, which not all simulate
+        if "leaving_time" not in found:  # such motions end in stick, which not every engine simulates
             continue
         times = found["leaving_time"]
         label = engine
@@ -70,7 +70,7 @@ def _draw_leaving(panel: Axes, data: ByEngine) -> None:
 
 
 def _draw_decay(panel: Axes, data: ByEngine) -> None:
-    """Draw the deviation inside of the envelope of its modes."""
+    """Draw the deviation inside the envelope of its modes."""
     for engine in engines_in(data):
         panel.plot(data[engine]["history_time"], data[engine]["history"], **curve(engine))
     if "theory" in data:
@@ -85,7 +85,7 @@ def _draw_decay(panel: Axes, data: ByEngine) -> None:
     envelope: dict[str, Any] = {"color": GREY, "linewidth": 1.0}
     label = rf"real eigenvalue: $\propto \exp({values[real][0].real:.3f}\,t)$"
     panel.plot(times, middle, **envelope, linestyle="--", label=label)
-    label = rf"beside it the pair: $\propto \exp({values[~real][0].real:.3f}\,t)$"
+    label = rf"pair of eigenvalues: $\propto \exp({values[~real][0].real:.3f}\,t)$"
     for sign in (1.0, -1.0):
         panel.plot(times, middle[:, 0] + sign * width, **envelope, linestyle=(0.0, (1.0, 1.0)), label=label)
         label = "_"
@@ -143,7 +143,7 @@ def draw_map(theory: Data) -> Figure:
     panel.axvline(1.0, color=BLUE, linewidth=2.2, linestyle="--", label=r"$\omega = k$")
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.25}
     panel.annotate("the whirl exists\nand is stable", (2.0, 0.5), ha="center", fontsize=10, bbox=box)
-    panel.annotate("roots of (13) only:\nno whirl exists", (0.5, 0.06), ha="center", fontsize=10, bbox=box)
+    panel.annotate("only roots of (13):\nno whirl exists", (0.5, 0.06), ha="center", fontsize=10, bbox=box)
     panel.set(xlabel=axis(r"\omega/k"), ylabel=r"$\beta\,/\,(m k)$", yscale="log", xlim=(0.01, 2.99))
     panel.grid(visible=False)
     panel.legend(loc="upper right", frameon=True, facecolor="white", edgecolor="none", framealpha=0.85)

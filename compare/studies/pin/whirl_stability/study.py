@@ -1,4 +1,4 @@
-"""The study itself, to which all claims belong."""
+"""Claims about the whirl without offset and its stability."""
 
 from __future__ import annotations
 
@@ -38,22 +38,22 @@ STUDY = Study.beside(
 STUDY.provides(curves=theory.curves)
 
 
-# --- Eq. 12 to 16 against each other: the conditions of stability.
+# --- Eq. 12 to 16 compared with each other: the conditions of stability
 
 BoolArray = NDArray[np.bool_]
 
 
 @STUDY.claim(
-    "Corrected (13), the matrix of (12) and the Jacobian of (1) have the same eigenvalues",
+    "The corrected (13), the matrix of (12) and the Jacobian of (1) have the same eigenvalues",
     equation="(12), (13)",
     unit="1/s",
     resolution=1e-9 * K,
-    note="All three eigenvalues of (12), and all four of the Jacobian in the frame that turns with the whirl, one of "
-    "which is the zero of the phase. Error: rounding, by the condition of each eigenvalue.",
+    note="All three eigenvalues of (12), and all four of the Jacobian in the frame that turns with the whirl, "
+    "including the zero of the phase. Error: rounding, from the condition number of each eigenvalue.",
     swept=("disc_speed", "damping"),
 )
 def same_eigenvalues() -> Measured:
-    """Compare the roots of corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
+    """Compare the roots of the corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
     pins = [
         theory.pin_at(float(speed), float(damping))
         for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
@@ -81,7 +81,7 @@ def same_eigenvalues() -> Measured:
 
 
 def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
-    """Return in how many points of the grid a statement holds; one in a thousand may be open."""
+    """Return the answers of a statement for all points of the grid; one in a thousand may be open."""
     return answers_of(
         margins,
         errors,
@@ -93,20 +93,20 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
 
 
 def in_14() -> BoolArray:
-    """Return at which points of the grid (14) holds."""
+    """Return whether (14) holds, at each point of the grid."""
     return np.array([min(coefficient_margins(pin)) > 0.0 for pin in theory.grid()])
 
 
 def in_16() -> BoolArray:
-    """Return at which points of the grid (16) holds."""
+    """Return whether (16) holds, at each point of the grid."""
     return np.array([upper_branch_margin(pin) > 0.0 for pin in theory.grid()])
 
 
 @STUDY.claim(
     "All roots of (13) have negative real parts exactly where (16) holds",
     equation="(16)",
-    note="Whether the condition and the eigenvalues of (12) say the same at each grid point; rounding may leave one "
-    "in a thousand open. Below k this is about the matrix only: no whirl exists there.",
+    note="Do the condition and the eigenvalues of (12) agree at each grid point? Rounding may leave one in a "
+    "thousand open. Below k, this only concerns the matrix, because no whirl exists there.",
     swept=("disc_speed", "damping"),
 )
 def hurwitz() -> Measured:
@@ -123,7 +123,7 @@ def hurwitz() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def implied() -> Measured:
-    """Look for points where (16) holds without (14)."""
+    """Check that (14) holds at all points where (16) holds."""
     return counted(~in_16() | in_14())
 
 
@@ -135,16 +135,16 @@ def implied() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def incompatible() -> Measured:
-    """Look for points where both hold."""
+    """Check that there is no point where both hold."""
     in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in theory.grid()])
     return counted(~(in_14() & in_15))
 
 
-# --- Eq. 11 and 12: what engines show of the whirl without offset, and how deviations from it develop.
+# --- Eq. 11 and 12: the whirl without offset in the engines, and the evolution of deviations from it
 
 SETTLING = (
     f"Starts on a circle {theory.DISPLACED:g} times as large; state after {theory.DURATION:g} s. Error: the "
-    "change at a smaller tolerance, and what is left of the transient by its change in the last "
+    "change at a smaller tolerance, and the remaining transient according to its change in the last "
     f"{theory.DELAY:g} s."
 )
 
@@ -157,7 +157,7 @@ def turning_speed(states: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
-    """Return radius in m and frequency in rad/s in the end of long simulations, shape (n, 2)."""
+    """Return radius in m and frequency in rad/s at the end of long simulations, shape (n, 2)."""
 
     def track(speed: float, times: list[float], tolerance: float) -> FloatArray:
         pin = theory.pin_at(speed)
@@ -169,7 +169,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=theory.DURATION,
             delay=theory.DELAY,
-            period=np.pi / K,  # of the deviations in the frame that turns with the whirl, nearly
+            period=np.pi / K,  # approximate period of deviations in the frame that turns with the whirl
             rate=-whirl_eigenvalues(theory.pin_at(speed))[1].real,
             tolerance=theory.TOLERANCE,
         )
@@ -181,7 +181,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 
 @STUDY.claim(
-    "A pin that starts beside the whirl comes to its radius μN/(βk) where ω > k",
+    "A pin that starts near the whirl approaches its radius μN/(βk) if ω > k",
     equation="(11)",
     unit="m",
     resolution=1e-9 * whirl_radius(theory.PIN),
@@ -189,7 +189,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     swept=("disc_speed",),
 )
 def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
-    """Compare the radius in the end with (11)."""
+    """Compare the final radius with (11)."""
     found = whirls(engine, speeds)
     return Measured(
         predicted=np.full(len(speeds), whirl_radius(theory.PIN)),
@@ -200,7 +200,7 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
 
 
 @STUDY.claim(
-    "A pin that starts beside the whirl comes to its frequency k where ω > k",
+    "A pin that starts near the whirl approaches its frequency k if ω > k",
     equation="(11)",
     unit="rad/s",
     resolution=1e-9 * K,
@@ -208,7 +208,7 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     swept=("disc_speed",),
 )
 def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
-    """Compare the frequency in the end with k."""
+    """Compare the final frequency with k."""
     found = whirls(engine, speeds)
     return Measured(
         predicted=np.full(len(speeds), K),
@@ -219,16 +219,16 @@ def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measur
 
 
 @STUDY.claim(
-    "On the circle (11) friction and damping cancel where ω > k, and brake alike where ω < k",
+    "On the circle (11), friction and damping cancel if ω > k, and brake equally if ω < k",
     equation="(11)",
     resolution=1e-5,
-    note="Change of the angular momentum in time over μN·ρ_c, from a one-sided difference. By (10) it is "
-    "sign(ω − k) − 1. The paper says that (11) always exists: see the errata. Error: the change at a smaller "
+    note="Rate of change of the angular momentum over μN·ρ_c, from a one-sided difference. By (10) it is "
+    "sign(ω − k) − 1. According to the paper, (11) always exists: see the errata. Error: the change at a smaller "
     "tolerance and at a larger interval.",
     swept=("disc_speed",),
 )
 def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
-    """Measure at which rate the angular momentum of a pin put on the circle (11) changes."""
+    """Compare the rate of change of the angular momentum of a pin on the circle (11) with (10)."""
     if engine.contact_only:
         return None
 
@@ -256,14 +256,14 @@ def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured
 
 
 @STUDY.claim(
-    "Where ω < k a pin put on the circle (11) leaves it and ends turning with the disc",
+    "If ω < k, a pin that starts on the circle (11) leaves it and finally turns with the disc",
     equation="(11)",
     resolution=1e-3,
-    note=f"Speed at which it turns after {theory.CAUGHT:g} s, over ω.",
+    note=f"Angular speed of the pin after {theory.CAUGHT:g} s, over ω.",
     swept=("disc_speed",),
 )
 def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
-    """Measure how fast a pin that left the circle (11) below k turns in the end."""
+    """Compare the final angular speed of a pin that left the circle (11) below k with ω."""
     if engine.contact_only:
         return None
     below = [speed for speed in starts if speed < K]
@@ -290,7 +290,7 @@ def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured 
 
 
 def _leave(engine: Engine, speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
-    """Return the motion of a pin put on the circle (11)."""
+    """Return the motion of a pin that starts on the circle (11)."""
     pin = theory.pin_at(speed)
     return engine.simulate(pin, theory.on_circle(pin), times, tolerance=tolerance)
 
@@ -309,7 +309,7 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
 
 
 @STUDY.claim(
-    "Small deviations from the whirl develop with the eigenvalues of (12), and a zero for the phase",
+    "Small deviations from the whirl evolve with the eigenvalues of (12), plus a zero for the phase",
     equation="(12)",
     unit="1/s",
     resolution=1e-6 * K,
@@ -324,38 +324,37 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.P
     found = rates(engine, points)
     return found.compared(
         {"(ω, β)": [f"({speed:g} rad/s, {damping:g} N s/m)" for speed, damping in points]},
-        source=f"{theory.SOURCE}; β too where it is not {theory.PIN.damping:g}",
+        source=f"{theory.SOURCE}; β too if it is not {theory.PIN.damping:g}",
         data={"point": points, "eigenvalue": real_and_imaginary(found.measured)},
     )
 
 
 @STUDY.claim(
-    "No small deviation from the whirl grows where ω > k",
+    "The whirl is stable if ω > k",
     equation="(16)",
-    note="Whether the real part of each measured eigenvalue is below zero, but for one at each point, which belongs "
-    "to the phase.",
+    note="Is the real part of each measured eigenvalue below zero, except for the one that belongs to the phase?",
     implied_by=eigenvalues,
     swept=("disc_speed", "damping"),
 )
 def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
-    """See whether all measured deviations but that of the phase decay."""
+    """Check that all measured deviations except that of the phase decay."""
     if engine.contact_only:
         return None
     return rates(engine, points).decaying(
-        but=1, source=f"{theory.SOURCE}; β too where it is not {theory.PIN.damping:g}"
+        but=1, source=f"{theory.SOURCE}; β too if it is not {theory.PIN.damping:g}"
     )
 
 
 @STUDY.claim(
-    "A small deviation of the radius decays over time as the linear equations (12) say",
+    "A small deviation of the radius decays as the linear equations (12) predict",
     equation="(12)",
     resolution=1e-4,
     note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {theory.DEVIATION:g}·ρ_c; half the difference of the "
-    "radii over a. Model error: the change with a twice as large, three times what the next order of the "
-    "deviation amounts to.",
+    "radii over a. Model error: the change at twice the amplitude a, which is three times the next order of the "
+    "deviation.",
 )
 def history(engine: Engine) -> Measured | None:
-    """Follow a deviation of the radius in time."""
+    """Compare a deviation of the radius over time with (12)."""
     if engine.contact_only:
         return None
     circle = whirl_radius(theory.PIN)

@@ -1,4 +1,4 @@
-"""Eq. 12 to 16 over speed and damping, and a deviation that obeys (12)."""
+"""Eq. 12 to 16 over speed and damping, and a deviation according to (12)."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 4 without its offset, and where its whirl is looked at.
+# --- The pin of Fig. 4 without its offset, and parameters of the measurements
 
 PIN = CENTRED
-SOURCE = "Fig. 4 with X0 = 0, as (11)–(16) assume; the values of ω are ours"
+SOURCE = "Fig. 4 with X0 = 0, as (11)–(16) assume; the values of ω are our choice"
 K = PIN.natural_frequency
 
 SPEEDS = (1.1, 1.5, 4.0)
 """ω in rad/s of the long simulations."""
 
 DISPLACED = 1.1
-"""Radius at their start, in units of (11)."""
+"""Radius at their start, relative to (11)."""
 
 DURATION = 460.0
-"""In s: the slowest deviation falls to 1e-10 of its beginning."""
+"""Duration in s; the slowest deviation falls to 1e-10 of its initial value."""
 
 DELAY = 40.0
-"""In s: from how long before the end the remaining transient is inferred."""
+"""Final part of a run in s, which yields the estimate of the remaining transient."""
 
 TOLERANCE = WORKING / 5
-"""The claims on radius and frequency of the circle (11) resolve 1e-9 of them."""
+"""Tolerance of the claims on radius and frequency of the circle (11), whose resolution is 1e-9."""
 
 STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
 """ω in rad/s of the starts on the circle (11), below and above k."""
 
 INTERVAL = 0.01
-"""In s, between the states from which the change of the angular momentum is taken."""
+"""Interval in s between the states for the change of the angular momentum."""
 
 FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
 """Weights of the one-sided difference of fourth order."""
 
 CAUGHT = 18.0
-"""In s: by then a pin that left the circle below k sticks to the disc."""
+"""Duration in s; at its end, a pin that left the circle below k sticks to the disc."""
 
 CAUGHT_TOLERANCE = 1e-7
 
@@ -54,19 +54,19 @@ POINTS = (
     *((speed, PIN.damping) for speed in (1.05, 1.1, 1.5, 2.5, 5.0)),
     *((1.5, damping) for damping in (0.5, 2.0)),
 )
-"""ω in rad/s and β in N s/m at which eigenvalues are measured."""
+"""ω in rad/s and β in N s/m for the eigenvalues."""
 
 FLOW_DURATION = 0.5
-"""In s, of the simulations that give eigenvalues."""
+"""Duration in s of the simulations for eigenvalues."""
 
 DEVIATION = 1e-3
-"""Amplitude of the decaying deviation, in units of the radius (11)."""
+"""Amplitude of the decaying deviation, relative to the radius (11)."""
 
 DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k and β/(mk) of the grid on which (14) to (16) are compared with eigenvalues, ω < k included."""
+"""ω/k and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues, including ω < k."""
 
 
 def pin_at(speed: float, damping: float = PIN.damping) -> PinOnDisc:
@@ -75,7 +75,7 @@ def pin_at(speed: float, damping: float = PIN.damping) -> PinOnDisc:
 
 
 def on_circle(pin: PinOnDisc, scale: float = 1.0) -> FloatArray:
-    """Return the state on the circle (11), ``scale`` times as large; for ω < k too, where it is no motion."""
+    """Return the state on the circle (11), enlarged by ``scale``. For ω < k, the circle is not a motion."""
     radius = scale * pin.friction_force / (pin.damping * K)
     return np.array([radius, 0.0, 0.0, K * radius])
 

@@ -51,7 +51,7 @@ def draw(data: ByEngine) -> Figures:
     swings.set(
         xlabel=axis(r"t\,/\,(\pi\sqrt{m/C})"),
         ylabel=axis(r"s\,/\,(\mu N/C)"),
-        title="Let go on a spring, at 45 degrees",
+        title="Released on a spring at 45 degrees",
     )
     velocity.set(xlabel=axis("t", "s"), ylabel="velocity in m/s", title=r"Thrown across a pull of $\mu N$")
     for (x, y), name in {(1.5, 0.57): "$|v|$", (1.5, 0.4): "along", (1.5, 0.13): "across"}.items():

@@ -172,7 +172,7 @@ STUDY = Study.beside(
 )
 STUDY.provides(curves=curves)
 
-IN_SPACE = ("place along in m", "place across in m", "velocity along in m/s", "velocity across in m/s")
+IN_SPACE = ("position along in m", "position across in m", "velocity along in m/s", "velocity across in m/s")
 
 
 def moved(
@@ -232,7 +232,7 @@ def along(
 
 
 @STUDY.claim(
-    "A thrown block is slowed down by μN/m, straight ahead, whatever its heading",
+    "A thrown block decelerates at μN/m, straight ahead, whatever its heading",
     unit="m, m/s",
     resolution=1e-6,
     note="s = v₀t − μN·t²/2m.",
@@ -250,7 +250,7 @@ def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     resolution=1e-6,
 )
 def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Compare the positions at which throws stop with the closed form."""
+    """Compare the stopping positions of throws with the closed form."""
     times = STOPPING_TIME * np.array([0.0, AT_REST])
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
     rest, stops = np.array([[STOPPING_DISTANCE, 0.0]]), found.value[:, 0, :2]
@@ -258,15 +258,15 @@ def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
 
 
 @STUDY.claim(
-    "A pull below μN holds a block for ever: it does not creep",
+    "A pull below μN holds a block permanently, without creep",
     unit="μN/√(mC)",
     resolution=1e-5,
-    note=f"Mean speed along and across the pull in {HELD:g} s; without friction a spring that pulls with μN would "
-    "bring the block to the speed μN/√(mC).",
+    note=f"Mean speed along and across the pull in {HELD:g} s. Without friction, a spring that pulls with μN would "
+    "accelerate the block to the speed μN/√(mC).",
     swept=("stiffness",),
 )
 def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Measure the creep of a block on a stretched spring."""
+    """Compare the creep of a block on a stretched spring with zero."""
     stretch, rate = FRICTION / SPRING.stiffness, FRICTION / math.sqrt(SPRING.mass * SPRING.stiffness)
     times = np.array([0.0, HELD])
     crept, errors = [], []
@@ -285,11 +285,11 @@ def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "A pull 1 % beyond μN moves a block from rest, straight ahead, by the closed form, until it is held again",
+    "A pull 1 % above μN moves a block from rest, straight ahead, by the closed form, until it sticks again",
     unit="m, m/s",
     resolution=1e-4,
-    note="About the place at which the spring pulls with μN it moves as 0.01·μN/C·cos kt, k = √(C/m), for half a "
-    "swing.",
+    note="The block moves as 0.01·μN/C·cos kt with k = √(C/m) for half a swing, about the position where the spring "
+    "pulls with μN.",
 )
 def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Compare a released block with the closed form halfway and after it sticks again."""
@@ -301,9 +301,9 @@ def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
 
 
 @STUDY.claim(
-    "A pull of 99 % of μN holds a block, and one of 101 % moves it, whatever its direction",
-    note=f"Whether it has moved by less than {100.0 * MOVED:g} cm in {HELD:g} s, then whether by more: half of how "
-    f"far it slides at 101 %; {at_each('heading', HEADINGS)} degrees.",
+    "A pull of 99 % of μN holds a block, and a pull of 101 % moves it, whatever its direction",
+    note=f"Has it moved by less, and by more, than {100.0 * MOVED:g} cm in {HELD:g} s? This is half of its slide "
+    f"at 101 %. Directions: {at_each('heading', HEADINGS)} degrees.",
 )
 def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Check at eight positions close to the friction cone whether a block moves."""
@@ -324,11 +324,11 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
 
 
 @STUDY.claim(
-    "On a spring each half swing is shorter by 2μN/C, until the block rests where friction holds it",
+    "On a spring, each half swing is shorter by 2μN/C, until the block rests where friction holds it",
     unit="μN/C, k·μN/C",
     resolution=1e-3,
-    note="Let go at 8.5·μN/C, at 45 degrees: it turns at 6.5, 4.5 and 2.5, and rests at 0.5·μN/C. Looked at each "
-    "quarter of a swing.",
+    note="The block starts at 8.5·μN/C at 45 degrees, turns back at 6.5, 4.5 and 2.5, and rests at 0.5·μN/C. Sampled "
+    "every quarter of a swing.",
 )
 def swings(engine: Engine) -> Measured:
     """Compare a block on a stiff spring with the closed form until after it rests."""
@@ -350,11 +350,11 @@ def swings(engine: Engine) -> Measured:
 
 
 @STUDY.claim(
-    "A weak spring from afar pulls a sliding block straight ahead, by the exact solution of spring and friction",
+    "A weak distant spring pulls a sliding block straight ahead, by the exact solution of spring and friction",
     unit="m, m/s",
     resolution=1e-4,
-    note="s = (P − μN)/C·(1 − cos kt) + v₀/k·sin kt with the pull P = 1.5·μN at the start, k = √(C/m): it speeds up "
-    "evenly to within a hundredth.",
+    note="s = (P − μN)/C·(1 − cos kt) + v₀/k·sin kt with the initial pull P = 1.5·μN and k = √(C/m). The "
+    "acceleration is uniform to within a hundredth.",
 )
 def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     """Compare a block thrown along the pull with the closed form."""
@@ -366,11 +366,11 @@ def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measur
 
 
 @STUDY.claim(
-    "Thrown across a pull equal to friction, a block comes down to half its speed, by the closed form",
+    "A block thrown across a pull equal to friction slows down to half its speed, by the closed form",
     unit="m/s",
     resolution=1e-5,
-    note="Velocity along and across the pull, v₀(1 − w)/2 and v₀√w with w + ln w = 1 − 4μN·t/mv₀: the friction turns "
-    "with the velocity. Model error: what the spring's pull changes on the way.",
+    note="Velocity along and across the pull, v₀(1 − w)/2 and v₀√w with w + ln w = 1 − 4μN·t/mv₀; the friction turns "
+    "with the velocity. Model error: the change of the spring's pull along the path.",
 )
 def pulled_across(engine: Engine) -> Measured:
     """Compare a block thrown along y and pulled along x with the closed form."""

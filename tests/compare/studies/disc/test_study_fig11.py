@@ -92,4 +92,4 @@ def test_an_engine_that_tells_no_phases_is_not_asked_when_single_points_rest():
         return Trajectory(system, np.array(times), np.zeros((len(times), system.state_size)))
 
     found = STUDY.measure(Engine("mine", at_rest, EVERY_KIND, phases=False), only=("points_rest",))
-    assert (found.claims, found.not_simulated) == ((), "mine does not tell when single points rest")
+    assert (found.claims, found.not_simulated) == ((), "mine does not report when single points rest")

@@ -79,11 +79,13 @@ def test_the_text_gives_the_numbers_of_the_map():
         damping / disc.damping,
         load / disc.friction_force,
     )
-    words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, "
-    words += "or {} % of friction force"
+    words = (
+        "{} % in the shaft damping, of {} % in the slip speed ω − Ω, of {} % in the damping of the springs, "
+    )
+    words += "or of {} % in the friction force"
     assert words.format(*(percent(ratio, 1.0, 3) for ratio in remedies)) in text
 
     three = LAWS["(23)"]
     limits = [borders("load", "friction_force", kind, three)[0] for kind in ("fold", "Hopf", "onset")]
     assert [f"{value:.4f}" for value in limits] == ["0.0197", "0.0202", "0.0205"]
-    assert "only between 0.0197 and 0.0202 N, below the onset at 0.0205 N" in text
+    assert "only between 0.0197 and 0.0202 N. This is below the onset at 0.0205 N" in text

@@ -12,7 +12,7 @@ from compare.studies.plane import thrown_disc as study
 def test_who_has_no_full_disc_is_told_so():
     assert THROWN_DISC.found("exudyn-native").not_simulated == (
         "exudyn-native does not simulate a disc on a continuous ring; "
-        "exudyn-native is not asked for a full disc, which no engine promises"
+        "exudyn-native has no model of a full disc"
     )
 
 
