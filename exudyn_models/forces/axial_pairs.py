@@ -205,7 +205,7 @@ class AxialStick:
         return radius * self.factors.friction_force(t, 0.0, radius * abs(spin), spin)
 
     def limits(self, t: float) -> tuple[float, float]:
-        """Return the largest moments in N m by which a locked contact resists sliding forward and backward, at t (s).
+        """Return the largest moments in N m of a locked contact against sliding forward and backward, at t (s).
 
         They differ if the coefficient does, as in a one-way clutch.
         """

@@ -20,7 +20,7 @@ from reference_model.systems import FloatArray
 CURRENT = exu.ConfigurationType.Current
 
 SOON = 1e-9
-"""Time in s after which the slip of a contact at rest shows the sign of its acceleration."""
+"""Short time in s; after it, the slip of a contact at rest has the sign of its acceleration."""
 
 
 @dataclass(frozen=True)
