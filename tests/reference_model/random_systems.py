@@ -5,7 +5,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from disc_equations import disc_in_units
 from plain_engines import in_units
 from scipy.integrate import odeint
 from scipy.special import ellipe, ellipkm1
@@ -79,20 +78,18 @@ class RandomMotion:
     def simulated(self, tolerance=1e-9):
         """Simulate in random units; return the trajectory, and its states at ``TIMES`` in the original units."""
         mass, length, time = 10.0 ** np.random.default_rng((self.seed, 1)).uniform(-3.0, 3.0, 3)
-        change = in_units if isinstance(self.system, PinOnDisc) else disc_in_units
         half = len(self.start) // 2
         scales = np.array([length, length, 1.0][:half] + [length / time, length / time, 1.0 / time][:half])
         run = simulate(
-            change(self.system, mass, length, time), self.start * scales, TIMES * time, tolerance=tolerance
+            in_units(self.system, mass, length, time), self.start * scales, TIMES * time, tolerance=tolerance
         )
         return run, run.states / scales
 
 
-def friction_of_points(disc, epsilon):
+def friction_of_points(load, R, n, epsilon):
     """Return force and moment of points with the law v/√(v² + ε²), as a function of slip, spin and angle."""
-    n, R = disc.contact_points, disc.contact_radius
     around = [R * cmath.exp(2j * math.pi * i / n) for i in range(n)]
-    share = disc.friction_force / n
+    share = load / n
 
     def friction(u, w, angle):
         turn, force, moment = cmath.exp(1j * angle), 0j, 0.0
@@ -131,17 +128,15 @@ def friction_of_ring(disc, epsilon):
     return friction
 
 
-def friction_of_pin(pin, epsilon):
-    """Return the force of this law at one point."""
-    return lambda u, *_: (-pin.friction_force * u / math.sqrt(u.real**2 + u.imag**2 + epsilon**2), 0.0)
-
-
 def smooth_motion(system, start, epsilon):
     """Return states by LSODA with friction v/√(v² + ε²). Slip is an unknown to preserve the digits of creep."""
     omega, C, beta, m = system.disc_speed, system.stiffness, system.damping, system.mass
     disc = isinstance(system, DiscOnDisc)
-    law = friction_of_pin if not disc else friction_of_points if system.contact_points else friction_of_ring
-    friction = law(system, epsilon)
+    if disc and system.contact_points is None:
+        friction = friction_of_ring(system, epsilon)
+    else:
+        radius, points = (system.contact_radius, system.contact_points) if disc else (0.0, 1)
+        friction = friction_of_points(system.friction_force, radius, points, epsilon)
 
     def rates(_, unknowns):
         x, y, ux, uy, *turning = unknowns.tolist()

@@ -105,9 +105,6 @@ def test_scaled_support_has_the_scaled_force_at_the_scaled_position(pin, x, y, f
     )
 
 
-# ---------------------------------------------------------------- formulas of a linear support
-
-
 OF_A_PIN = {
     "stick-slip orbits": lambda pin: stick_slip_orbits(replace(pin, friction_force=0.09)),
     "7": lambda pin: pin_formulas.squared_holding_force(pin, 0.1, 0.2),

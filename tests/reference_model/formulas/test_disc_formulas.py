@@ -5,7 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import LARGE, disc_in_units, eq_23, mirrored
+from disc_equations import LARGE, eq_23, mirrored
+from plain_engines import in_units
 from scipy.integrate import quad
 from scipy.optimize import minimize_scalar
 
@@ -17,9 +18,6 @@ from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
 
 ROUNDING = 1e-13
-
-
-# ---------------------------------------------------------------- (22)
 
 
 def test_error_of_the_expansion_22_is_its_first_neglected_term():
@@ -69,9 +67,6 @@ def test_23_is_the_average_of_three_terms_of_22_and_not_of_the_two_printed_terms
     assert np.add(two, missing) == pytest.approx(expected, abs=1e-14)
 
 
-# ---------------------------------------------------------------- (24) to (26)
-
-
 DISCS = [
     mirrored(FIG8),
     replace(FIG8, offset=-0.1),
@@ -109,7 +104,7 @@ def test_parameters_25_are_two_lengths_and_a_number():
     assert load == pytest.approx(0.05, rel=1e-15)
     assert shaft_damping == pytest.approx(0.01 * 0.8 / 0.12, rel=1e-15)
     assert difference == pytest.approx(0.375, rel=1e-15)
-    scaled = formulas.reduced_parameters(disc_in_units(FIG8, mass=3.0, length=0.2, time=7.0))
+    scaled = formulas.reduced_parameters(in_units(FIG8, mass=3.0, length=0.2, time=7.0))
     assert scaled == pytest.approx((0.2 * load, 0.2 * shaft_damping, difference), rel=1e-14)
 
 
@@ -119,9 +114,6 @@ def test_26_gives_the_equilibrium_of_a_pin_if_shaft_and_master_disc_turn_alike()
     x, y = pin_formulas.equilibrium_position(formulas.pin_of(disc))
     assert place == pytest.approx((x, y, 0.8), rel=1e-14)
     assert formulas.places_by_26(replace(disc, friction_force=0.1001)) == ()
-
-
-# ---------------------------------------------------------------- the whirl
 
 
 @pytest.mark.parametrize("law", [Ring, ThreeTermRing])
@@ -144,9 +136,6 @@ def test_load_of_a_very_small_whirl_is_the_onset_load():
         assert arm(3.0, 2.0) == pytest.approx(arm(0.3, 0.2), rel=ROUNDING)
 
 
-# ---------------------------------------------------------------- sticking
-
-
 def mean_slip_speed(slip, rim):
     """Return P by the trapezoidal rule, with an error of order 1/n² at a kink."""
     places = 2.0 * np.pi * (np.arange(4096) + 0.5) / 4096
@@ -167,8 +156,6 @@ def test_held_force_lies_on_the_limit_surface(torque_share):
     assert held.friction_force == pytest.approx(bound.fun, rel=1e-6)
     assert replace(held, friction_force=0.4) == formulas.pin_of(disc)
 
-
-# ---------------------------------------------------------------- refusals
 
 REFUSED = [
     (formulas.places_by_26, {"stiffness": 0.0}, "stiffness = 0"),

@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from disc_equations import STICKING, STICKY
 from plain_engines import release_after, stuck_state
 
 from compare.claims.parameters import FIG11
@@ -17,23 +18,14 @@ from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc
 
-STICKY = DiscOnDisc(
-    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
-    contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
-)  # fmt: skip
 FREE = DiscOnDisc(
     mass=2.0, polar_inertia=2.0 * 0.3**2, stiffness=0.0, damping=0.0, friction_force=0.4, disc_speed=0.0,
     contact_radius=0.3, shaft_damping=0.0, shaft_speed=0.0,
 )  # fmt: skip
-STICKING = [0.1, 0.0, 0.0, 0.03, 0.0, 1.5]
-"""Initial state of a motion of ``STICKY`` with stick phases, and with pivots if it has points."""
 
 
 def kinds(trajectory):
     return [phase.kind for phase in trajectory.phases]
-
-
-# ---------------------------------------------------------------- slip
 
 
 def test_motion_of_a_thin_annulus_differs_from_the_ring_to_second_order_in_its_width():
@@ -89,26 +81,22 @@ def test_without_friction_the_disc_is_a_damped_oscillator_and_a_spin_that_decays
     assert kinds(trajectory) == ["slip"]
 
 
-# ---------------------------------------------------------------- stick
-
-
 @pytest.mark.parametrize("support", [{}, {"stop_gap": 0.12, "stop_stiffness": 0.5}], ids=["linear", "stop"])
 def test_stuck_ring_is_released_like_a_pin_with_the_friction_that_the_moment_leaves(support):
     disc = replace(STICKY, **support)
     pin = held_pin(disc)
     turn = 2.0 * math.pi / disc.disc_speed
     released = 0
-    for angle in np.linspace(0.0, 6.0, 25):
+    for angle in np.linspace(0.0, 6.0, 13):
         z = 0.05 * cmath.exp(1j * angle)
-        v = 1j * disc.disc_speed * z
-        trajectory = simulate(disc, [z.real, z.imag, 0.3, v.real, v.imag, disc.disc_speed], [0.0, 20.0])
+        trajectory = simulate(disc, stuck_state(disc, z.real, z.imag), [0.0, 20.0])
         if kinds(trajectory)[0] == "stick":
             release = (
                 release_after(pin, stuck_state(pin, z.real, z.imag), turn) or 20.0
             )  # 0 if it never slips
             assert trajectory.phases[0].end == pytest.approx(release, abs=1e-10)
             released += release < 20.0
-    assert released >= 5
+    assert released >= 3
 
 
 @pytest.mark.parametrize("points", [None, 3, 6])
@@ -117,16 +105,13 @@ def test_disc_at_the_axis_sticks_if_the_moment_of_its_shaft_is_below_friction(po
     # At the axis there is no force on the centre, so b(ω − Ω) competes with μN·R alone.
     b = margin * STICKY.friction_force * STICKY.contact_radius / 0.25
     disc = replace(STICKY, offset=0.0, shaft_damping=b, contact_points=points)
-    trajectory = simulate(disc, [0.0, 0.0, 0.2, 0.0, 0.0, disc.disc_speed], np.linspace(0.0, 30.0, 31))
+    trajectory = simulate(disc, stuck_state(disc, 0.0, 0.0), np.linspace(0.0, 30.0, 31))
     assert kinds(trajectory) == (["stick"] if margin < 1.0 else ["slip"])
     if margin > 1.0:
         # The spin slips until the damper balances friction, b(ω − Ω − S) = μN·R.
         slip = 0.25 - STICKY.friction_force * STICKY.contact_radius / b
         decay = math.exp(-b / disc.polar_inertia * 30.0)
         assert 1.5 - trajectory.at_end[5] == pytest.approx(slip * (1.0 - decay), rel=1e-7)
-
-
-# ---------------------------------------------------------------- accuracy
 
 
 def test_motion_under_23_with_stick_phases_reaches_the_default_tolerance():

@@ -6,23 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from disc_equations import STICKING, STICKY
 from scipy.optimize import brentq
 
-from reference_model import DiscOnDisc, PinOnDisc, simulate
+from reference_model import PinOnDisc, simulate
 from reference_model.numerics.explicit import Explicit
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.2, offset=0.1)
-RING = DiscOnDisc(
-    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
-    contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
-)  # fmt: skip
-ON_PIN, ON_DISC = [0.1, 0.0, 0.0, 0.12], [0.1, 0.0, 0.0, 0.03, 0.0, 1.5]
+ON_PIN = [0.1, 0.0, 0.0, 0.12]
 MOTIONS = {
     "pin": (PIN, ON_PIN, {"stick", "slip"}),
     "pin on a hard support": (replace(PIN, hardening=3.0), ON_PIN, {"stick", "slip"}),
-    "ring": (RING, ON_DISC, {"stick", "slip"}),
-    "three points": (replace(RING, contact_points=3), ON_DISC, {"stick", "slip", "pivot"}),
-    "six points": (replace(RING, contact_points=6), ON_DISC, {"stick", "slip", "pivot"}),
+    "ring": (STICKY, STICKING, {"stick", "slip"}),
+    "three points": (replace(STICKY, contact_points=3), STICKING, {"stick", "slip", "pivot"}),
+    "six points": (replace(STICKY, contact_points=6), STICKING, {"stick", "slip", "pivot"}),
 }
 
 

@@ -29,9 +29,6 @@ def event_times(trajectory):
     return [phase.start for phase in trajectory.phases[1:]]
 
 
-# ---------------------------------------------------------------- slip
-
-
 @pytest.mark.parametrize("stiffness", [1e2, 1e4, 1e6])
 @pytest.mark.parametrize("start", [[0.2, 0.0, 1.0, 0.5], [0.0, 0.1, 0.3, 0.6]])
 def test_pin_bounces_off_a_hard_stop_as_in_a_plain_integration(stiffness, start):
@@ -68,9 +65,6 @@ def test_step_across_a_grazed_stop_detects_the_contact(depth, tolerance):
     assert np.abs(found.states - expected).max() < 1e4 * 8.0 * max(depth, 0.0) / 3.0 * push + accuracy
     # The effect of the push is large enough to be seen.
     assert push == 0.0 or 1e4 * 8.0 * depth / 3.0 < 0.1
-
-
-# ---------------------------------------------------------------- stick
 
 
 coordinates = st.floats(-0.4, 0.4)

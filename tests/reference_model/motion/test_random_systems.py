@@ -30,38 +30,12 @@ def simulated(seed):
     return motion(seed).simulated()
 
 
-def deflection(run):
-    return np.hypot(run.states[:, 0] - run.system.offset, run.states[:, 1])
-
-
-def regimes(seed):
-    """Return the regimes of a motion."""
-    run, _ = simulated(seed)
-    kinds = [phase.kind for phase in run.phases]
-    system, slip = run.system, run.slip_velocity
-    contact = "pin" if not isinstance(system, DiscOnDisc) else "points" if system.contact_points else "ring"
-    found = {contact, *kinds}
-    found |= {f"{before} to {after}" for before, after in pairwise(kinds)}
-    if system.hardening > 0.0:
-        found.add("hardening")
-    if system.stop_stiffness > 0.0 and np.any(np.diff(deflection(run) > system.stop_gap)):
-        found.add("stop")
-    if kinds[-1] == "slip" and 0.0 < run.slip_speed[-1] < 1e-4 * run.slip_speed.max():
-        found.add("creep")
-    # The slip velocity reverses from one sample to the next without a stick phase.
-    back = np.sum(slip[1:] * slip[:-1], axis=1) < -0.99 * run.slip_speed[1:] * run.slip_speed[:-1]
-    if np.any(back & (run.slip_speed[1:] > 0.0)):
-        found.add("reversal")
-    return found
-
-
-def test_random_systems_go_through_all_regimes():
-    counts = Counter(regime for seed in range(SYSTEMS) for regime in regimes(seed))
-    assert min(counts[contact] for contact in ("pin", "ring", "points")) == SYSTEMS // 3
-    assert min(counts[often] for often in ("slip", "stick", "slip to stick", "hardening", "stop")) > 40
-    assert min(counts["stick to slip"], counts["reversal"]) > 20
-    assert counts["creep"] > 10
-    assert counts["pivot"] > 3
+def test_random_systems_include_all_transitions_between_phases():
+    kinds = [[phase.kind for phase in simulated(seed)[0].phases] for seed in range(SYSTEMS)]
+    transitions = Counter(pair for each in kinds for pair in set(pairwise(each)))
+    assert transitions["slip", "stick"] > 40
+    assert transitions["stick", "slip"] > 20
+    assert sum("pivot" in each for each in kinds) > 3
 
 
 @seeds

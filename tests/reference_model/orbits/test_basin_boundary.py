@@ -41,9 +41,6 @@ def whirls(start, duration, tolerance):
     return np.hypot(*end[:2]) > 0.4
 
 
-# ---------------------------------------------------------------- points
-
-
 @pytest.mark.parametrize(
     ("first", "second"),
     [
@@ -62,9 +59,6 @@ def test_starts_on_both_sides_of_a_point_of_the_boundary_end_in_different_motion
     step = 1e-10 * along / np.linalg.norm(along)
     assert not whirls(point - step, 400.0, 1e-12)
     assert whirls(point + step, 400.0, 1e-12)
-
-
-# ---------------------------------------------------------------- curves
 
 
 def test_closed_curve_encloses_the_basin_of_the_equilibrium_of_fig_5(boundary):
@@ -140,9 +134,6 @@ def test_boundary_between_a_stick_slip_cycle_and_the_whirl_is_found():
         for start in (point - step, point + step)
     )
     assert behind < 140.0 < 148.0 < before
-
-
-# ---------------------------------------------------------------- refusals
 
 
 def test_stable_orbit_is_refused():

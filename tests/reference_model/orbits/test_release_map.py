@@ -45,9 +45,6 @@ def release_angles(pin, state, duration):
     return angles
 
 
-# ---------------------------------------------------------------- releases
-
-
 @pytest.mark.parametrize(
     "pin", [FIG5, HEAVY, DAMPED, replace(HEAVY, disc_speed=-2.2), replace(HEAVY, offset=-0.15, damping=0.0)]
 )
@@ -73,9 +70,6 @@ def test_pin_whose_pull_does_not_change_during_stick_has_no_orbits():
         assert stick_slip_orbits(replace(FIG5, **{name: 0.0})) == ()
     resonant = replace(FIG5, disc_speed=FIG5.natural_frequency, damping=0.0)
     assert stick_slip_orbits(resonant) == ()
-
-
-# ---------------------------------------------------------------- the saddle of Fig. 5
 
 
 def test_saddle_of_fig_5_is_periodic_with_one_stick_phase(saddle):
@@ -129,9 +123,6 @@ def test_multiplier_next_to_a_gap_of_the_map_is_its_slope():
     # The slope changes by about 3 per radian.
     backward = 1.0 + (releases.change(angle) - releases.change(angle - 1e-5)) / 1e-5
     assert releases.slope(angle) == pytest.approx(backward, abs=1e-4)
-
-
-# ---------------------------------------------------------------- a stable cycle
 
 
 def test_long_simulation_converges_to_the_stable_cycle(cycle):

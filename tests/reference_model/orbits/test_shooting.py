@@ -16,7 +16,6 @@ from reference_model.orbits.shooting import ShootingProblem
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
-MIRRORED = replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)
 CYCLE = 1e-10  # tolerance of the modulated cycle, whose period is 37 turns
 ROUNDING = 1e-12  # error of a stable orbit at a tolerance of 1e-12
 
@@ -26,20 +25,29 @@ def turned(z, angle):
     return z.real, z.imag
 
 
-@pytest.mark.parametrize("pin", [FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2)])
-def test_whirl_without_offset_agrees_with_11_and_its_eigenvalues(pin):
-    pin = replace(pin, offset=0.0)
-    orbit, (whirl,) = whirl_orbit(pin), whirls(pin)
+PINS = [replace(pin, offset=0.0) for pin in (FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2))]
+DISCS = [FIG11, replace(FIG11, friction_force=0.08), replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)]
+
+
+@pytest.mark.parametrize(
+    ("system", "law", "error"),
+    [
+        *((pin, None, 1e-9) for pin in PINS),
+        # Differences over 3e-4 are less accurate for discs, because the law is steep near U = W.
+        *((disc, law, 1e-8) for disc in DISCS for law in (None, ThreeTermRing(0.12))),
+    ],
+)
+def test_whirl_without_offset_agrees_with_its_formula_and_eigenvalues(system, law, error):
+    (whirl,) = whirls(system, law)
+    orbit = whirl_orbit(system, simulate=functools.partial(simulate, contact=law), guess=whirl, samples=64)
     assert orbit.residual <= 1e-12
-    expected = [whirl.radius, 0.0, 0.0, whirl.radius * whirl.frequency]
-    assert orbit.state == pytest.approx(expected, abs=ROUNDING * whirl.radius * 10)
-    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING)
-    assert orbit.frequency == pytest.approx(abs(whirl.frequency), rel=ROUNDING)
-    assert orbit.mean == pytest.approx([0.0, 0.0], abs=ROUNDING * whirl.radius * 10)
-    # Differences of fourth order over 3e-4 of the size have errors of 1e-14/3e-4.
+    assert orbit.state == pytest.approx(whirl.state, abs=ROUNDING * 10)
+    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING * 10)
+    assert orbit.frequency == pytest.approx(abs(whirl.frequency), rel=ROUNDING * 10)
+    assert orbit.mean == pytest.approx([0.0, 0.0], abs=ROUNDING * 10)
     multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
     found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
-    assert found == pytest.approx(multipliers, abs=1e-9)
+    assert found == pytest.approx(multipliers, abs=error)
     assert orbit.stable == whirl.stable
 
 
@@ -137,21 +145,6 @@ def test_branch_is_followed_around_the_fold_in_steps_of_any_size(fold):
 
 
 # ---------------------------------------------------------------- the disc
-
-
-@pytest.mark.parametrize("disc", [FIG11, replace(FIG11, friction_force=0.08), MIRRORED], ids=str)
-@pytest.mark.parametrize("law", [None, ThreeTermRing(0.12)], ids=["ring", "(23)"])
-def test_whirl_of_a_disc_without_offset_has_the_eigenvalues_of_the_turning_frame(disc, law):
-    (whirl,) = whirls(disc, law)
-    orbit = whirl_orbit(disc, simulate=functools.partial(simulate, contact=law), guess=whirl, samples=2)
-    assert orbit.residual <= 1e-12
-    assert orbit.state == pytest.approx(whirl.state, abs=ROUNDING * 10)
-    assert orbit.period == pytest.approx(2.0 * math.pi / abs(whirl.frequency), rel=ROUNDING * 10)
-    multipliers = sorted(np.exp(np.array(whirl.eigenvalues) * orbit.period), key=lambda m: (-abs(m), -m.imag))
-    found = sorted(orbit.multipliers, key=lambda m: (-abs(m), -m.imag))
-    # Differences over 3e-4 are less accurate, because the law is steep near U = W.
-    assert found == pytest.approx(multipliers, abs=1e-8)
-    assert orbit.stable == whirl.stable
 
 
 def test_whirl_of_a_disc_with_an_offset_is_periodic_except_for_its_angle():
