@@ -1,4 +1,4 @@
-"""Slip by the plain equations, integrated to rounding: what the tests of all engines hold their motions against."""
+"""Slip by the plain equations, integrated to rounding error, an independent reference for all engines."""
 
 import math
 
@@ -12,7 +12,7 @@ from reference_model.contact.contact_law import contact_of
 def slide(system, start, times, friction=None, **options):
     """Return SciPy's solution of (1) or (19) from ``times[0]`` to ``times[-1]``, with states at ``times``.
 
-    Friction is by the law of the system's contact, of the form of :func:`reference_model.plain.on_ring` otherwise.
+    The default friction is the contact law of the system; others have the form of ``plain.on_ring``.
     """
     law = friction or plain.by_law(system.friction_force, contact_of(system))
     options = {"method": "DOP853", "rtol": 3e-14, "atol": 1e-15, "t_eval": times} | options
@@ -22,7 +22,7 @@ def slide(system, start, times, friction=None, **options):
 
 
 def slide_past_stop(pin, start, times):
-    """Return the states at ``times``: each ends a run, and so does the stop where it begins or ends to act."""
+    """Return the states at ``times``; a run ends at each time and where contact with the stop begins or ends."""
 
     def beyond(_, state):
         return math.hypot(state[0] - pin.offset, state[1]) - pin.stop_gap
@@ -33,7 +33,7 @@ def slide_past_stop(pin, start, times):
         while t < end:
             run = slide(pin, state, (t, end), events=beyond, t_eval=None)
             t, state = run.t[-1], run.y[:, -1]
-            if t < end:  # away from the edge, that it is not found once more
+            if t < end:  # away from the edge, which must not be found again
                 run = slide(pin, state, (t, min(t + 1e-6, end)), t_eval=None)
                 t, state = run.t[-1], run.y[:, -1]
         found.append(state)

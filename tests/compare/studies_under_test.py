@@ -50,7 +50,7 @@ def made(**make):
 
 def fault(name):
     """Return a wrong engine of the catalogue."""
-    return next(fault.engine for fault in FAULTS if fault.name == name)
+    return next(fault for fault in FAULTS if fault.name == name)
 
 
 @functools.cache

@@ -1,6 +1,5 @@
 """Engines with one fault each, which the claims must detect, and the sound engines that they modify."""
 
 from faults.catalogue import FAULTS, SOUND
-from faults.fault import Fault
 
-__all__ = ["FAULTS", "SOUND", "Fault"]
+__all__ = ["FAULTS", "SOUND"]

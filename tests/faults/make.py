@@ -125,24 +125,14 @@ class Numbers(NamedTuple):
 
     @classmethod
     def of(cls, system: System) -> Numbers:
-        """Return the parameters of ``system``."""
-        disc = system if isinstance(system, DiscOnDisc) else None
-        return cls(
-            system.mass,
-            disc.polar_inertia if disc else 1.0,
-            system.stiffness,
-            system.damping,
-            system.friction_force,
-            system.disc_speed,
-            system.offset,
-            system.hardening,
-            system.stop_gap,
-            system.stop_stiffness,
-            disc.contact_radius if disc else 0.0,
-            disc.shaft_damping if disc else 0.0,
-            disc.shaft_speed if disc else 0.0,
-            (disc.contact_points or 0) if disc else 1,
-        )
+        """Return the parameters of ``system``; a pin has the inertia 1 and no radius or shaft."""
+        names = (
+            "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "hardening",
+            "stop_gap", "stop_stiffness", "contact_radius", "shaft_damping", "shaft_speed",
+        )  # fmt: skip
+        values = (getattr(system, name, 1.0 if name == "polar_inertia" else 0.0) for name in names)
+        points = (system.contact_points or 0) if isinstance(system, DiscOnDisc) else 1
+        return cls(*values, points)
 
 
 def steepest(numbers: Numbers) -> float:

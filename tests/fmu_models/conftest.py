@@ -1,4 +1,4 @@
-"""The C sources of the units as libraries and as units, each compiled once in a session."""
+"""Fixtures that compile the C sources of the units once per session, as libraries and as units."""
 
 import ctypes
 import functools
@@ -22,7 +22,7 @@ def needs_compiler():
 
 @pytest.fixture(scope="session")
 def library(tmp_path_factory, needs_compiler):
-    """Compiles the sources of a model with a driver in place of a standard: no header of others is needed."""
+    """Return a function that compiles a model with a driver instead of FMI, which needs no FMI headers."""
 
     @functools.cache
     def of(name):
@@ -37,7 +37,7 @@ def library(tmp_path_factory, needs_compiler):
 
 @pytest.fixture(scope="session")
 def unit(tmp_path_factory, needs_compiler):
-    """Writes units; for tests that need FMPy."""
+    """Return a function that exports units, for tests that need FMPy."""
     pytest.importorskip("fmpy", reason="FMPy is not installed")
     folder = tmp_path_factory.mktemp("units")
 
@@ -51,5 +51,5 @@ def unit(tmp_path_factory, needs_compiler):
 
 @pytest.fixture
 def instance(library):
-    """Makes instances of a model, which have not started."""
+    """Return a function that creates uninitialised instances of a model."""
     return lambda name, **values: Instance(library(name), MODELS[name], **values)

@@ -1,4 +1,4 @@
-"""Units as files: by both standards, with FMPy for an importer, judged as an engine, and without a compiler."""
+"""Exported units: both FMI versions, FMPy as importer and solver, units as engines, and export without a compiler."""
 
 import shutil
 import zipfile
@@ -29,7 +29,7 @@ BOTH = pytest.mark.parametrize("fmi", [2, 3])
 
 @BOTH
 @pytest.mark.parametrize("name", ["pin", "disc", "clutch"])
-def test_the_validator_finds_nothing(unit, name, fmi):
+def test_validator_accepts_the_unit(unit, name, fmi):
     assert validate_fmu(str(unit(name, fmi))) == []
 
 
@@ -43,7 +43,7 @@ def test_the_validator_finds_nothing(unit, name, fmi):
     ],
     ids=["pin that sticks", "ring", "six points"],
 )
-def test_a_solver_of_others_finds_motion_stick_and_release(unit, name, system, start, fmi):
+def test_cvode_finds_motion_stick_and_release(unit, name, system, start, fmi):
     states = [column for column, _ in COLUMNS[type(system)]]
     points = {"contact_points": 6} if system is SIX else {}
     run = fmpy.simulate_fmu(
@@ -66,7 +66,7 @@ def test_a_solver_of_others_finds_motion_stick_and_release(unit, name, system, s
 
 
 @BOTH
-def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
+def test_co_simulation_rolls_back_and_returns_derivatives_of_outputs(unit, fmi):
     file = str(unit("pin", fmi))
     description = fmpy.read_model_description(file)
     folder = fmpy.extract(file)
@@ -93,7 +93,7 @@ def test_co_simulation_rolls_back_and_tells_derivatives_of_outputs(unit, fmi):
 
 
 PLAIN = {"pin": "a pin", "ring": "a disc on the continuous ring", "points": "a disc on six points"}
-"""Of kinds of contact: which motion shows whether one moves as it should."""
+"""Motion of the study by kind of contact."""
 
 
 def moves(file, kind):
@@ -117,11 +117,11 @@ COMES_TO_REST = DiscOnDisc(
     ],
     ids=["single ones", "all"],
 )
-def test_the_unit_tells_when_points_come_to_rest_and_are_let_go(unit, system, start, kinds, fmi):
+def test_unit_reports_when_points_stick_and_are_released(unit, system, start, kinds, fmi):
     (engine,) = engines([f"fmu:{unit('disc', fmi)}"])
     expected = reference_model.simulate(system, start, [0.0, 40.0], tolerance=1e-12).phases
     assert [phase.kind for phase in expected] == kinds
-    # at 1e-10 points pass the speed of creep many times before they are let go for good
+    # At 1e-10 points pass the creep speed many times before their release.
     for tolerance, most, times in ((2e-8, 1e-3, [0.0, 40.0]), (1e-10, 3e-4, np.linspace(0.0, 40.0, 161))):
         found = engine.simulate(system, start, times, tolerance=tolerance).phases
         assert [phase.kind for phase in found] == kinds
@@ -132,7 +132,7 @@ def test_the_unit_tells_when_points_come_to_rest_and_are_let_go(unit, system, st
 
 @BOTH
 @pytest.mark.parametrize("times", [(0.0, 60.0), np.linspace(0.0, 60.0, 1201)], ids=["one step", "many steps"])
-def test_the_unit_tells_all_its_phases_whatever_the_communication_steps(unit, fmi, times):
+def test_unit_reports_all_phases_for_any_communication_steps(unit, fmi, times):
     (engine,) = engines([f"fmu:{unit('pin', fmi)}"])
     found = engine.simulate(FIG5, FIG5_STARTS["whirl"], times, tolerance=1e-11)
     expected = reference_model.simulate(FIG5, FIG5_STARTS["whirl"], [0.0, 60.0], tolerance=1e-13)
@@ -144,10 +144,10 @@ def test_the_unit_tells_all_its_phases_whatever_the_communication_steps(unit, fm
         np.testing.assert_allclose(mine.initial_state, theirs.initial_state, rtol=0.0, atol=1e-7)
 
 
-def test_a_disc_that_rests_from_the_start_turns_in_closed_form_until_it_is_let_go(unit):
+def test_disc_that_sticks_from_the_start_is_released_at_the_exact_time(unit):
     (engine,) = engines([f"fmu:{unit('disc')}"])
     place, speed = -0.01, FIG11.disc_speed
-    disc = replace(FIG11, shaft_damping=0.0, damping=0.0, offset=0.015)  # towards x > 0 holding it takes more
+    disc = replace(FIG11, shaft_damping=0.0, damping=0.0, offset=0.015)  # the holding force rises with x
     carried = (place, 0.0, 0.0, 0.0, speed * place, speed)
     expected = reference_model.simulate(disc, carried, [0.0, 2.0], tolerance=1e-13)
     found = engine.simulate(disc, carried, [0.0, 0.5, 2.0], tolerance=1e-6)
@@ -157,7 +157,7 @@ def test_a_disc_that_rests_from_the_start_turns_in_closed_form_until_it_is_let_g
     np.testing.assert_allclose(found.phases[1].initial_state, expected.phases[1].initial_state, atol=1e-14)
 
 
-def test_a_unit_that_creeps_tells_no_phases(needs_compiler, tmp_path):
+def test_unit_with_creep_reports_no_phases(needs_compiler, tmp_path):
     file = export(PIN.starting(exact=0.0), tmp_path / "creeps.fmu").file
     (engine,) = engines([f"fmu:{file}"])
     assert not engine.phases
@@ -181,11 +181,11 @@ MISTAKES = {
     ),
     "pin: a weight of the pair": ("integrator.c", "500.0 / 1113", "501.0 / 1113"),
 }
-"""Kind of contact and mistake in the C sources: a file, what stands in it, and what takes its place."""
+"""Mistakes in the C sources by kind of contact: file, correct text and replacement."""
 
 
 @pytest.mark.parametrize("mistake", [*PLAIN, *MISTAKES])
-def test_a_judge_agrees_with_the_unit_and_sees_a_mistake_in_its_sources(
+def test_claims_agree_with_the_unit_and_detect_mistakes_in_its_sources(
     needs_compiler, tmp_path, monkeypatch, mistake
 ):
     shutil.copytree(FOLDER, tmp_path / "sources")
@@ -203,7 +203,7 @@ def test_a_judge_agrees_with_the_unit_and_sees_a_mistake_in_its_sources(
 
 
 @BOTH
-def test_a_unit_without_a_compiler_has_its_sources_alone_and_says_so(tmp_path, monkeypatch, capsys, fmi):
+def test_export_without_a_compiler_writes_sources_only_and_reports_it(tmp_path, monkeypatch, capsys, fmi):
     monkeypatch.setattr(archive, "compiler", lambda: None)
     output = tmp_path / "clutch.fmu"
     assert cli.status(["export-fmu", "clutch", "--fmi", str(fmi), "--output", str(output)]) == 0
@@ -214,7 +214,7 @@ def test_a_unit_without_a_compiler_has_its_sources_alone_and_says_so(tmp_path, m
     assert ("sources/buildDescription.xml" in names) == (fmi == 3)
 
 
-def test_what_is_set_is_what_the_unit_starts_with(needs_compiler, tmp_path, capsys):
+def test_export_sets_start_values(needs_compiler, tmp_path, capsys):
     output = tmp_path / "mine.fmu"
     settings = ["--set", "plates=4", "--set", "wear=true", "--set", "normal_load=50"]
     assert cli.status(["export-fmu", "clutch", *settings, "--output", str(output)]) == 0
@@ -232,9 +232,7 @@ def test_what_is_set_is_what_the_unit_starts_with(needs_compiler, tmp_path, caps
         (["--output", "clutch.zip"], "output = 'clutch.zip': the name of a unit must end with .fmu"),
     ],
 )
-def test_what_can_not_be_exported_is_refused_in_a_sentence(
-    tmp_path, monkeypatch, capsys, arguments, sentence
-):
+def test_invalid_export_is_refused(tmp_path, monkeypatch, capsys, arguments, sentence):
     monkeypatch.chdir(tmp_path)
     if "--output" not in arguments:
         arguments = [*arguments, "--output", "mine.fmu"]
@@ -243,7 +241,7 @@ def test_what_can_not_be_exported_is_refused_in_a_sentence(
     assert not list(tmp_path.iterdir())
 
 
-def test_without_the_headers_a_sentence_says_what_to_install(tmp_path, monkeypatch):
+def test_missing_headers_are_reported_with_the_package_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(HeadersMissingError, match="pip install 'friction-discs\\[fmu\\]'"):
         export(PIN, tmp_path / "pin.fmu")

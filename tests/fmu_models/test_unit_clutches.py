@@ -1,4 +1,4 @@
-"""Clutch units in other people's drivetrains: conservation, heat, and Modelica's CoupledClutches."""
+"""Clutch units in drivetrains: conservation laws, heat, and CoupledClutches of Modelica."""
 
 import itertools
 
@@ -13,7 +13,7 @@ INERTIA_A, INERTIA_B = 0.3, 0.2
 
 
 def free_bodies(unit):
-    """Return the rates of (ω_a, ω_b, φ_b) and of the unit's states: two free rotors, and its disc without support."""
+    """Return the rates of (ω_a, ω_b, φ_b) and of the states of the unit, for two free rotors and a free disc."""
 
     def rates(time, state):
         unit.set(speed_a=state[0], speed_b=state[1], angle_b=state[2])
@@ -27,7 +27,7 @@ def free_bodies(unit):
 @pytest.mark.parametrize(
     "contact", [{"inner_radius": 0.08}, {"contact_points": 5.0}], ids=["annulus", "points"]
 )
-def test_two_free_rotors_and_a_free_disc_keep_their_angular_momentum_and_energy(instance, contact):
+def test_free_rotors_and_disc_conserve_angular_momentum_and_energy(instance, contact):
     mass = 0.7
     unit = instance(
         "clutch", mass=mass, stiffness=0.0, damping=0.0, plates=2.0, normal_load=1.5, friction_coefficient=0.3,
@@ -43,7 +43,7 @@ def test_two_free_rotors_and_a_free_disc_keep_their_angular_momentum_and_energy(
     assert np.max(np.abs(energy + heat - energy[0])) <= 1e-11
 
 
-def test_coupled_clutches_of_three_units_move_as_the_exact_solution(instance):
+def test_coupled_clutches_of_three_units_agree_with_the_exact_solution(instance):
     units = [
         instance(
             "clutch", inner_radius=modelica.RADIUS, outer_radius=modelica.RADIUS,

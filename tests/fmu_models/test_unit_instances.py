@@ -1,4 +1,4 @@
-"""Many instances in one process under the sanitizers for addresses and for undefined behaviour."""
+"""Many instances in one process, checked by the address and undefined-behaviour sanitizers."""
 
 import math
 import shutil
@@ -14,7 +14,7 @@ SOURCE = Path(__file__).with_name("instances.c")
 SANITIZED = ("-std=c99", "-O1", "-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
-def test_a_thousand_instances_touch_nothing_of_each_other(tmp_path, needs_compiler):
+def test_instances_do_not_share_memory(tmp_path, needs_compiler):
     write_sources(CLUTCH, tmp_path)
     shutil.copyfile(SOURCE, tmp_path / SOURCE.name)
     program = tmp_path / "instances"

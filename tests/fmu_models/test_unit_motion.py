@@ -1,4 +1,4 @@
-"""Motions of the units by co-simulation: slip, stick and creep against the reference, and what they are built of."""
+"""Co-simulation of the units: slip, stick and creep against the reference, and directional derivatives."""
 
 import ctypes
 from dataclasses import asdict, replace
@@ -22,7 +22,7 @@ WHIRL = FIG5_STARTS["whirl"]
 
 
 def started(instance, system, start, **more):
-    """Return the unit of a system from where it starts."""
+    """Return the initialised unit of a system."""
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     states = dict(zip([name for name, _ in COLUMNS[type(system)]], start, strict=True))
     return instance(MODEL[type(system)], **parameters, **states, **more).started()
@@ -39,7 +39,7 @@ def started(instance, system, start, **more):
     ],
     ids=["slipping pin", "slipping ring", "slipping points", "sticking pin", "resting ring"],
 )
-def test_motion_and_times_of_stick_are_those_of_the_reference(instance, system, start, until, changes):
+def test_motion_and_stick_times_agree_with_the_reference(instance, system, start, until, changes):
     unit = started(instance, system, start)
     unit.to(until)
     reference = reference_model.simulate(system, start, [0.0, until], tolerance=1e-13)
@@ -56,14 +56,14 @@ def test_motion_and_times_of_stick_are_those_of_the_reference(instance, system, 
     ("system", "start", "until", "epsilons", "more"),
     [
         (FIG5, WHIRL, 15.0, (4e-5, 1e-5), {"exact": 0.0, "tolerance": 1e-9}),
-        # Steps that are right for the mean slip alone miss the direction of a slow point.
+        # A step control by the mean slip alone would miss the direction of a slow point.
         (SIX, PIVOTING, 40.0, (1e-7, 1e-8), {"tolerance": 1e-9}),
         # Explicit steps would be 8e-5 s long, or 8e-7 s.
         (replace(RESTING, contact_points=3), (0.3, 0.1, 0.0, 0.2, 0.3, 0.4), 30.0, (1e-5, 1e-7), {}),
     ],
     ids=["pin", "points that pivot", "points that rest"],
 )
-def test_errors_of_creep_are_of_first_order_in_epsilon_and_it_costs_no_more(
+def test_error_of_creep_is_of_first_order_in_epsilon_at_constant_cost(
     instance, system, start, until, epsilons, more
 ):
     reference, errors = reference_model.simulate(system, start, [0.0, until], tolerance=1e-12).at_end, []
@@ -79,7 +79,7 @@ def test_errors_of_creep_are_of_first_order_in_epsilon_and_it_costs_no_more(
 @pytest.mark.parametrize(
     "contact", [{"inner_radius": 0.06}, {"contact_points": 5.0}], ids=["annulus", "points"]
 )
-def test_a_clutch_that_holds_moves_as_another_solver_says(instance, contact):
+def test_holding_clutch_agrees_with_another_solver(instance, contact):
     held = {"speed_a": 100.0, "speed_b": 99.999, "offset": 1e-4, "static_ratio": 1.2, "regularisation": 1e-5}
     unit, other = (instance("clutch", **held, **contact).started() for _ in range(2))
 
@@ -102,7 +102,7 @@ def test_a_clutch_that_holds_moves_as_another_solver_says(instance, contact):
     assert unit.steps() < 1000
 
 
-def test_a_point_comes_to_rest_and_is_let_go_where_it_slips_with_epsilon_exactly(instance):
+def test_point_sticks_and_is_released_at_the_slip_speed_epsilon(instance):
     unit = started(instance, SIX, PIVOTING, regularisation=1e-6)
     for until, resting, count in ((33.0, 0, 0), (33.15, 1, 1), (34.0, 0, 2)):
         unit.to(until)
@@ -114,7 +114,7 @@ def test_a_point_comes_to_rest_and_is_let_go_where_it_slips_with_epsilon_exactly
             assert np.min(np.abs(slips)) == pytest.approx(1e-6, rel=1e-6)
 
 
-def test_a_pin_on_a_plane_stops_in_time_even_at_a_coarse_tolerance(instance):
+def test_pin_on_a_plane_stops_at_the_exact_time_at_a_coarse_tolerance(instance):
     plane = replace(
         FIG5, mass=1.0, disc_speed=0.0, stiffness=0.0, damping=0.0, offset=0.0, friction_force=0.1
     )
@@ -124,7 +124,7 @@ def test_a_pin_on_a_plane_stops_in_time_even_at_a_coarse_tolerance(instance):
     assert unit["x"] == pytest.approx(0.45, abs=1e-12)
 
 
-def test_a_step_can_be_taken_back_and_communication_steps_change_nothing_that_counts(instance):
+def test_step_can_be_repeated_and_communication_steps_do_not_change_the_motion(instance):
     unit, often = (started(instance, FIG5, WHIRL) for _ in range(2))
     unit.to(4.0)
     kept, found = ctypes.c_void_p(unit.kept()), []
@@ -138,7 +138,7 @@ def test_a_step_can_be_taken_back_and_communication_steps_change_nothing_that_co
     np.testing.assert_allclose(often.state, found[0], rtol=0.0, atol=1e-9)
 
 
-def test_a_parameter_after_initialisation_and_a_step_that_leads_nowhere_are_refused(instance):
+def test_late_parameters_and_invalid_steps_are_refused(instance):
     unit = started(instance, FIG5, WHIRL)
     assert unit.set(mass=2.0) == [1]
     assert unit.sentence == "mass cannot be set after initialisation"
@@ -148,12 +148,12 @@ def test_a_parameter_after_initialisation_and_a_step_that_leads_nowhere_are_refu
 
 
 def inside(unit, mode):
-    """Bring the pin of Fig. 5 into a mode that it has soon after 5.3 s."""
+    """Simulate the pin of Fig. 5 to a time shortly after 5.3 s when it is in ``mode``."""
     for time in 5.3 + 1e-4 * np.arange(60):
         unit.to(time)
         if unit.mode() == mode:
             return unit
-    raise AssertionError(f"it is never in mode {mode}")
+    raise AssertionError(f"the unit never reaches mode {mode}")
 
 
 POINTS = {"x": 0.05, "y": -0.02, "angle": 0.3, "contact_points": 5.0, "regularisation": 1.2e-3}
@@ -215,8 +215,8 @@ def put(unit, values):
 
 
 @pytest.mark.parametrize("lacking", [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9])
-def test_a_pin_that_friction_all_but_holds_is_let_go_for_a_moment_and_sticks_again(instance, lacking):
-    """(7) has a maximum as the pin is carried round; friction lacks so small a share of it."""
+def test_pin_is_released_briefly_if_friction_is_slightly_too_small(instance, lacking):
+    """Friction is smaller than the maximum of (7) in a turn by a small share."""
     radius, angles = 0.1, np.linspace(0.0, 2.0 * np.pi, 100_001)
     squared = squared_holding_force(FIG5, radius, angles)
     pin = replace(FIG5, friction_force=(1.0 - lacking) * np.sqrt(squared.max()))

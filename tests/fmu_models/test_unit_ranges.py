@@ -1,4 +1,4 @@
-"""Ranges of the variables: the table's, in C, on the command line, in the description and through the standard."""
+"""Ranges of the variables in C, on the command line, in the model description and through FMI."""
 
 import ctypes
 import math
@@ -24,7 +24,7 @@ BROKEN = {
     "clutch pressure_inner=0 pressure_mean=0 pressure_outer=0": "pressure_mean = 0: one of pressure_inner, "
     "pressure_mean and pressure_outer must be > 0",
 }
-"""Of models and start values that contradict each other, the sentence."""
+"""Error message by model and contradictory start values."""
 
 
 def outside(variable):
@@ -35,12 +35,12 @@ def outside(variable):
 
 
 def sentence(variable, value):
-    told = f"{variable.name} = {value:g} {variable.unit}".rstrip()
-    return f"{told}: it must lie between {variable.least:g} and {variable.most:g}"
+    text = f"{variable.name} = {value:g} {variable.unit}".rstrip()
+    return f"{text}: it must lie between {variable.least:g} and {variable.most:g}"
 
 
 @pytest.mark.parametrize(("name", "variable"), SETTABLE)
-def test_unit_and_command_refuse_a_value_outside_its_range(instance, tmp_path, capsys, name, variable):
+def test_unit_and_command_line_refuse_values_outside_the_range(instance, tmp_path, capsys, name, variable):
     unit, output = instance(name), tmp_path / "unit.fmu"
     for value in outside(variable):
         assert (
@@ -57,7 +57,7 @@ def test_unit_and_command_refuse_a_value_outside_its_range(instance, tmp_path, c
 
 
 @pytest.mark.parametrize("wrong", BROKEN)
-def test_start_values_that_contradict_each_other_are_refused(instance, tmp_path, capsys, wrong):
+def test_contradictory_start_values_are_refused(instance, tmp_path, capsys, wrong):
     name, *settings = wrong.split()
     unit = instance(name, **{one: float(value) for one, value in (each.split("=") for each in settings)})
     assert unit.initialise(ctypes.c_double(0.0)) == 1
@@ -68,13 +68,13 @@ def test_start_values_that_contradict_each_other_are_refused(instance, tmp_path,
     assert not list(tmp_path.iterdir())
 
 
-def test_a_parabola_of_pressure_may_touch_zero(instance):
+def test_parabola_of_pressure_may_touch_zero(instance):
     instance("clutch", inner_radius=0.05, pressure_mean=0.25, pressure_outer=0.0).started()
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", MODELS)
-def test_the_description_tells_the_range_of_each_variable(unit, name, fmi):
+def test_model_description_contains_the_range_of_each_variable(unit, name, fmi):
     fmpy = pytest.importorskip("fmpy")
     described = {one.name: one for one in fmpy.read_model_description(str(unit(name, fmi))).modelVariables}
     for one in MODELS[name].variables:
@@ -86,14 +86,14 @@ def test_the_description_tells_the_range_of_each_variable(unit, name, fmi):
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_inputs_that_no_clutch_has_are_errors_that_the_importer_logs(unit, tmp_path, fmi):
+def test_invalid_inputs_are_errors_that_the_importer_logs(unit, tmp_path, fmi):
     fmpy, logged = pytest.importorskip("fmpy"), []
     file = str(unit("clutch", fmi))
     description = fmpy.read_model_description(file)
     places = {one.name: one.valueReference for one in description.modelVariables}
     fmpy.extract(file, tmp_path)
     instance = fmpy.instantiate_fmu(
-        tmp_path, description, "CoSimulation", logger=lambda *told: logged.append(told[-1])
+        tmp_path, description, "CoSimulation", logger=lambda *message: logged.append(message[-1])
     )
     if fmi == 2:
         instance.setupExperiment()

@@ -1,4 +1,4 @@
-"""Instances of units, called without a standard around them."""
+"""Instances of units, called directly without FMI."""
 
 import ctypes
 
@@ -57,13 +57,13 @@ class Instance:
 
     @property
     def changes(self):
-        """Times and modes of the events of an exact contact."""
+        """Return times and modes of the events of an exact contact."""
         times, modes = np.zeros((2, 64))
         number = self.library.events(self.itself, *(self._pointer(one) for one in (times, modes)))
         return times[:number], modes[:number].astype(int)
 
     def along(self, **directions):
-        """Return how fast all variables change along directions of some."""
+        """Return the derivatives of all variables in the given direction."""
         d = np.zeros(len(self.model.variables))
         for name, value in directions.items():
             d[self.places[name]] = value

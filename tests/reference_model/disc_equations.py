@@ -1,4 +1,4 @@
-"""Eq. 19 of the plain equations, for complex arguments too, and (23), to judge the disc's formulas by."""
+"""Eqs. 19 and 23 for real and complex arguments, an independent reference for formulas of the disc."""
 
 from dataclasses import replace
 
@@ -13,15 +13,22 @@ LARGE = DiscOnDisc(
     mass=2.3, polar_inertia=0.6, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15,
     contact_radius=0.5, shaft_damping=0.3, shaft_speed=-0.9,
 )  # fmt: skip
+STICKY = DiscOnDisc(
+    mass=1.0, polar_inertia=0.02, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
+    contact_radius=0.12, shaft_damping=0.005, shaft_speed=1.25,
+)  # fmt: skip
+"""A disc whose motions from ``STICKING`` have stick phases, and pivots if it has points."""
+
+STICKING = [0.1, 0.0, 0.0, 0.03, 0.0, 1.5]
 
 
 def points_on_ring(disc, number):
-    """Force and moment of ``number`` points that share μN, from (20) and (21), with friction full at any slip."""
+    """Return force and moment of ``number`` points that share μN by (20) and (21)."""
     return plain.on_ring(disc.friction_force, disc.contact_radius, number, epsilon=0.0)
 
 
 def eq_23(disc):
-    """Force and moment of (23)."""
+    """Return force and moment of (23)."""
 
     def friction(slip_x, slip_y, relative_spin, angle):
         R = disc.contact_radius
@@ -38,37 +45,17 @@ def eq_23(disc):
 
 
 def rates(disc, friction, state):
-    """Right side of (19) as a first-order system, for x, y, angle, vx, vy, spin."""
+    """Return the right side of (19) as a first-order system for x, y, angle, vx, vy, spin."""
     return np.array(plain.rates(disc, friction, state))
 
 
 def rates_in_turning_axes(disc, friction, frequency, state):
-    """Rates of x, y, vx, vy along axes that turn at ``frequency``, and of the spin, which don't see the angle."""
+    """Return the rates of x, y, vx, vy in axes that turn at ``frequency``, and of the spin."""
     x, y, vx, vy, spin = state
     still = rates(disc, friction, [x, y, 0.0, vx, vy, spin])
     return still[[0, 1, 3, 4, 5]] - frequency * np.array([-y, x, -vy, vx, 0.0 * spin])
 
 
 def mirrored(disc):
-    """Return the disc whose motions are those of ``disc`` mirrored in the x axis."""
+    """Return the disc whose motions are mirrored in the x axis."""
     return replace(disc, disc_speed=-disc.disc_speed, shaft_speed=-disc.shaft_speed)
-
-
-def disc_in_units(disc, mass, length, time):
-    """``disc`` in units that are smaller by these factors: the same motion in other numbers."""
-    return replace(
-        disc,
-        mass=disc.mass * mass,
-        polar_inertia=disc.polar_inertia * mass * length**2,
-        stiffness=disc.stiffness * mass / time**2,
-        damping=disc.damping * mass / time,
-        friction_force=disc.friction_force * mass * length / time**2,
-        disc_speed=disc.disc_speed / time,
-        offset=disc.offset * length,
-        hardening=disc.hardening * mass / time**2 / length**2,
-        stop_gap=disc.stop_gap * length,
-        stop_stiffness=disc.stop_stiffness * mass / time**2,
-        contact_radius=disc.contact_radius * length,
-        shaft_damping=disc.shaft_damping * mass * length**2 / time,
-        shaft_speed=disc.shaft_speed / time,
-    )

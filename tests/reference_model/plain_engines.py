@@ -1,13 +1,14 @@
-"""Eq. 1 integrated as plainly as can be, in real coordinates, to judge the reference and its checks by."""
+"""Plain integration of eq. 1 in real coordinates, an independent reference for the motions of pins."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from plain_slip import slide
 from scipy.optimize import brentq
 
 from reference_model import plain
-from reference_model.systems import PinOnDisc
+from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 TIGHTEST = 3e-14
@@ -19,33 +20,37 @@ def slip_velocity(pin, state):
 
 
 def support_force(pin, state):
-    """Force of springs, stop and dampers on the pin."""
+    """Return the force of springs, stop and dampers on the pin."""
     return pin.mass * rates(pin, state, np.zeros_like)[2:]
 
 
-def stuck_state(pin, x, y):
-    return np.array([x, y, -pin.disc_speed * y, pin.disc_speed * x])
+def stuck_state(system, x, y):
+    """Return the state of a pin or a disc that turns with the master disc."""
+    speed = system.disc_speed
+    if isinstance(system, DiscOnDisc):
+        return np.array([x, y, 0.0, -speed * y, speed * x, speed])
+    return np.array([x, y, -speed * y, speed * x])
 
 
 def turned_with_disc(pin, state, time):
-    """State of a stuck pin after ``time``."""
+    """Return the state of a stuck pin after ``time``."""
     c, s = math.cos(pin.disc_speed * time), math.sin(pin.disc_speed * time)
     x, y = state[0], state[1]
     return stuck_state(pin, c * x - s * y, s * x + c * y)
 
 
 def pull_on_stuck_pin(pin, state):
-    """Force in N that friction must balance for the pin to turn with the disc (6)."""
+    """Return the force in N that friction must balance for the pin to turn with the disc (6)."""
     return support_force(pin, state) + pin.mass * pin.disc_speed**2 * np.asarray(state[:2])
 
 
 def rates(pin, state, friction):
-    """Right side of (1) with the friction force ``friction(slip_velocity)`` in N."""
+    """Return the right side of (1) with the friction force ``friction(slip_velocity)`` in N."""
     return np.array(plain.rates(pin, of_vector(friction), state))
 
 
 def of_vector(friction):
-    """Friction as ``plain`` has it, of a force that is a function of the slip velocity in m/s, shape (2,)."""
+    """Convert a force as a function of the slip velocity in m/s, shape (2,), to a friction of ``plain``."""
     return lambda slip_x, slip_y, *_: (*friction(np.array([slip_x, slip_y])), 0.0)
 
 
@@ -54,10 +59,10 @@ def coulomb(pin):
 
 
 def stick_time_bounds(pin, state, start, longest, slip=2e-10):
-    """Earliest and latest time at which slip that began at ``start`` ends, and time and state just before.
+    """Return bounds of the time when slip from ``start`` ends, and the time and state shortly before.
 
-    Just before, at the slip speed ``slip``, the integration stops. From there slip speed falls at a rate between
-    (μN − pull)/m and (μN + pull)/m, whatever its direction, so what is left has bounds.
+    The integration stops at the slip speed ``slip``. The slip speed then falls at a rate between (μN − pull)/m and
+    (μN + pull)/m for any direction, so the remaining time has bounds.
     """
 
     def slow(_, s):
@@ -72,7 +77,7 @@ def stick_time_bounds(pin, state, start, longest, slip=2e-10):
 
 
 def release_after(pin, state, longest):
-    """Time until friction can no longer hold a stuck pin, from a fine grid and a bracketed root."""
+    """Return the time until the release of a stuck pin by a fine grid and a bracketed root; 0 without a root."""
 
     def excess(time):
         return math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, state, time))) - pin.friction_force
@@ -83,7 +88,7 @@ def release_after(pin, state, longest):
 
 
 def just_released(pin, state, delay):
-    """State ``delay`` after friction let go at ``state``: slip grows like ½κt² along the pull."""
+    """Return the state ``delay`` after a release at ``state``, with slip ½κt² along the pull."""
 
     def strength(time):
         return math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, state, time)))
@@ -103,47 +108,25 @@ def as_trajectory(pin, times, states, regularisation=0.0):
 
 
 def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", tolerance=1e-12):
-    """Trajectory under any friction law, judged as one of ``pin``."""
+    """Return the trajectory of ``pin`` under any friction law."""
     run = slide(pin, state, times, of_vector(friction), method=method, rtol=tolerance, atol=tolerance * 1e-2)
     return as_trajectory(pin, times, run.y.T, regularisation)
 
 
-def in_units(pin, mass, length, time):
-    """``pin`` in units that are smaller by these factors: the same motion in other numbers."""
-    return PinOnDisc(
-        mass=pin.mass * mass,
-        stiffness=pin.stiffness * mass / time**2,
-        damping=pin.damping * mass / time,
-        friction_force=pin.friction_force * mass * length / time**2,
-        disc_speed=pin.disc_speed / time,
-        offset=pin.offset * length,
-        hardening=pin.hardening * mass / time**2 / length**2,
-        stop_gap=pin.stop_gap * length,
-        stop_stiffness=pin.stop_stiffness * mass / time**2,
-    )
+# Powers of mass, length and time.
+DIMENSIONS = {
+    "mass": (1, 0, 0), "stiffness": (1, 0, -2), "damping": (1, 0, -1), "friction_force": (1, 1, -2),
+    "disc_speed": (0, 0, -1), "offset": (0, 1, 0), "hardening": (1, -2, -2), "stop_gap": (0, 1, 0),
+    "stop_stiffness": (1, 0, -2), "polar_inertia": (1, 2, 0), "contact_radius": (0, 1, 0),
+    "shaft_damping": (1, 2, -1), "shaft_speed": (0, 0, -1),
+}  # fmt: skip
 
 
-def growth(pin, elapsed):
-    """Factor by which two motions of ``pin`` can part at most, over a time in s, sticking and grazing included.
-
-    With w the slip, ż = w + iωz and ẇ = c₀z − (β/m + iω)w + const − (μN/m)·w/|w|, c₀ = ω² − k² − iωβ/m. The last
-    term never drives two motions apart: (w₁ − w₂)·(w₁/|w₁| − w₂/|w₂|) >= 0. So in the norm √(|rz|² + |w|²) they
-    part at most like exp(λt), λ the larger eigenvalue of the Hermitian part of the rest. r = √|c₀| makes it small.
-    The factor is for positions in units of any length and velocities in that times max(k, |ω|).
-    """
-    k, omega, rate = pin.natural_frequency, pin.disc_speed, pin.damping / pin.mass
-    unit = max(k, abs(omega)) or rate or 1.0
-    c0 = complex(omega**2 - k**2, -omega * rate)
-    r = max(math.sqrt(abs(c0)), 0.5 * unit)
-    exponent = -rate / 2.0 + math.hypot(rate / 2.0, abs(r + c0 / r) / 2.0)
-    # From one norm to the other and back, and from w to the velocity w + iωz.
-    return 2.0 * math.sqrt(2.0) * max(r / unit, unit / r) * math.exp(exponent * elapsed)
-
-
-def error_bound(pin, elapsed, tolerance):
-    """Largest error of a simulation in units of the motion's size, by the tolerance that was asked for.
-
-    A step may be wrong by 0.06 of the tolerance, and there are up to some 16 in a unit of time.
-    """
-    unit = max(pin.natural_frequency, abs(pin.disc_speed)) or pin.damping / pin.mass or 1.0
-    return tolerance * (1.0 + unit * elapsed) * growth(pin, elapsed)
+def in_units(system, mass, length, time):
+    """Return ``system`` in units that are smaller by these factors."""
+    values = {
+        name: getattr(system, name) * mass**m * length**x * time**t
+        for name, (m, x, t) in DIMENSIONS.items()
+        if hasattr(system, name)
+    }
+    return replace(system, **values)

@@ -1,11 +1,10 @@
-"""Random systems of every kind, and their motions under a smooth friction law, written down once more here."""
+"""Random systems of every kind, and an independent simulation of their motions with smooth friction."""
 
 import cmath
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from disc_equations import disc_in_units
 from plain_engines import in_units
 from scipy.integrate import odeint
 from scipy.special import ellipe, ellipkm1
@@ -21,7 +20,7 @@ TIMES = np.linspace(0.0, 40.0, 81)
 
 @dataclass(frozen=True)
 class RandomMotion:
-    """A system of order one in SI units, where its motion starts, and what kind of motion that is meant to be."""
+    """A random system of order one in SI units, and its initial state."""
 
     seed: int
     system: PinOnDisc | DiscOnDisc
@@ -29,7 +28,7 @@ class RandomMotion:
 
     @classmethod
     def of(cls, seed):
-        """Return a motion: contact, support and course take all combinations in turn, the rest is random."""
+        """Return a motion. Seeds run through all combinations of contact, support and course; the rest is random."""
         rng = np.random.default_rng(seed)
         support, course = SUPPORTS[seed // 3 % 4], COURSES[seed // 12 % 5]
         offset = rng.choice((-1.0, 1.0)) * rng.uniform(0.1, 0.2)
@@ -77,22 +76,20 @@ class RandomMotion:
         return cls(seed, DiscOnDisc(**values, **shaft), np.array(start))
 
     def simulated(self, tolerance=1e-9):
-        """Return the reference's trajectory and its states at ``TIMES``, scaled back from units of random sizes."""
+        """Simulate in random units; return the trajectory, and its states at ``TIMES`` in the original units."""
         mass, length, time = 10.0 ** np.random.default_rng((self.seed, 1)).uniform(-3.0, 3.0, 3)
-        change = in_units if isinstance(self.system, PinOnDisc) else disc_in_units
         half = len(self.start) // 2
         scales = np.array([length, length, 1.0][:half] + [length / time, length / time, 1.0 / time][:half])
         run = simulate(
-            change(self.system, mass, length, time), self.start * scales, TIMES * time, tolerance=tolerance
+            in_units(self.system, mass, length, time), self.start * scales, TIMES * time, tolerance=tolerance
         )
         return run, run.states / scales
 
 
-def friction_of_points(disc, epsilon):
-    """Return force and moment of points with the smooth law v/√(v² + ε²), of slip of the centre, spin and angle."""
-    n, R = disc.contact_points, disc.contact_radius
+def friction_of_points(load, R, n, epsilon):
+    """Return force and moment of points with the law v/√(v² + ε²), as a function of slip, spin and angle."""
     around = [R * cmath.exp(2j * math.pi * i / n) for i in range(n)]
-    share = disc.friction_force / n
+    share = load / n
 
     def friction(u, w, angle):
         turn, force, moment = cmath.exp(1j * angle), 0j, 0.0
@@ -108,9 +105,9 @@ def friction_of_points(disc, epsilon):
 
 
 def friction_of_ring(disc, epsilon):
-    """Return the mean of the same over the ring: the derivatives of the mean of √(A − B·cos χ) by U and W.
+    """Return the mean of this law over the ring, the derivatives of the mean of √(A − B·cos χ) by U and W.
 
-    With A = U² + W² + ε² and B = 2UW.
+    A = U² + W² + ε² and B = 2UW.
     """
     R, load = disc.contact_radius, disc.friction_force
 
@@ -131,17 +128,15 @@ def friction_of_ring(disc, epsilon):
     return friction
 
 
-def friction_of_pin(pin, epsilon):
-    """Return the force of the same law in one point."""
-    return lambda u, *_: (-pin.friction_force * u / math.sqrt(u.real**2 + u.imag**2 + epsilon**2), 0.0)
-
-
 def smooth_motion(system, start, epsilon):
-    """Return states by LSODA with friction v/√(v² + ε²); slip is an unknown, so that creep keeps its digits."""
+    """Return states by LSODA with friction v/√(v² + ε²). Slip is an unknown to preserve the digits of creep."""
     omega, C, beta, m = system.disc_speed, system.stiffness, system.damping, system.mass
     disc = isinstance(system, DiscOnDisc)
-    law = friction_of_pin if not disc else friction_of_points if system.contact_points else friction_of_ring
-    friction = law(system, epsilon)
+    if disc and system.contact_points is None:
+        friction = friction_of_ring(system, epsilon)
+    else:
+        radius, points = (system.contact_radius, system.contact_points) if disc else (0.0, 1)
+        friction = friction_of_points(system.friction_force, radius, points, epsilon)
 
     def rates(_, unknowns):
         x, y, ux, uy, *turning = unknowns.tolist()

@@ -1,4 +1,4 @@
-"""The file to read first against closed forms, and against the reference to its own error."""
+"""The plain engine, against closed forms and against the reference."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -27,7 +27,7 @@ COARSE, FINE = 1e-4, 1e-6
 
 
 def errors(system, start):
-    """Error at ``FINE``, against the reference, and what it is by its own estimate: its change from ``COARSE``."""
+    """Return the error at ``FINE`` against the reference, and its estimate, the change from ``COARSE``."""
     exact = simulate(system, start, TIMES, tolerance=1e-11).states
     coarse, fine = (
         plain.simulate(system, start, TIMES, tolerance=tolerance).states for tolerance in (COARSE, FINE)
@@ -36,9 +36,9 @@ def errors(system, start):
 
 
 @pytest.mark.parametrize("motion", MOTIONS)
-def test_motions_are_those_of_the_reference_to_its_own_error(motion):
+def test_motions_agree_with_the_reference_within_the_estimated_error(motion):
     error, change = errors(*MOTIONS[motion])
-    assert error < min(change, 5e-5)  # ε and the steps are some 1e-5 and 1e-7 of the motion
+    assert error < min(change, 5e-5)  # ε causes about 1e-5 of the motion, and the steps 1e-7
 
 
 WRONG = {
@@ -49,7 +49,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("fault", WRONG)
-def test_a_friction_of_the_wrong_sign_is_seen(fault, monkeypatch):
+def test_friction_of_the_wrong_sign_is_detected(fault, monkeypatch):
     right = plain.on_ring
 
     def wrong(*arguments):
@@ -61,13 +61,13 @@ def test_a_friction_of_the_wrong_sign_is_seen(fault, monkeypatch):
     assert error > 100.0 * min(change, 5e-5)
 
 
-def test_a_place_of_rest_rests_by_1():
+def test_equilibrium_rests_by_eq_1():
     (rest,) = self_centred_equilibria(replace(FIG5, friction_force=0.07))
     friction = plain.on_ring(0.07, 0.0, 1, 0.0)
     assert plain.rates(FIG5, friction, rest.state) == pytest.approx(np.zeros(4), abs=1e-16)
 
 
-def test_a_whirl_circles_by_19_to_21():
+def test_whirl_circles_by_eqs_19_to_21():
     (whirl, *_) = whirls(FIG11)
     friction = plain.on_ring(FIG11.friction_force, FIG11.contact_radius, 720, 0.0)
     x, vy, spin = whirl.radius, whirl.radius * whirl.frequency, whirl.spin
@@ -88,14 +88,14 @@ def test_a_single_time_is_the_start():
     assert [(phase.kind, phase.start, phase.end) for phase in found.phases] == [("slip", 2.0, 2.0)]
 
 
-def test_what_it_can_not_start_from_is_refused():
+def test_invalid_times_and_tolerance_are_refused():
     with pytest.raises(ValueError, match="times must increase"):
         plain.simulate(FIG5, [0.1, 0.0, 0.0, 0.0], [0.0, 0.0])
     with pytest.raises(ValueError, match="tolerance = 1"):
         plain.simulate(FIG5, [0.1, 0.0, 0.0, 0.0], [0.0, 1.0], tolerance=1.0)
 
 
-def test_an_integrator_that_gives_up_is_said_to(monkeypatch):
+def test_failed_integration_is_reported(monkeypatch):
     failed = SimpleNamespace(success=False, message="steps too small", t=np.array([0.0]))
     monkeypatch.setattr(plain, "solve_ivp", lambda *_, **__: failed)
     with pytest.raises(SimulationError, match="steps too small; try a larger tolerance"):

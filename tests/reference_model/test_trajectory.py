@@ -1,4 +1,4 @@
-"""A trajectory: quantities derived from its states, and that it does not change."""
+"""Derived quantities of a trajectory, and its immutability."""
 
 from dataclasses import FrozenInstanceError
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from reference_model import PinOnDisc, simulate
-from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
+from reference_model.trajectory import Phase, Solution, Trajectory
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 STATES = np.array([[3.0, 4.0, 0.5, -0.25], [1.0, 0.0, 0.0, 1.5], [0.0, 0.0, -3.0, 4.0]])
@@ -27,7 +27,7 @@ def test_radius_is_the_distance_from_the_axis(trajectory):
     assert trajectory.radius == pytest.approx([5.0, 1.0, 0.0], rel=1e-15)
 
 
-def test_slip_velocity_is_that_relative_to_the_disc_below(trajectory):
+def test_slip_velocity_is_relative_to_the_master_disc(trajectory):
     # (ẋ + ωy, ẏ − ωx) with ω = 1.5; a point that turns with the disc does not slip.
     assert trajectory.slip_velocity == pytest.approx(np.array([[6.5, -4.75], [0.0, 0.0], [-3.0, 4.0]]))
     assert trajectory.slip_speed == pytest.approx([np.hypot(6.5, 4.75), 0.0, 5.0])
@@ -39,7 +39,7 @@ def test_last_state_and_stick_phases(trajectory):
     assert trajectory.solution.regularisation == 0.0
 
 
-def test_result_does_not_change():
+def test_trajectory_is_immutable():
     result = simulate(FIG_5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0, 2.0])
     for array in (result.times, result.states, result.at_end):
         with pytest.raises(ValueError, match="read-only"):
@@ -52,13 +52,9 @@ def test_result_does_not_change():
         result.solution.tolerance = 1.0
 
 
-def test_result_says_how_it_was_computed():
+def test_solution_describes_the_computation():
     solution = simulate(FIG_5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0], tolerance=1e-7).solution
     assert solution.tolerance == 1e-7
     assert solution.evaluations > solution.steps > 0
     assert solution.wall_time > 0.0
     assert "DOP853" in solution.method
-
-
-def test_error_of_an_engine_is_a_runtime_error():
-    assert issubclass(SimulationError, RuntimeError)

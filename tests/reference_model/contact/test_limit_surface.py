@@ -1,4 +1,4 @@
-"""What points can hold at rest, against the force and moment that they give in slip, and against sampled slips."""
+"""Static friction of points, against their friction in slip and against sampled slips."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(points):
     for _ in range(40):
         u, w = complex(*rng.normal(size=2)) * RADIUS, rng.normal()
         force, moment = law.force_and_moment(u, -w, 0.0)
-        # Along the slip they are −force, −moment; margins are of the order of squares.
+        # The held load is opposite to friction. Margins are quadratic in the load.
         assert limit.margins(np.array([-force]), -moment)[0] == pytest.approx(0.0, abs=1e-12)
         direction, sense = limit.direction(-force, -moment)
         assert direction / sense == pytest.approx(u / w, rel=1e-5, abs=1e-6 * abs(u / w))
@@ -29,11 +29,11 @@ def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(points):
 
 
 @pytest.mark.parametrize("points", [3, 5, 6])
-def test_friction_holds_what_puts_no_more_power_into_any_slip_than_it_takes(points):
+def test_friction_holds_a_load_if_no_slip_gains_power(points):
     law, limit = PointsOnRing(RADIUS, points), limit_of(points)
     rng = np.random.default_rng(7)
     slips = rng.normal(size=(4000, 3)) * [RADIUS, RADIUS, 1.0]
-    # Kinks of the mean slip speed, one point at rest, are the slips by which friction often gives way.
+    # Slips with one point at rest are kinks of the mean slip speed, where breakaway is most likely.
     pivots = [(-1j * w * arm, w) for arm in law.arms(0.0) for w in (1.0, -1.0)]
     u = np.concatenate((slips[:, 0] + 1j * slips[:, 1], [slip for slip, _ in pivots]))
     w = np.concatenate((slips[:, 2], [turn for _, turn in pivots]))
@@ -49,22 +49,22 @@ def test_friction_holds_what_puts_no_more_power_into_any_slip_than_it_takes(poin
 
 
 @pytest.mark.parametrize("points", [3, 6])
-def test_disc_gives_way_by_turning_about_a_point_on_a_flat_face(points):
+def test_breakaway_on_a_flat_face_is_a_rotation_about_one_point(points):
     law, limit = PointsOnRing(RADIUS, points), limit_of(points)
     for arm in law.arms(0.0):
-        force, moment = law.force_and_moment(-1j * arm, -1.0, 0.0)  # of the others: the point itself rests
+        force, moment = law.force_and_moment(-1j * arm, -1.0, 0.0)  # friction of the other points
         for share in (0.0, 0.5 + 0.3j, -0.9j):
-            own = share / points  # and may give any force up to its share
+            own = share / points  # the resting point holds any force up to its share
             total = -force + own
             torque = -moment + (arm.conjugate() * own).imag
             assert limit.margins(np.array([total]), torque)[0] == pytest.approx(0.0, abs=1e-12)
             assert limit.direction(total, torque) == (pytest.approx(-1j * arm), 1.0)
 
 
-def test_force_alone_is_held_up_to_full_friction_and_not_beyond():
+def test_force_without_moment_is_held_up_to_full_friction():
     limit = limit_of(5)
     forces = np.array([0.0, 0.5, 0.999999, 1.000001, 1.5]) * np.exp(0.4j)
     assert np.array_equal(limit.margins(forces, 0.0) > 0.0, [True, True, True, False, False])
-    # Continued beyond: the square of the moment has the slope −R² there.
+    # The margin continues smoothly beyond, because the squared moment has the slope −R².
     near = limit.margins(np.array([1.0 - 1e-6, 1.0 + 1e-6]), 0.0)
     assert near == pytest.approx([1e-6, -1e-6], rel=1e-2)

@@ -1,9 +1,10 @@
-"""End states are told for certain: they are those of runs of full length, and of the plain reference."""
+"""End states of pins, against runs of full length and the plain reference."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from plain_engines import in_units, stuck_state
 from scipy.integrate import trapezoid
 
 from compare.claims.parameters import FIG5
@@ -21,7 +22,6 @@ from reference_model import (
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.convergence import ACCURACY, converged
-from reference_model.ensemble.pin import trapping as regions
 from reference_model.ensemble.pin.end_states import depth, well_of
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
 
@@ -59,61 +59,47 @@ def counts(ensemble):
         "no friction, no damping", "no damping",
     ],
 )  # fmt: skip
-def test_early_ends_are_those_of_full_length(pin, reach, duration, expected):
+def test_early_end_states_agree_with_runs_of_full_length(pin, reach, duration, expected):
     states = starts(200, reach)
     early = simulate_ensemble(pin, states, duration=duration)
     full = simulate_ensemble(pin, states, duration=duration, early_end=False)
-    by_itself = simulate_ensemble(pin, states, duration=duration, parameters={"mass": np.ones(len(states))})
+    without_known_ends = simulate_ensemble(
+        pin, states, duration=duration, parameters={"mass": np.ones(len(states))}
+    )
     assert set(counts(early)) == expected
-    # One that creeps or comes close to a boundary may take longer than the run of full length leaves for telling.
-    for other in (full, by_itself):
+    # A motion that creeps or passes near a boundary may be undecided at the end of the run.
+    for other in (full, without_known_ends):
         decided = (other.end != EndState.UNDECIDED) & (early.end != EndState.UNDECIDED)
         np.testing.assert_array_equal(early.end[decided], other.end[decided])
         assert decided.mean() > 0.95 or expected == {"UNDECIDED"}
     if expected != {"UNDECIDED"}:
-        assert early.steps.sum() < 0.7 * full.steps.sum() or expected == {"STUCK"}  # stuck takes no steps
+        assert early.steps.sum() < 0.7 * full.steps.sum() or expected == {
+            "STUCK"
+        }  # a stuck pin takes no steps
     assert np.all(full.time == duration)
     np.testing.assert_array_equal(np.isnan(early.slip_power), early.end == EndState.UNDECIDED)
 
 
-def test_ends_of_fig5_are_those_of_the_reference():
-    rng = np.random.default_rng(7)
-    states = np.zeros((8, 4))
-    states[:, 0], states[:, 2] = rng.uniform(-0.3, 0.5, 8), rng.uniform(-0.4, 0.4, 8)
-    states[:3] *= 0.25  # so that the equilibrium has its share
-    ends = simulate_ensemble(FIG5, states, duration=400.0).end
-    (equilibrium,) = self_centred_equilibria(FIG5)
-    orbit = whirl_orbit(FIG5)
-    for state, end in zip(states, ends, strict=True):
-        trajectory = simulate(FIG5, state, np.linspace(0.0, 400.0, 401), tolerance=1e-8)
-        if end == EndState.SELF_CENTRED:
-            assert np.allclose(trajectory.at_end, equilibrium.state, atol=1e-4)
-        else:
-            assert end == EndState.WHIRL
-            radius = orbit.trajectory.radius
-            assert radius.min() - 1e-4 < trajectory.radius[-8:].min()
-            assert trajectory.radius[-8:].max() < radius.max() + 1e-4
-    assert len(set(ends.tolist())) == 2
-
-
-def test_measures_of_the_whirl_are_those_of_the_orbit_found_by_shooting():
+def test_radii_and_power_of_the_whirl_agree_with_shooting():
     orbit = whirl_orbit(FIG5, samples=2048)
     found = simulate_ensemble(FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0)
     radius = orbit.trajectory.radius
     assert found.end[0] == EndState.WHIRL
-    # Extremes between samples are off by their spacing squared; those of the kernel by its step to the eighth power.
+    # The extremes of samples have an error of second order in their distance.
     assert found.least_radius[0] == pytest.approx(radius.min(), abs=2e-6)
     assert found.largest_radius[0] == pytest.approx(radius.max(), abs=2e-6)
     slip = orbit.trajectory.slip_speed[:-1]
     assert found.slip_power[0] == pytest.approx(FIG5.friction_force * slip.mean(), rel=1e-7)
-    by_itself = simulate_ensemble(
+    without_known_ends = simulate_ensemble(
         FIG5, [0.5, 0.0, 0.3, 0.3], duration=400.0, parameters={"offset": [FIG5.offset]}
     )
     for name in ("least_radius", "largest_radius", "slip_power"):
-        assert getattr(by_itself, name)[0] == pytest.approx(getattr(found, name)[0], rel=2.0 * ACCURACY)
+        assert getattr(without_known_ends, name)[0] == pytest.approx(
+            getattr(found, name)[0], rel=2.0 * ACCURACY
+        )
 
 
-def test_radii_of_whirls_and_of_stick_and_slip_are_those_of_the_reference_wherever_steps_begin():
+def test_radii_of_periodic_motions_agree_with_the_reference():
     rng = np.random.default_rng(11)
     n = 80
     varied = {
@@ -125,14 +111,14 @@ def test_radii_of_whirls_and_of_stick_and_slip_are_those_of_the_reference_wherev
     assert len(periodic) > 40
     for i in periodic[::4]:
         pin = replace(FIG5, **{name: float(values[i]) for name, values in varied.items()})
-        # Both come round in a turn of the slower of pin and disc; a cycle with stick in up to two.
+        # A whirl takes one turn of the pin or disc, whichever is slower, and a cycle with stick up to two.
         times = np.linspace(0.0, 4.0 * np.pi, 2001)
         radius = simulate(pin, found.states[i], times, tolerance=1e-10).radius
         assert found.least_radius[i] == pytest.approx(radius.min(), rel=ACCURACY)
         assert found.largest_radius[i] == pytest.approx(radius.max(), rel=ACCURACY)
 
 
-def test_measures_of_rest_and_of_the_equilibrium_are_closed_forms():
+def test_radii_and_power_of_rest_and_equilibrium_have_their_closed_forms():
     (equilibrium,) = self_centred_equilibria(FIG5)
     found = simulate_ensemble(FIG5, [0.1, 0.0, 0.0, 0.0], duration=400.0)
     radius = np.hypot(equilibrium.x, equilibrium.y)
@@ -145,7 +131,7 @@ def test_measures_of_rest_and_of_the_equilibrium_are_closed_forms():
     assert stuck.slip_power[0] == 0.0
 
 
-def test_measures_of_stick_and_slip_are_those_of_the_reference():
+def test_radii_and_power_of_a_stick_slip_cycle_agree_with_the_reference():
     found = simulate_ensemble(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], duration=400.0)
     assert found.end[0] == EndState.STICK_SLIP
     times = np.linspace(0.0, 120.0, 60_001)
@@ -158,26 +144,10 @@ def test_measures_of_stick_and_slip_are_those_of_the_reference():
     assert found.slip_power[0] == pytest.approx(power, rel=1e-3)
 
 
-def test_a_pin_that_creeps_ends_at_the_largest_radius_of_sticking():
-    found = simulate_ensemble(CREEPS, starts(300, 2.0), duration=300.0)
-    assert np.all(found.end == EndState.STUCK)
-    largest = sticking_radius(CREEPS)
-    assert found.largest_radius.max() == pytest.approx(largest, rel=1e-12)
-    assert np.sum(np.isclose(found.largest_radius, largest, rtol=1e-12)) > 5
-
-
-def test_motion_and_ends_are_the_same_in_any_units():
+def test_motions_and_end_states_do_not_depend_on_units():
     length, time, mass = 2.0**20, 2.0**-9, 2.0**-5  # without rounding
     states = starts(100, 0.4)
-    scaled = replace(
-        FIG5,
-        mass=FIG5.mass * mass,
-        stiffness=FIG5.stiffness * mass / time**2,
-        damping=FIG5.damping * mass / time,
-        friction_force=FIG5.friction_force * mass * length / time**2,
-        disc_speed=FIG5.disc_speed / time,
-        offset=FIG5.offset * length,
-    )
+    scaled = in_units(FIG5, mass, length, time)
     size = np.array([length, length, length / time, length / time])
     for early_end in (False, True):
         one = simulate_ensemble(FIG5, states, duration=300.0, early_end=early_end)
@@ -188,8 +158,8 @@ def test_motion_and_ends_are_the_same_in_any_units():
         np.testing.assert_allclose(other.slip_power, one.slip_power * mass * length**2 / time**3, rtol=1e-7)
 
 
-def test_slip_that_dies_out_for_ever_is_stuck_at_once_and_in_full_length():
-    # Centred and overdamped it slips ever more slowly towards the largest radius of sticking, without resting.
+def test_slip_that_decays_without_end_counts_as_stuck():
+    # This centred, overdamped pin slips more and more slowly towards the sticking radius and never rests.
     pin = replace(FIG5, stiffness=15.0, damping=9.0, friction_force=12.0, disc_speed=1.0, offset=0.0)
     early = simulate_ensemble(pin, [0.9, -1.7, 8.0, -60.0], duration=60.0)
     full = simulate_ensemble(pin, [0.9, -1.7, 8.0, -60.0], duration=60.0, early_end=False)
@@ -200,23 +170,20 @@ def test_slip_that_dies_out_for_ever_is_stuck_at_once_and_in_full_length():
     assert np.hypot(*full.states[0, :2]) == pytest.approx(sticking_radius(pin), rel=1e-9)
 
 
-def turning_with(pin, radius, slip=0j):
-    return [radius, 0.0, slip.real, pin.disc_speed * radius + slip.imag]
-
-
-@pytest.mark.parametrize("slip", [1e-9, -1e-9, 1e-9j, -1e-9j])
-def test_without_offset_slip_that_leads_outward_does_not_die_out(slip):
+@pytest.mark.parametrize("slip", [(1e-9, 0.0), (-1e-9, 0.0), (0.0, 1e-9), (0.0, -1e-9)])
+def test_slip_that_leads_outward_without_offset_ends_on_the_whirl(slip):
     pin = replace(FIG5, offset=0.0)  # ω > k
-    start = turning_with(pin, 1.03 * sticking_radius(pin), complex(slip))
+    start = stuck_state(pin, 1.03 * sticking_radius(pin), 0.0)
+    start[2:] += slip
     found = simulate_ensemble(pin, start, duration=600.0)
     assert found.end[0] == EndState.WHIRL
     assert found.largest_radius[0] == pytest.approx(pin.friction_force / pin.damping, rel=ACCURACY)
 
 
 @pytest.mark.parametrize(("offset", "share"), [(0.0, 1.04), (0.24, 3.0), (0.24, 3.5)])
-def test_slip_that_leads_inward_fast_rests_where_the_reference_does(offset, share):
+def test_fast_slip_inward_ends_where_the_reference_rests(offset, share):
     pin = replace(FIG5, damping=0.03, friction_force=0.25, disc_speed=0.3, offset=offset)
-    start = turning_with(pin, share * sticking_radius(pin))
+    start = stuck_state(pin, share * sticking_radius(pin), 0.0)
     found = simulate_ensemble(pin, start, duration=600.0)
     motion = simulate(pin, start, [0.0, 600.0], tolerance=1e-10)
     assert found.end[0] == EndState.STUCK
@@ -224,20 +191,20 @@ def test_slip_that_leads_inward_fast_rests_where_the_reference_does(offset, shar
     assert found.largest_radius[0] < 0.999 * sticking_radius(pin)
 
 
-def test_a_pin_that_still_creeps_towards_rest_when_time_is_up_is_told_by_where_it_will_be():
+def test_pin_that_still_creeps_at_the_end_is_stuck_at_its_final_radius():
     pin = replace(FIG5, damping=30.0, friction_force=0.05, disc_speed=0.25, offset=0.0)
     creeping, early = (simulate_ensemble(pin, [0.3, 0.0, 0.0, 0.0], duration=time) for time in (250.0, 150.0))
     assert counts(creeping) == {"STUCK": 1}
     assert creeping.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
     late = simulate(pin, [0.3, 0.0, 0.0, 0.0], [0.0, 250.0, 1000.0])
-    assert late.radius[1] > 1.005 * sticking_radius(pin)  # still far from there
+    assert late.radius[1] > 1.005 * sticking_radius(pin)  # still far from the final radius
     assert late.radius[2] == pytest.approx(sticking_radius(pin), rel=1e-9)
-    assert counts(early) == {"UNDECIDED": 1}  # slip turns to the direction of the pull too slowly as yet
+    assert counts(early) == {"UNDECIDED": 1}  # the slip has not yet turned towards the pull
 
 
-def test_a_pin_that_creeps_by_turns_does_so_in_the_reference():
+def test_pin_that_slips_briefly_in_each_turn_is_stuck_as_in_the_reference():
     pin = replace(FIG5, damping=0.128, friction_force=0.2424, disc_speed=-0.26, offset=-0.2275)
-    start = turning_with(pin, 1.001 * sticking_radius(pin))
+    start = stuck_state(pin, 1.001 * sticking_radius(pin), 0.0)
     early = simulate_ensemble(pin, start, duration=400.0)
     full = simulate_ensemble(pin, start, duration=400.0, early_end=False)
     assert early.end[0] == EndState.STUCK
@@ -247,9 +214,9 @@ def test_a_pin_that_creeps_by_turns_does_so_in_the_reference():
     assert 1.0 < np.hypot(*motion.at_end[:2]) / sticking_radius(pin) < 1.0005
 
 
-def test_a_strongly_damped_pin_creeps_by_turns_from_farther_out():
+def test_strongly_damped_pin_that_slips_briefly_in_each_turn_is_stuck():
     pin = replace(FIG5, damping=4.5, friction_force=0.19, disc_speed=0.41, offset=-0.16)
-    start = turning_with(pin, 1.08 * sticking_radius(pin))
+    start = stuck_state(pin, 1.08 * sticking_radius(pin), 0.0)
     found = simulate_ensemble(pin, start, duration=400.0)
     assert found.end[0] == EndState.STUCK
     assert found.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
@@ -266,7 +233,7 @@ def law_of(pin):
 @pytest.mark.parametrize(
     "pin", [FIG5, replace(FIG5, disc_speed=-0.4, offset=-0.2), replace(FIG5, damping=2.5)]
 )
-def test_within_the_estimated_level_the_form_falls_along_every_motion(pin):
+def test_lyapunov_form_falls_along_all_motions_within_its_level(pin):
     law = law_of(pin)
     well = well_of(law)
     (equilibrium,) = self_centred_equilibria(pin)
@@ -282,31 +249,10 @@ def test_within_the_estimated_level_the_form_falls_along_every_motion(pin):
         a = -pin.stiffness * (z - pin.offset) - pin.damping * v - pin.friction_force * w / abs(w)
         h = 1e-3
         ahead, behind = (depth(z + s * v, v + s * a - turn * (z + s * v), law, well) for s in (h, -h))
-        assert ahead < behind  # the form is quadratic, so that this difference is its rate
+        assert ahead < behind  # the difference of a quadratic form is its rate
 
 
-def test_the_direction_of_slip_is_linear_but_for_the_square_that_is_assumed():
-    rng = np.random.default_rng(5)
-    change = 0.5 * np.sqrt(rng.random(20_000)) * np.exp(2j * np.pi * rng.random(20_000))
-    direction = (1.0 + change) / np.abs(1.0 + change)
-    assert np.max(np.abs(direction - 1.0 - 1j * change.imag) / np.abs(change) ** 2) < 1.0
-
-
-def test_what_is_within_known_neighbourhoods_ends_there():
-    known = regions.known_ends(FIG5)
-    assert known["level"] > 0.0
-    assert known["reach"] > 0.0
-    # The starts that are captured early, run on to the very end by the reference's own law of convergence.
-    states = starts(2000, 0.5, seed=8)
-    early = simulate_ensemble(FIG5, states, duration=600.0)
-    assert np.all(early.end != EndState.UNDECIDED)
-    again = simulate_ensemble(
-        FIG5, early.states, duration=600.0, parameters={"mass": np.full(len(states), FIG5.mass)}
-    )
-    np.testing.assert_array_equal(early.end, again.end)
-
-
-def test_distances_that_do_not_shrink_show_nothing():
+def test_distances_that_do_not_shrink_do_not_count_as_converged():
     assert converged(1e-5, 2e-5, 4e-5, 1.0)
     assert not converged(1e-3, 2e-3, 4e-3, 1.0)
     assert not converged(1e-5, 1e-5, 4e-5, 1.0)
@@ -314,8 +260,8 @@ def test_distances_that_do_not_shrink_show_nothing():
     assert converged(1e-8, 3e-8, 2e-8, 1.0)
 
 
-def test_starts_next_to_the_saddle_between_the_basins_go_to_their_own_side():
-    """The boundary is found by shooting at the saddle, which motions that begin beside it seem to end in at first."""
+def test_starts_next_to_the_basin_boundary_end_on_their_own_side():
+    """Motions that start near the boundary first approach the saddle."""
     (saddle,) = (orbit for orbit in stick_slip_orbits(FIG5) if not orbit.stable)
     middle = boundary_point(saddle, [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0])
     aside = np.geomspace(1e-9, 1e-5, 5)
@@ -327,11 +273,11 @@ def test_starts_next_to_the_saddle_between_the_basins_go_to_their_own_side():
 
 @pytest.fixture(scope="module")
 def about_the_fold():
-    """Whirls that slip all the time, by decreasing x: stable ones, the fold, and unstable ones; loads differ."""
+    """Return whirls without stick at different loads: stable ones, the fold and unstable ones."""
     return list(whirl_branch(whirl_orbit(FIG5, samples=512), 0.28, samples=512))
 
 
-def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
+def test_return_map_of_whirls_has_the_multipliers_from_shooting(about_the_fold):
     assert {orbit.stable for orbit in about_the_fold} == {True, False}
     for orbit in about_the_fold:
         rightmost = np.argmax(orbit.trajectory.states[:, 0])
@@ -339,12 +285,12 @@ def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
         law, derivative = law_of(orbit.system), np.zeros((3, 3))
         assert return_derivative(complex(x, y), complex(vx, vy), orbit.period, law, derivative)
         expected = np.sort(np.abs(orbit.multipliers))
-        expected = np.delete(expected, np.argmin(np.abs(expected - 1.0)))  # that of a shift in time
-        # To 1e-3 where slip nearly ends in the turn, and to 1e-5 elsewhere.
+        expected = np.delete(expected, np.argmin(np.abs(expected - 1.0)))  # the multiplier of a shift in time
+        # The error is 1e-3 where slip nearly ends, and 1e-5 elsewhere.
         np.testing.assert_allclose(
             np.sort(np.abs(np.linalg.eigvals(derivative))), expected, rtol=1e-3, atol=1e-4
         )
-        # Of a motion that was a little aside in the crossing before, M times that is left.
+        # A small deviation is multiplied by the derivative from one crossing to the next.
         aside = np.array([1e-3, 2e-3, -1e-3])
         came, left = tuple(derivative @ aside - aside), np.linalg.norm(derivative @ aside)
         turn = complex(x, y), complex(vx, vy), orbit.period, law, came
@@ -352,8 +298,8 @@ def test_return_map_of_whirls_has_the_multipliers_of_shooting(about_the_fold):
         assert not orbit_attracts(*turn, 0.999 * left)
 
 
-def test_the_whirl_of_a_strongly_damped_pin_attracts_and_is_decided():
-    """Deviations decay at c + g/s, here up to 200 times faster than the motion: the return map must stay stable."""
+def test_whirl_of_a_strongly_damped_pin_is_decided():
+    """Deviations decay up to 200 times faster than the motion, which the return map must handle."""
     for damping, speed in ((7.0, -1.6), (9.0, 1.06), (50.0, 5.0)):
         pin = PinOnDisc(
             mass=1.0, stiffness=1.0, damping=damping, friction_force=1.0, disc_speed=speed, offset=0.0
@@ -366,7 +312,7 @@ def test_the_whirl_of_a_strongly_damped_pin_attracts_and_is_decided():
 
 
 @pytest.mark.parametrize("varied", [False, True])
-def test_a_motion_that_comes_close_to_an_unstable_whirl_does_not_end_there(about_the_fold, varied):
+def test_motion_near_an_unstable_whirl_does_not_end_there(about_the_fold, varied):
     aside = np.geomspace(1e-9, 1e-4, 12)
     directions = np.random.default_rng(2).normal(size=(len(aside), 4))
     for orbit in about_the_fold:

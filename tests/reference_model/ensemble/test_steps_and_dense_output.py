@@ -1,4 +1,4 @@
-"""The parts of a step: its order, and the polynomial in between."""
+"""Order of a step and its error estimate, and the dense output between steps."""
 
 import numba
 import numpy as np
@@ -9,9 +9,6 @@ from reference_model.ensemble.core.stepping.dense_output import (
     dense_output,
     place_on,
     velocity_on,
-    way_along,
-    where_radius_turns,
-    where_rightmost,
 )
 from reference_model.ensemble.core.stepping.runge_kutta import (
     CAUTION,
@@ -44,20 +41,20 @@ def estimate(start, law, h, tolerance):
     return error_of(start, new, h, third, fifth, tolerance)
 
 
-def test_the_step_is_of_eighth_order():
+def test_step_is_of_eighth_order():
     exact = np.array(swing((1.0, 0.5), 2.0, 0.005, 800))
     errors = [np.abs(np.array(swing((1.0, 0.5), 2.0, 4.0 / n, n)) - exact).max() for n in (10, 20, 40)]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 7.5), orders
 
 
-def test_the_error_is_estimated_in_the_eighth_power_of_the_step():
+def test_error_estimate_is_of_eighth_order_in_the_step():
     errors = [estimate((1.0, 0.5), 2.0, h, 1e-9) for h in (0.4, 0.2)]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(8.0, abs=0.7)
     assert estimate((1.0, 0.5), 2.0, 0.3, 1e-8) == pytest.approx(estimate((1.0, 0.5), 2.0, 0.3, 1e-9) / 10.0)
 
 
-def test_the_next_step_follows_from_the_error():
+def test_next_step_follows_from_the_error():
     assert factor_of(0.5**8) == pytest.approx(2.0 * CAUTION, rel=1e-14)
     assert factor_of(0.0) == LARGEST_FACTOR
     for hopeless in (1e20, np.inf, np.nan):
@@ -71,7 +68,7 @@ def motion_at(x, y, t):
     return Motion(*places)
 
 
-def test_the_dense_output_is_exact_for_polynomials_of_seventh_order():
+def test_dense_output_is_exact_for_polynomials_of_degree_seven():
     rng = np.random.default_rng(0)
     x, y = (np.polynomial.Polynomial(rng.normal(size=8)) for _ in range(2))
     between = dense_output(0.8, motion_at(x, y, 0.3), motion_at(x, y, 1.1))
@@ -81,20 +78,3 @@ def test_the_dense_output_is_exact_for_polynomials_of_seventh_order():
         assert velocity_on(between, u) == pytest.approx(
             complex(x.deriv()(t), y.deriv()(t)), rel=1e-11, abs=1e-11
         )
-
-
-def circling(t, radius=0.9, centre=0.1, speed=1.0):
-    turned = radius * np.exp(1j * speed * t)
-    return Motion(centre + turned, *((1j * speed) ** i * turned for i in (1, 2, 3)))
-
-
-def test_extremes_of_a_circling_motion_are_found():
-    between = dense_output(0.9, circling(-0.4), circling(0.5))
-    assert where_rightmost(between) == pytest.approx(4.0 / 9.0, abs=1e-7)
-    assert where_radius_turns(between) == pytest.approx(4.0 / 9.0, abs=1e-6)
-    assert where_radius_turns(dense_output(0.3, circling(0.2), circling(0.5))) == np.inf
-
-
-def test_way_is_the_integral_of_the_slip_speed():
-    between = dense_output(0.9, circling(0.0, centre=0.0), circling(0.9, centre=0.0))
-    assert way_along(between, 0.7, 1.5) == pytest.approx(0.7 * 0.9 * 0.5 * 0.9, rel=1e-7)

@@ -1,4 +1,4 @@
-"""Every formula of sections 2 and 3 against a route that does not use it."""
+"""Formulas of sections 2 and 3 of the paper, against the equations of motion and other independent results."""
 
 import math
 from dataclasses import replace
@@ -6,9 +6,6 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from plain_engines import in_units
 from scipy.optimize import brentq, minimize_scalar, root
 
 from reference_model import plain
@@ -23,7 +20,7 @@ HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc
 
 
 def residual_of_eq_1(pin, x, y, vx, vy, ax, ay):
-    """Left side minus right side of (1), in N."""
+    """Return the left side minus the right side of (1), in N."""
     friction = plain.on_ring(pin.friction_force, 0.0, 1, 0.0)
     states = np.array(np.broadcast_arrays(x, y, vx, vy))
     right = np.apply_along_axis(lambda state: plain.rates(pin, friction, state)[2:], 0, states)
@@ -31,7 +28,7 @@ def residual_of_eq_1(pin, x, y, vx, vy, ax, ay):
 
 
 def residual_of_eq_1_on(pin, amplitudes, frequency, samples=64):
-    """Residual of (1), as x + iy over one period, of z = Σ amplitudes[n]·exp(in·frequency·t)."""
+    """Return the residual of (1), as x + iy over one period, for z = Σ amplitudes[n]·exp(in·frequency·t)."""
     phase = 2.0 * np.pi * np.arange(samples) / samples
     z, v, a = (
         sum(c * (1j * n * frequency) ** order * np.exp(1j * n * phase) for n, c in amplitudes.items())
@@ -55,33 +52,18 @@ def test_equilibrium_solves_the_equations_of_motion(offset, disc_speed, load_rat
     assert formulas.semicircle_residual(pin, x, y) == pytest.approx(0.0, abs=ROUNDING)
 
 
-def test_pin_reaches_the_axis_at_the_largest_load():
+def test_equilibrium_at_the_largest_load_is_on_the_axis():
     limit = formulas.largest_load_with_equilibrium(HEAVY)
     at_limit = replace(HEAVY, friction_force=limit)
     assert formulas.equilibrium_radius(at_limit) == 0.0
     assert formulas.equilibrium_position(at_limit) == (0.0, 0.0)
-    with pytest.raises(ValueError, match=r"friction_force = 0\.7803 N.* = 0\.765 N \(eq\. 5\)"):
-        formulas.equilibrium_radius(replace(HEAVY, friction_force=1.02 * limit))
 
 
-def test_radius_keeps_its_digits_near_the_largest_load():
+def test_equilibrium_radius_near_the_largest_load_is_exact_to_rounding():
     offset, load = 0.7, 0.7 * (1.0 - 1e-12)
     pin = replace(FIG_4, offset=offset, friction_force=load)
     exact = float(Fraction(offset) ** 2 - Fraction(load) ** 2)
     assert formulas.equilibrium_radius(pin) ** 2 == pytest.approx(exact, rel=1e-15, abs=0.0)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"disc_speed": 0.0}, "disc_speed = 0 rad/s"),
-        ({"stiffness": 0.0}, "stiffness = 0 N/m"),
-        ({"offset": 0.0, "friction_force": 0.0}, "offset = 0 m"),
-    ],
-)
-def test_equilibrium_without_an_angle_is_refused(changes, message):
-    with pytest.raises(ValueError, match=message):
-        formulas.equilibrium_angle(replace(FIG_5, **changes))
 
 
 # ---------------------------------------------------------------- (7) to (9)
@@ -94,14 +76,14 @@ STUCK = [
 
 
 def force_on_a_stuck_pin(pin, radius, disc_angle):
-    """Left side of (6), as a complex number, for a pin that turns with the disc."""
+    """Return the left side of (6), as a complex number, for a pin that turns with the disc."""
     z = radius * np.exp(1j * np.asarray(disc_angle))
     v, a = 1j * pin.disc_speed * z, -(pin.disc_speed**2) * z
     return pin.mass * a + pin.damping * v + pin.stiffness * (z - pin.offset)
 
 
 @pytest.mark.parametrize("pin", [*STUCK, HEAVY])
-def test_holding_force_is_what_the_equations_of_motion_ask_for(pin):
+def test_holding_force_balances_the_equations_of_motion_of_a_stuck_pin(pin):
     angle = np.linspace(-3.0, 7.0, 23)
     expected = np.abs(force_on_a_stuck_pin(pin, 0.4, angle)) ** 2
     assert formulas.squared_holding_force(pin, 0.4, angle) == pytest.approx(expected, rel=ROUNDING)
@@ -109,7 +91,7 @@ def test_holding_force_is_what_the_equations_of_motion_ask_for(pin):
 
 @pytest.mark.parametrize("pin", STUCK)
 @pytest.mark.parametrize("excess", [1.001, 1.02, 1.3])
-def test_pin_lets_go_when_friction_can_no_longer_hold_it(pin, excess):
+def test_release_is_at_the_first_root_of_the_holding_force_minus_friction(pin, excess):
     radius = excess * formulas.sticking_radius(pin)
 
     def spare_at(time, start):
@@ -129,20 +111,15 @@ def test_pin_lets_go_when_friction_can_no_longer_hold_it(pin, excess):
             assert turn == pytest.approx(found * abs(pin.disc_speed), rel=1e-15)
 
 
-def test_pin_on_a_disc_at_rest_sticks_for_ever_where_the_springs_are_weaker_than_friction():
+def test_pin_on_a_disc_at_rest_sticks_permanently_if_friction_exceeds_the_spring_force():
     pin = replace(FIG_4, disc_speed=0.0)  # holds up to 0.12 m from (0.1, 0)
     assert formulas.release_time(pin, 0.2, 0.0) == math.inf
     assert formulas.release_time(pin, 0.2, math.pi) == 0.0
     assert formulas.release_time(replace(pin, disc_speed=-0.0), 0.2, 0.0) == math.inf
 
 
-def test_negative_radius_is_refused():
-    with pytest.raises(ValueError, match=r"radius = -0\.1 m"):
-        formulas.turn_until_release(FIG_4, -0.1, 0.0)
-
-
 @pytest.mark.parametrize("pin", STUCK)
-def test_at_the_sticking_radius_the_largest_holding_force_of_a_turn_is_the_friction_force(pin):
+def test_largest_holding_force_at_the_sticking_radius_is_the_friction_force(pin):
     radius = formulas.sticking_radius(pin)
     angles = np.linspace(0.0, 2.0 * np.pi, 20_001)
     # The grid misses the peak by 1.6e-4 rad at most: by some 1e-8 of the force.
@@ -152,20 +129,12 @@ def test_at_the_sticking_radius_the_largest_holding_force_of_a_turn_is_the_frict
     assert formulas.sticking_margin(pin, 0.9 * radius) > 0.0 > formulas.sticking_margin(pin, 1.1 * radius)
 
 
-@pytest.mark.parametrize("offset", [0.1, -0.1])
-@pytest.mark.parametrize("friction_force", [0.0, 0.05, 0.1])
-def test_sticking_radius_is_refused_where_friction_cannot_hold_the_pin_on_the_axis(offset, friction_force):
-    pin = replace(FIG_4, offset=offset, friction_force=friction_force)
-    with pytest.raises(ValueError, match=rf"friction_force = {friction_force:g} N.* = 0\.1 N \(eq\. 9\)"):
-        formulas.sticking_radius(pin)
-
-
-def test_undamped_pin_sticks_everywhere_at_its_natural_frequency():
+def test_sticking_radius_of_an_undamped_pin_is_infinite_at_its_natural_frequency():
     assert formulas.sticking_radius(replace(FIG_4, damping=0.0, disc_speed=-1.0)) == math.inf
 
 
 @pytest.mark.parametrize("pin", [FIG_4, replace(HEAVY, friction_force=1.0)])
-def test_sticking_domain_is_largest_at_its_resonance(pin):
+def test_sticking_radius_has_its_maximum_at_the_resonant_disc_speed(pin):
     found = minimize_scalar(
         lambda speed: -formulas.sticking_radius(replace(pin, disc_speed=speed)),
         bounds=(0.0, 3.0),
@@ -177,12 +146,10 @@ def test_sticking_domain_is_largest_at_its_resonance(pin):
 
 
 @pytest.mark.parametrize("damping", [2.0, 3.0])
-def test_strongly_damped_sticking_domain_has_no_resonance(damping):
+def test_sticking_radius_of_a_strongly_damped_pin_falls_from_rest(damping):
     pin = replace(FIG_4, damping=damping, stiffness=2.0, friction_force=1.0)  # limit √(2mC) = 2
     at_rest, turning = (formulas.sticking_radius(replace(pin, disc_speed=speed)) for speed in (0.0, 0.1))
     assert at_rest > turning
-    with pytest.raises(ValueError, match=rf"damping = {damping:g} N s/m.* = 2 N s/m"):
-        formulas.resonant_disc_speed(pin)
 
 
 # ---------------------------------------------------------------- (11) to (16)
@@ -197,34 +164,8 @@ def test_whirl_solves_the_equations_of_motion(disc_speed):
     assert frequency * disc_speed > 0.0
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),
-        ({"disc_speed": -0.5}, r"disc_speed = -0\.5 rad/s"),
-        ({"damping": 0.0}, "damping = 0"),
-        ({"friction_force": 0.0}, "friction_force = 0"),
-        ({"stiffness": 0.0}, "stiffness = 0"),
-    ],
-)
-@pytest.mark.parametrize(
-    "formula",
-    [
-        formulas.whirl_radius,
-        formulas.whirl_frequency,
-        formulas.whirl_shift,
-        formulas.first_order_whirl_shift,
-        formulas.whirl_shift_error_limit,
-        formulas.third_order_of_whirl_shift,
-    ],
-)
-def test_formulas_of_the_whirl_are_refused_where_there_is_none(formula, changes, message):
-    with pytest.raises(ValueError, match=message):
-        formula(replace(FIG_4, **changes))
-
-
 def polar_rates_of_eq_10(pin, rho, rho_rate, turning_speed):
-    """Time derivatives of ρ, ρ̇ and ψ̇ by (10) without offset; takes complex arguments."""
+    """Return the time derivatives of ρ, ρ̇ and ψ̇ by (10) without offset, also for complex arguments."""
     lag = rho * (pin.disc_speed - turning_speed)
     slip_speed = np.sqrt(rho_rate**2 + lag**2)
     friction = pin.friction_force / slip_speed
@@ -255,12 +196,12 @@ def pins_below_and_above_resonance():
 def test_corrected_13_is_the_determinant_of_12():
     for pin in pins_below_and_above_resonance():
         determinant = np.poly(formulas.variational_matrix(pin))
-        # Relative to the largest term: the smaller coefficients carry its rounding.
+        # The smaller coefficients contain the rounding errors of the largest one.
         error = np.abs(np.subtract(formulas.characteristic_coefficients(pin), determinant)).max()
         assert error < 1e-12 * np.abs(determinant).max()
 
 
-def test_printed_13_is_the_determinant_of_12_only_where_damping_over_mass_happens_to_be_one():
+def test_printed_13_is_the_determinant_of_12_only_if_damping_over_mass_is_one():
     for pin in pins_below_and_above_resonance():
         error = (
             formulas.characteristic_coefficients_as_printed(pin)[1]
@@ -275,10 +216,10 @@ def test_16_is_necessary_and_sufficient_for_all_roots_of_13_to_decay():
         decays = np.linalg.eigvals(formulas.variational_matrix(pin)).real.max() < 0.0
         assert (formulas.upper_branch_margin(pin) > 0.0) == decays, pin
         verdicts.append(decays)
-    assert 0.2 < np.mean(verdicts) < 0.9  # both kinds are there
+    assert 0.2 < np.mean(verdicts) < 0.9  # the pins are both stable and unstable
 
 
-def test_14_holds_exactly_where_the_coefficients_of_13_are_positive():
+def test_14_states_that_the_coefficients_of_13_are_positive():
     for pin in pins_below_and_above_resonance():
         _, quadratic, linear, _ = formulas.characteristic_coefficients(pin)
         assert [margin > 0.0 for margin in formulas.coefficient_margins(pin)] == [
@@ -287,7 +228,7 @@ def test_14_holds_exactly_where_the_coefficients_of_13_are_positive():
         ], pin
 
 
-def test_15_and_16_are_the_remaining_condition_of_hurwitz():
+def test_15_or_16_is_the_remaining_hurwitz_condition():
     for pin in pins_below_and_above_resonance():
         _, quadratic, linear, constant = formulas.characteristic_coefficients(pin)
         either = formulas.lower_branch_margin(pin) > 0.0 or formulas.upper_branch_margin(pin) > 0.0
@@ -299,22 +240,6 @@ def test_threshold_of_16_tends_to_minus_a_half_for_weak_damping():
     for damping in (1e-3, 1e-9, 1e-200):
         margin = formulas.upper_branch_margin(replace(at_rest, damping=damping))
         assert margin == pytest.approx(0.5, abs=damping**2)
-
-
-@pytest.mark.parametrize(
-    "formula",
-    [
-        formulas.variational_matrix,
-        formulas.characteristic_coefficients,
-        formulas.coefficient_margins,
-        formulas.lower_branch_margin,
-        formulas.upper_branch_margin,
-    ],
-)
-@pytest.mark.parametrize("disc_speed", [1.0, -1.0])
-def test_characteristic_equation_is_refused_at_the_natural_frequency(formula, disc_speed):
-    with pytest.raises(ValueError, match=f"disc_speed = {disc_speed:g} rad/s: ω/"):
-        formula(replace(FIG_4, disc_speed=disc_speed))
 
 
 # ---------------------------------------------------------------- (17), (18) and the exact first order
@@ -329,7 +254,7 @@ WHIRLING = [
 
 
 def whirl_with_offset(pin, harmonics=12):
-    """Amplitudes and frequency of the periodic orbit of (1), by Newton's method on its harmonics."""
+    """Return amplitudes and frequency of the periodic orbit of (1), by Newton's method on its harmonics."""
     orders = np.arange(-harmonics, harmonics + 1)
     first = harmonics + 1
     samples = 64
@@ -366,13 +291,13 @@ def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
 
 
 @pytest.mark.parametrize("pin", WHIRLING)
-def test_relative_error_of_18_has_the_limit_that_theory_gives(pin):
+def test_relative_error_of_18_tends_to_the_limit_formula(pin):
     small = replace(pin, offset=1e-4 * formulas.whirl_radius(pin))
     amplitudes, _ = whirl_with_offset(small)
     found = complex(*formulas.whirl_shift(small)) / amplitudes[0] - 1.0
     limit = formulas.whirl_shift_error_limit(pin)
     assert limit == pytest.approx(formulas.whirl_shift_error_limit(replace(pin, offset=0.0)), rel=1e-15)
-    assert found == pytest.approx(limit, abs=1e-6)  # of order (wX0/ρ_c)², w = ω/(ω − k) <= 11
+    assert found == pytest.approx(limit, abs=1e-6)  # of order (wX0/ρ_c)² with w = ω/(ω − k) <= 11
 
 
 @pytest.mark.parametrize("pin", WHIRLING)
@@ -388,10 +313,10 @@ def test_18_balances_the_mean_force_on_a_shifted_circle(pin):
 
 @pytest.mark.parametrize("pin", WHIRLING)
 def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
-    """What the formula leaves out is of the order d relative to it, and halves with the damping."""
+    """The neglected terms are of relative order d, so they halve with the damping."""
     offset, errors = 2e-3, []
     for damping in (0.02, 0.01):
-        # Damping and load fall together, so that the radius of the whirl remains.
+        # Damping and load fall together, so the radius of the whirl stays the same.
         weak = replace(
             pin, damping=damping * pin.mass * pin.natural_frequency, friction_force=1.0, offset=0.0
         )
@@ -410,96 +335,120 @@ def test_18_is_exact_in_first_order_at_twice_the_natural_frequency_only():
         for ratio in (1.05, 1.5, 1.9, 2.0, 2.1, 5.0, -2.0)
     }
     assert [ratio for ratio, limit in limits.items() if limit < 1e-15] == [2.0, -2.0]
-    # The error that the first harmonic leaves: a few per cent near resonance, a tenth of one far above.
+    # The first harmonic alone is off by a few per cent near resonance and by 0.1 % far above it.
     assert 0.01 < limits[1.05] < 0.5
     assert limits[5.0] < 1.5e-3
 
 
-# ---------------------------------------------------------------- symmetries and units
+# ---------------------------------------------------------------- symmetries
 
-# Dimension of each result in powers of mass, length and time.
-POLAR = {
-    formulas.equilibrium_radius: (0, 1, 0),
-    formulas.largest_load_with_equilibrium: (1, 1, -2),
-    formulas.sticking_radius: (0, 1, 0),
-    formulas.resonant_disc_speed: (0, 0, -1),
-    formulas.whirl_radius: (0, 1, 0),
-    formulas.lower_branch_margin: (0, 0, 0),
-    formulas.upper_branch_margin: (0, 0, 0),
-}
-POINTS = {
-    formulas.equilibrium_position: (0, 1, 0),
-    formulas.whirl_shift: (0, 1, 0),
-    formulas.first_order_whirl_shift: (0, 1, 0),
-}
-TURNING = {formulas.equilibrium_angle: (0, 0, 0), formulas.whirl_frequency: (0, 0, -1)}
-
-ratios = st.floats(0.1, 10.0)
+EVEN = (
+    formulas.equilibrium_radius,
+    formulas.largest_load_with_equilibrium,
+    formulas.sticking_radius,
+    formulas.resonant_disc_speed,
+    formulas.whirl_radius,
+    formulas.lower_branch_margin,
+    formulas.upper_branch_margin,
+)
+POINTS = (formulas.equilibrium_position, formulas.whirl_shift, formulas.first_order_whirl_shift)
+TURNING = (formulas.equilibrium_angle, formulas.whirl_frequency)
+ABOVE = replace(HEAVY, damping=0.3, friction_force=1.9, disc_speed=3.1)
+"""Friction exceeds the spring force at the offset, so (9) applies and (3) does not."""
 
 
-@st.composite
-def pins(draw):
-    """Pins with a whirl, a resonance of sticking, and either an equilibrium or lasting sticking."""
-    mass, stiffness = draw(ratios), draw(ratios)
-    sign = st.sampled_from([-1.0, 1.0])
-    return PinOnDisc(
-        mass=mass,
-        stiffness=stiffness,
-        damping=draw(st.floats(0.01, 1.4)) * math.sqrt(mass * stiffness),
-        friction_force=draw(st.one_of(st.floats(0.01, 0.99), st.floats(1.01, 5.0))) * stiffness * 0.3,
-        disc_speed=draw(sign) * draw(st.floats(1.01, 5.0)) * math.sqrt(stiffness / mass),
-        offset=0.3 * draw(sign),
-    )
+def applicable(choice, pin):
+    """Leave out (3) above the largest load, and (9) below it."""
+    excluded = ("equilibrium",) if pin is ABOVE else ("sticking",)
+    return [formula for formula in choice if not formula.__name__.startswith(excluded)]
 
 
-def applicable(formulas_with_dimension, pin):
-    """Leave out (3) above the largest load and (9) below."""
-    above = pin.friction_force > formulas.largest_load_with_equilibrium(pin)
-    for formula, dimension in formulas_with_dimension.items():
-        belongs_to_3 = formula.__name__.startswith("equilibrium")
-        belongs_to_9 = formula is formulas.sticking_radius
-        if not (belongs_to_3 and above) and not (belongs_to_9 and not above):
-            yield formula, dimension
-
-
-@given(pins(), ratios, ratios, ratios)
-def test_units_do_not_matter(pin, mass, length, time):
-    other = in_units(pin, mass, length, time)
-    for formula, dimension in applicable(POLAR | POINTS | TURNING, pin):
-        factor = math.prod(unit**power for unit, power in zip((mass, length, time), dimension, strict=True))
-        expected = factor * np.array(formula(pin))
-        # Near (5), (9) and resonance a difference of parameters has lost two digits.
-        assert formula(other) == pytest.approx(expected, rel=1e-11, abs=1e-11 * np.abs(expected).max())
-    assert formulas.whirl_shift_error_limit(other) == pytest.approx(
-        formulas.whirl_shift_error_limit(pin), abs=1e-11
-    )
-
-
-@given(pins())
+@pytest.mark.parametrize("pin", [HEAVY, ABOVE], ids=["below (5)", "above (5)"])
 def test_disc_turning_the_other_way_mirrors_the_motion(pin):
     mirrored = replace(pin, disc_speed=-pin.disc_speed)
-    for formula, _ in applicable(POLAR, pin):
+    for formula in applicable(EVEN, pin):
         assert formula(mirrored) == formula(pin)
-    for formula, _ in applicable(POINTS, pin):
+    for formula in applicable(POINTS, pin):
         x, y = formula(pin)
         assert formula(mirrored) == (x, -y)
-    for formula, _ in applicable(TURNING, pin):
+    for formula in applicable(TURNING, pin):
         assert formula(mirrored) == -formula(pin)
     assert formulas.whirl_shift_error_limit(mirrored) == formulas.whirl_shift_error_limit(pin).conjugate()
-    assert formulas.squared_holding_force(mirrored, 0.2, -0.7) == pytest.approx(
-        float(formulas.squared_holding_force(pin, 0.2, 0.7)), rel=1e-14
-    )
-    assert formulas.release_time(mirrored, 0.2, -0.7) == formulas.release_time(pin, 0.2, 0.7)
 
 
-@given(pins())
-def test_offset_on_the_other_side_turns_the_motion_by_half_a_turn(pin):
+@pytest.mark.parametrize("pin", [HEAVY, ABOVE], ids=["below (5)", "above (5)"])
+def test_opposite_offset_turns_the_motion_by_half_a_turn(pin):
     turned = replace(pin, offset=-pin.offset)
-    for formula, _ in applicable(POLAR, pin):
+    for formula in applicable(EVEN, pin):
         assert formula(turned) == formula(pin)
-    for formula, _ in applicable(POINTS, pin):
+    for formula in applicable(POINTS, pin):
         x, y = formula(pin)
         assert formula(turned) == (-x, -y)
     assert formulas.whirl_shift_error_limit(turned) == formulas.whirl_shift_error_limit(pin)
-    time = formulas.release_time(pin, 0.2, 0.7)
-    assert formulas.release_time(turned, 0.2, 0.7 + math.pi) == pytest.approx(time, abs=1e-13)
+
+
+# ---------------------------------------------------------------- refusals
+
+WITHOUT_A_WHIRL = (
+    ({"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),
+    ({"disc_speed": -0.5}, r"disc_speed = -0\.5 rad/s"),
+    ({"damping": 0.0}, "damping = 0"),
+    ({"friction_force": 0.0}, "friction_force = 0"),
+    ({"stiffness": 0.0}, "stiffness = 0"),
+)
+REFUSED = [
+    (
+        formulas.equilibrium_radius,
+        {"friction_force": 0.102},
+        r"friction_force = 0\.102 N.* = 0\.1 N \(eq\. 5\)",
+    ),
+    (formulas.equilibrium_angle, {"disc_speed": 0.0}, "disc_speed = 0 rad/s"),
+    (formulas.equilibrium_angle, {"stiffness": 0.0}, "stiffness = 0 N/m"),
+    (formulas.equilibrium_angle, {"offset": 0.0, "friction_force": 0.0}, "offset = 0 m"),
+    (lambda pin: formulas.turn_until_release(pin, -0.1, 0.0), {}, r"radius = -0\.1 m"),
+    *(
+        (
+            formulas.sticking_radius,
+            {"friction_force": load, "offset": offset},
+            rf"friction_force = {load:g} N.* = 0\.1 N \(eq\. 9\)",
+        )
+        for load, offset in ((0.0, 0.1), (0.05, -0.1), (0.1, 0.1))
+    ),
+    *(
+        (
+            formulas.resonant_disc_speed,
+            {"damping": damping, "stiffness": 2.0},
+            f"damping = {damping:g} N s/m.* = 2 N s/m",
+        )
+        for damping in (2.0, 3.0)
+    ),
+    *(
+        (formula, changes, message)
+        for formula in (
+            formulas.whirl_radius,
+            formulas.whirl_frequency,
+            formulas.whirl_shift,
+            formulas.first_order_whirl_shift,
+            formulas.whirl_shift_error_limit,
+            formulas.third_order_of_whirl_shift,
+        )
+        for changes, message in WITHOUT_A_WHIRL
+    ),
+    *(
+        (formula, {"disc_speed": speed}, f"disc_speed = {speed:g} rad/s: ω/")
+        for formula in (
+            formulas.variational_matrix,
+            formulas.characteristic_coefficients,
+            formulas.coefficient_margins,
+            formulas.lower_branch_margin,
+            formulas.upper_branch_margin,
+        )
+        for speed in (1.0, -1.0)
+    ),
+]
+
+
+@pytest.mark.parametrize(("formula", "changes", "message"), REFUSED)
+def test_pin_outside_the_domain_of_a_formula_is_refused(formula, changes, message):
+    with pytest.raises(ValueError, match=message):
+        formula(replace(FIG_5, **changes))

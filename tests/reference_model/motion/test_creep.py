@@ -1,4 +1,4 @@
-"""Slip that decays for ever or is slow for long, and states between the steps of a strongly damped motion."""
+"""Slip that decays without end or stays slow, and states between the steps of strongly damped motions."""
 
 import math
 from dataclasses import replace
@@ -17,26 +17,26 @@ HARDENING = PinOnDisc(
 
 @pytest.fixture
 def few_steps(monkeypatch):
-    """Let a motion that takes very many steps fail, rather than take very long."""
+    """Make a motion fail quickly if it takes very many steps."""
     monkeypatch.setattr("reference_model.trajectory.MOST_STEPS", 3_000)
 
 
 @pytest.mark.usefixtures("few_steps")
-def test_pin_that_creeps_towards_its_last_radius_slips_for_ever_at_the_slower_of_two_rates():
+def test_creeping_pin_slips_without_end_and_decays_at_the_slower_of_two_rates():
     start, times = [0.5, 0.0, 0.0, 0.0], np.linspace(0.0, 400.0, 801)
     creeping = simulate(CREEPING, start, times)
     assert [phase.kind for phase in creeping.phases] == ["slip"]
-    # There the pull, |ω² − k² − iωβ/m| times the radius, is what friction can hold.
+    # At the final radius the pull, |ω² − k² − iωβ/m| times the radius, equals friction.
     pull = math.hypot(0.5**2 - 1.0, 0.5 * 2.0)
     assert creeping.radius[-1] == pytest.approx(0.1 / pull, rel=1e-9)
-    # s'' + (β/m)·s' + (k² − ω²)·s = 0: of the roots −1/2 and −3/2 the slower one is left.
+    # The roots of s'' + (β/m)·s' + (k² − ω²)·s = 0 are −1/2 and −3/2; the faster one has decayed.
     late = (times >= 15.0) & (times <= 30.0)
     rate = np.polyfit(times[late], np.log(creeping.slip_speed[late]), 1)[0]
     assert rate == pytest.approx(-0.5, abs=1e-4)
 
 
 @pytest.mark.parametrize("pin", [CREEPING, HARDENING], ids=["linear", "hardening"])
-def test_closed_end_of_a_creep_does_not_depend_on_the_tolerance(pin):
+def test_closed_form_for_the_end_of_creep_does_not_depend_on_the_tolerance(pin):
     start, times = [-0.3, 0.2, -0.1, 0.3], np.linspace(0.0, 300.0, 61)
     default, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-11))
     assert [phase.kind for phase in default.phases] == [phase.kind for phase in tight.phases]
@@ -45,10 +45,10 @@ def test_closed_end_of_a_creep_does_not_depend_on_the_tolerance(pin):
 
 
 @pytest.mark.parametrize("hardening", [0.5, 2.0])
-def test_creep_on_a_hardening_support_ends_where_the_pull_is_friction_to_rounding(hardening):
+def test_creep_on_a_hardening_support_ends_where_the_pull_equals_friction_to_rounding(hardening):
     pin = replace(CREEPING, damping=3.0, hardening=hardening)
     x, y = simulate(pin, [0.3, 0.0, 0.0, 0.0], [0.0, 2000.0], tolerance=1e-12).at_end[:2]
-    # The closed form leaves out a hundredth of what a step may err by, which is 3e-14 at this tolerance.
+    # The closed form neglects 1 % of the allowed error of a step, which is 3e-14 at this tolerance.
     square = x**2 + y**2
     carried = complex(
         pin.stiffness + pin.hardening * square - pin.disc_speed**2, pin.damping * pin.disc_speed
@@ -57,7 +57,7 @@ def test_creep_on_a_hardening_support_ends_where_the_pull_is_friction_to_roundin
 
 
 @pytest.mark.usefixtures("few_steps")
-def test_disc_on_points_without_shaft_damping_that_turns_with_the_master_disc_creeps_like_the_pin():
+def test_disc_on_points_without_relative_spin_creeps_like_the_pin():
     disc = DiscOnDisc(
         mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=2.0, friction_force=0.1, disc_speed=0.5, offset=0.0,
         contact_radius=0.3, shaft_damping=0.0, shaft_speed=0.0, contact_points=24,
@@ -89,19 +89,19 @@ def test_states_between_the_steps_of_a_strongly_damped_pin_are_as_accurate_as_at
     start = [0.01498423, -0.0328726, 0.04863351, -0.1851470]
     times = np.linspace(0.0, 27.656, 1001)
     found, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-9, 1e-13))
-    # The unit of length is X0, that of time 1/ω. Both the step and its interpolant may be off by the tolerance.
+    # The units are X0 and 1/ω. The step and its interpolant may each be off by the tolerance.
     scales = pin.offset * np.array([1.0, 1.0, pin.disc_speed, pin.disc_speed])
     assert (np.abs(found.states - tight.states) / scales).max() < 2e-9
 
 
-def test_states_between_long_steps_are_accurate_though_the_last_term_of_the_interpolant_is_small():
-    """The fast root decays 79 times as fast as the springs swing: within a step it may hide from that term."""
+def test_states_between_long_steps_are_accurate_if_the_last_term_of_the_interpolant_is_small():
+    """The fast root decays at 79 times the natural frequency, so this term may miss it within a step."""
     pin = PinOnDisc(
         mass=1.0, stiffness=5.4, damping=184.55, friction_force=0.0786, disc_speed=2.7, offset=0.29
     )
     start, times = [-1.25, -0.13, 0.19, 0.69], np.linspace(0.0, 1.57, 301)
     found, tight = (simulate(pin, start, times, tolerance=tolerance) for tolerance in (1e-6, 1e-13))
-    # The unit of length is the start's distance from the axis, that of time 1/ω.
+    # The units are the initial radius and 1/ω.
     scales = math.hypot(*start[:2]) * np.array([1.0, 1.0, pin.disc_speed, pin.disc_speed])
     assert (np.abs(found.states - tight.states) / scales).max() < 1e-6
 

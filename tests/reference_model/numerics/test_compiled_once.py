@@ -1,9 +1,8 @@
-"""Compiled functions are kept on disk for the sources that they are made of; one process compiles, others load."""
+"""Cache of compiled functions on disk, keyed by their sources; one process compiles and the others load."""
 
 import os
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
@@ -37,7 +36,7 @@ print(x[0], sum(dispatcher.stats.cache_hits.values()), sum(dispatcher.stats.cach
 
 @pytest.fixture
 def package(tmp_path):
-    """Return a package of which a kernel takes a factor from another file."""
+    """Return a package with a kernel that uses a factor from another file."""
     folder = tmp_path / "a_package_of_a_test"
     folder.mkdir()
     (folder / "__init__.py").touch()
@@ -59,7 +58,7 @@ def start(package, long=600.0, **environment):
 
 
 def printed(process):
-    """Return the factor, whether the kernel was loaded, and whether it was compiled."""
+    """Return the factor, whether the process loaded the kernel, and whether it compiled the kernel."""
     output, errors = process.communicate()
     assert process.returncode == 0, errors
     factor, loaded, made = output.split()
@@ -76,12 +75,12 @@ def test_a_kernel_is_compiled_again_if_another_file_of_its_package_changes(packa
     assert printed(start(package)) == (2.0, *loaded)
 
 
-def test_of_processes_that_need_a_kernel_at_once_one_compiles_and_the_others_load(package):
+def test_one_of_several_simultaneous_processes_compiles_and_the_others_load(package):
     runs = [printed(each) for each in [start(package) for _ in range(3)]]
     assert sorted(runs) == [(2.0, False, True), (2.0, True, False), (2.0, True, False)]
 
 
-def test_a_package_that_cannot_be_written_keeps_kernels_in_the_cache_of_the_user(package, tmp_path):
+def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(package, tmp_path):
     (package / "__pycache__").touch()  # no folder can be made in it, whoever runs the test
     home = {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
     for expected in ((2.0, False, True), (2.0, True, False)):
@@ -89,7 +88,7 @@ def test_a_package_that_cannot_be_written_keeps_kernels_in_the_cache_of_the_user
     assert list((tmp_path / "home" / ".cache" / "friction-discs").rglob("*.nbi"))
 
 
-def test_a_kernel_runs_where_nothing_can_be_kept(package, tmp_path):
+def test_kernel_runs_if_no_cache_can_be_written(package, tmp_path):
     (tmp_path / "file").touch()
     for _ in range(2):
         run = start(package, NUMBA_CACHE_DIR=str(tmp_path / "file"))
@@ -97,19 +96,12 @@ def test_a_kernel_runs_where_nothing_can_be_kept(package, tmp_path):
 
 
 @pytest.mark.parametrize(("long", "lines"), [(0.0, 1), (600.0, 0)])
-def test_a_line_says_that_something_is_compiled_if_that_takes_long(package, long, lines):
+def test_long_compilation_is_reported_in_one_line(package, long, lines):
     _, errors = start(package, long).communicate()
     assert errors.count("Compiling for this machine") == len(errors.splitlines()) == lines
 
 
-def test_a_line_is_printed_once_in_a_process(monkeypatch, capsys):
-    monkeypatch.setattr(compiled_once, "_told_already", threading.Lock())
-    for _ in range(2):
-        compiled_once._tell()
-    assert capsys.readouterr().err.count("Compiling") == 1
-
-
-def test_numba_keeps_functions_of_others_where_it_did(package, tmp_path, monkeypatch):
+def test_cache_directory_of_numba_does_not_change(package, tmp_path, monkeypatch):
     def fill(x):
         x[0] = 1.0
 
@@ -124,7 +116,7 @@ def test_numba_keeps_functions_of_others_where_it_did(package, tmp_path, monkeyp
     [((0.1, 0.3, 0.6, 0.9, 1.2, 1.5), 4), ((10.0, 11.0, 12.0, 13.0, 14.0), compiled_once.VERSIONS - 1)],
     ids=["used during the last day", "the newest"],
 )
-def test_versions_of_the_sources_that_nobody_used_for_long_are_deleted(days, kept, tmp_path, monkeypatch):
+def test_versions_of_the_sources_that_were_not_used_recently_are_deleted(days, kept, tmp_path, monkeypatch):
     package = tmp_path / "package"
     package.mkdir()
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
@@ -148,7 +140,7 @@ with _locked(Path(sys.argv[1])):
 """
 
 
-def test_a_lock_ends_with_a_failure_and_with_a_process_that_is_killed(tmp_path):
+def test_lock_is_released_by_an_exception_and_by_a_killed_process(tmp_path):
     lock = tmp_path / "lock"
     with pytest.raises(KeyError), compiled_once._locked(lock):
         raise KeyError
@@ -159,8 +151,3 @@ def test_a_lock_ends_with_a_failure_and_with_a_process_that_is_killed(tmp_path):
     began = time.monotonic()
     with compiled_once._locked(lock):
         assert time.monotonic() - began < 1.0
-
-
-def test_where_no_lock_can_be_it_is_done_without(tmp_path):
-    with compiled_once._locked(tmp_path / "nowhere" / "lock"):
-        pass

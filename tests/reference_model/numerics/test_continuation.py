@@ -1,9 +1,9 @@
-"""Curves are followed whatever way they turn, up to the limits and not beyond."""
+"""Continuation of curves with bends, up to their limits."""
 
 import numpy as np
 import pytest
 
-from reference_model.numerics.continuation import TURN, ContinuationError, follow
+from reference_model.numerics.continuation import ContinuationError, follow
 
 
 def circle(unknowns):
@@ -14,7 +14,7 @@ def everywhere(unknowns):
     return np.array([2.0 - abs(unknowns[0])])
 
 
-def test_a_closed_curve_is_followed_once_round():
+def test_closed_curve_is_followed_once():
     curve = follow(circle, everywhere, [0.9, 0.1], [1.0, 1.0], step=0.1)
     assert curve.closed
     assert np.array_equal(curve.points[0], curve.points[-1])
@@ -23,7 +23,7 @@ def test_a_closed_curve_is_followed_once_round():
     assert abs(angles[-1] - angles[0]) == pytest.approx(2.0 * np.pi, abs=1e-12)
 
 
-def test_a_curve_ends_on_the_limits_that_it_reaches_first():
+def test_curve_ends_on_the_first_limits_in_either_direction():
     curve = follow(circle, lambda p: np.array([0.5 - p[0], 0.8 + p[1]]), [-0.9, 0.1], [1.0, 1.0])
     assert not curve.closed
     assert set(curve.ends) == {0, 1}
@@ -42,18 +42,13 @@ def test_the_ends_do_not_depend_on_the_step(step):
     curve = follow(cubic, lambda p: np.array([1.0 - p[0] ** 2]), [0.3, 1.1], [1.0, 1.0], step=step)
     root = np.max(np.roots([1.0, 0.0, -1.0, -1.0]).real)
     assert sorted(curve.points[[0, -1], 1]) == pytest.approx([-root, root], abs=1e-13)
-    assert np.min(np.diff(curve.points[:, 0]) * np.sign(curve.points[-1, 0])) < 0.0  # it turned back twice
+    assert (
+        np.min(np.diff(curve.points[:, 0]) * np.sign(curve.points[-1, 0])) < 0.0
+    )  # the curve turned back twice
 
 
-def test_a_bend_is_resolved_however_long_the_step():
-    curve = follow(circle, everywhere, [0.9, 0.1], [1.0, 1.0], step=1.0)
-    turns = np.abs(np.diff(np.unwrap(np.arctan2(*curve.points.T))))
-    assert np.max(turns) < np.arccos(TURN) + 1e-9
-    assert np.sum(turns) == pytest.approx(2.0 * np.pi, abs=1e-9)
-
-
-def test_where_a_curve_turns_sharply_the_steps_are_short_enough_to_stay_on_it():
-    """The two sides of a flat ellipse are nearer to each other than the step is long."""
+def test_steps_are_short_enough_to_stay_on_a_sharply_turning_curve():
+    """The distance between the sides of a flat ellipse is smaller than the step."""
 
     def ellipse(p):
         return np.array([p[0] ** 2 + (p[1] / 0.02) ** 2 - 1.0])
@@ -66,7 +61,7 @@ def test_where_a_curve_turns_sharply_the_steps_are_short_enough_to_stay_on_it():
     assert abs(angles[-1] - angles[0]) == pytest.approx(2.0 * np.pi, abs=1e-9)
 
 
-def test_of_two_limits_within_a_step_the_nearer_one_ends_the_curve():
+def test_nearest_of_several_limits_within_a_step_ends_the_curve():
     def limits(p):
         return np.array([0.52 - p[0], 0.5 - p[0], 0.51 - p[0], p[1]])
 
@@ -84,13 +79,13 @@ def test_two_equations_for_three_unknowns():
     )
 
 
-def test_where_there_is_no_curve_the_error_says_where():
+def test_start_without_a_curve_raises_an_error_with_the_point():
     with pytest.raises(ContinuationError, match=r"no point of the curve near \[3\. 0\.\]"):
         follow(lambda p: np.array([p @ p + 1.0]), everywhere, [3.0, 0.0], [1.0, 1.0])
 
 
-def test_a_curve_that_stops_is_not_taken_to_end_there():
-    def parabola(p):  # √ has no value beyond
+def test_curve_that_stops_inside_the_limits_raises_an_error():
+    def parabola(p):  # √ is undefined for p[0] < 0
         return np.array([p[1] - np.sqrt(p[0]) if p[0] >= 0.0 else np.nan])
 
     with pytest.raises(ContinuationError, match="can't be followed beyond"):

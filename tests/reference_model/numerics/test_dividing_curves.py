@@ -1,4 +1,4 @@
-"""Curves on which a function of two variables changes its sign: circles, branches, corners, islands."""
+"""Curves where a function of two variables changes sign: circles, branches, corners and islands."""
 
 import math
 
@@ -13,7 +13,7 @@ LOW, HIGH = np.array([-1.0, -2.0]), np.array([1.0, 2.0])
 
 @pytest.mark.parametrize("cells", [4, 7, 32])
 def test_closed_curve_is_found_once_with_points_on_it_no_farther_apart_than_a_cell(cells):
-    # With axes that go with the rectangle, it is a circle of radius 0.35 of the unit square.
+    # Scaled to the unit square, the curve is a circle of radius 0.35.
     def value(point):
         return math.hypot(point[0] - 0.1, 0.5 * (point[1] + 0.2)) - 0.7
 
@@ -23,13 +23,13 @@ def test_closed_curve_is_found_once_with_points_on_it_no_farther_apart_than_a_ce
     assert [value(point) for point in curve.points] == pytest.approx(np.zeros(len(curve.points)), abs=1e-12)
     steps = np.linalg.norm(np.diff(curve.points / (HIGH - LOW), axis=0), axis=1)
     assert steps.max() <= 1.0 / cells + 1e-12
-    # No part of the circle is left out: a chord that turned by more than 0.35·1.5 rad would have been halved.
+    # The whole circle is found, because a chord that turns by more than 0.35·1.5 rad is halved.
     angles = np.unwrap(np.arctan2(0.5 * (curve.points[:, 1] + 0.2), curve.points[:, 0] - 0.1))
     assert abs(angles[-1] - angles[0]) == pytest.approx(2.0 * math.pi)
     assert np.abs(np.diff(angles)).max() < 0.35 * 1.5
 
 
-def test_only_the_sign_counts_away_from_the_curve():
+def test_away_from_the_curve_only_the_sign_of_the_function_matters():
     def value(point):
         return float(np.clip(1e3 * (point[1] - point[0] ** 3), -1e-3, 1e-3))
 
@@ -59,8 +59,8 @@ def test_all_branches_and_islands_are_found():
     assert reach == pytest.approx(np.array([[inner, outer]] * 2), abs=0.02)
 
 
-def test_corners_are_passed():
-    def value(point):  # a rhombus, whose corners turn by a right angle in the unit square
+def test_curve_is_followed_around_corners():
+    def value(point):  # a rhombus with right angles in the unit square
         return abs(point[0]) + 0.5 * abs(point[1]) - 0.61
 
     (curve,) = dividing_curves(value, LOW, HIGH, 10)
@@ -78,7 +78,7 @@ def test_curve_that_cuts_off_a_corner_of_the_rectangle_within_a_cell_is_found():
     assert {round(x, 9) for x in curve.points[[0, -1], 0]} == {0.9, 1.0}
 
 
-def test_a_curve_that_is_known_costs_nothing_where_it_crosses_the_grid_again():
+def test_known_curve_is_not_computed_again_where_it_crosses_the_grid():
     calls = 0
 
     def value(point):
@@ -88,7 +88,7 @@ def test_a_curve_that_is_known_costs_nothing_where_it_crosses_the_grid_again():
 
     cells = 16
     (curve,) = dividing_curves(value, LOW, HIGH, cells)
-    # Two signs and some eight steps of Brent's method for a point, now and then in vain where the curve bends.
+    # A point takes two signs and some eight steps of Brent's method, and sometimes fails at a bend.
     assert calls <= (cells + 1) ** 2 + 12 * len(curve.points)
 
 
@@ -97,7 +97,7 @@ def test_two_lines_that_meet_are_followed_straight_on():
     assert sorted(sorted(curve.ends) for curve in lines) == [[0, 2], [1, 3]]
 
 
-def test_a_curve_that_winds_without_end_is_given_up():
+def test_curve_that_winds_without_end_raises_an_error():
     def spiral(point):
         x, y = point - 0.03
         return math.sin(0.5 / math.hypot(x, y) + math.atan2(y, x))

@@ -1,4 +1,4 @@
-"""All zeros of functions whose zeros are known."""
+"""Zeros and maxima of functions with known ones."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from reference_model.numerics.roots import largest_between, nodes_between, zero_between, zeros_between
 
 
-def test_nodes_lie_in_the_interval_and_come_ever_closer_to_its_ends():
+def test_nodes_lie_in_the_interval_and_are_densest_at_its_ends():
     nodes = nodes_between(0.0, 1.0)
     steps = np.diff(nodes)
     assert (nodes[0], nodes[-1]) == (0.0, 1.0)
@@ -21,7 +21,7 @@ def test_nodes_lie_in_the_interval_and_come_ever_closer_to_its_ends():
 @pytest.mark.parametrize("roots", [[], [0.3], [0.1, 0.5, 0.9], [0.4, 0.4 + 1e-6], [1e-12, 0.2, 1.0 - 1e-12]])
 def test_all_zeros_of_a_polynomial_are_found(roots):
     found = zeros_between(lambda x: math.prod(x - root for root in roots), 0.0, 1.0)
-    # Next to 1 a root of this product is known to the rounding of 1.
+    # Near 1 the rounding error of 1 limits the accuracy of a root.
     assert found == pytest.approx(roots, rel=1e-9, abs=1e-16)
 
 
@@ -33,7 +33,7 @@ def test_zero_on_a_node_or_at_an_end_is_found_once():
 
 @pytest.mark.parametrize("least", [1e-3, 1e-7, 1e-11])
 def test_pair_of_zeros_about_a_logarithmic_dip_next_to_an_end_is_found(least):
-    """x·ln(x/a) has its least value −a/e at a/e; the zeros about it are those of −x·ln x = c after scaling."""
+    """x·ln(x/a) has its minimum −a/e at a/e, so the shifted function has zeros on both sides of it."""
     scale = least * math.e
 
     def dip(x):
@@ -45,7 +45,7 @@ def test_pair_of_zeros_about_a_logarithmic_dip_next_to_an_end_is_found(least):
     assert [abs(dip(x)) for x in found] == pytest.approx([0.0, 0.0], abs=1e-14 * least)
 
 
-def test_tiny_zero_keeps_its_digits():
+def test_tiny_zero_is_accurate_to_rounding():
     assert zeros_between(lambda x: x - 1e-200, 0.0, 1.0) == pytest.approx([1e-200], rel=1e-14, abs=0.0)
     assert zero_between(lambda x: x - 3e-200, 0.0, 1.0) == pytest.approx(3e-200, rel=1e-14, abs=0.0)
 

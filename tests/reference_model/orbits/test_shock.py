@@ -1,4 +1,4 @@
-"""The smallest shock that leads to the whirl."""
+"""The smallest shock from the equilibrium that leads to the whirl."""
 
 import math
 from dataclasses import replace
@@ -22,19 +22,19 @@ def shock():
     return smallest_shock(FIG5)
 
 
-def test_it_is_where_the_ends_of_motions_change(shock):
+def test_smallest_shock_agrees_with_bisection_by_end_states(shock):
     assert by_bisection(shock) == pytest.approx(shock.speed, rel=1e-6)
 
 
 @pytest.mark.parametrize(("factor", "whirls"), [(0.97, False), (1.03, True)])
-def test_the_plain_reference_ends_on_either_side_of_it(factor, whirls, shock):
+def test_shocks_on_either_side_of_the_smallest_one_end_in_different_motions(factor, whirls, shock):
     (rest,) = self_centred_equilibria(FIG5)
     start = (rest.x, rest.y, factor * shock.vx, factor * shock.vy)
     end = simulate(FIG5, start, np.linspace(0.0, 200.0, 201), tolerance=1e-7).states[-1]
     assert (math.hypot(end[0], end[1]) > 0.5) == whirls
 
 
-def test_no_point_of_the_boundary_is_nearer(shock):
+def test_smallest_shock_is_the_nearest_point_of_the_boundary(shock):
     (rest,) = self_centred_equilibria(FIG5)
     (saddle,) = stick_slip_orbits(FIG5, tolerance=1e-6)
     around = [(v - 0.3 * shock.speed, v + 0.3 * shock.speed) for v in (shock.vx, shock.vy)]
@@ -45,7 +45,7 @@ def test_no_point_of_the_boundary_is_nearer(shock):
     assert shock.speed * (1.0 - 1e-6) <= nearest < 1.05 * shock.speed
 
 
-def test_what_has_no_such_boundary_is_refused(monkeypatch):
+def test_pin_without_a_smallest_shock_is_refused(monkeypatch):
     with pytest.raises(ValueError, match="the self-centred equilibrium exists only"):
         smallest_shock(replace(FIG5, offset=0.0))
     with pytest.raises(ValueError, match="only linear supports are covered"):

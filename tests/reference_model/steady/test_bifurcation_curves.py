@@ -1,4 +1,4 @@
-"""The boundaries of the whirl's stability: found completely, exact, and where whirls gain and lose it."""
+"""Stability boundaries of the whirl: completeness, accuracy, and the change of stability across them."""
 
 import functools
 from dataclasses import replace
@@ -71,7 +71,7 @@ def test_the_characteristic_equation_has_the_eigenvalues_of_the_jacobian(law):
             assert np.min(np.abs(roots - value)) < 1e-9 * np.max(np.abs(expected))
 
 
-def test_without_moment_of_friction_the_characteristic_equation_is_that_of_the_pin_times_the_torsion():
+def test_characteristic_polynomial_without_moment_of_friction_factors_into_pin_and_torsion():
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5)
     expected = np.polymul(coefficients_of_pin(pin), [1.0, FIG11.shaft_damping / FIG11.polar_inertia])
     assert [1.0, *characteristic_coefficients(FIG11, 1.0, 0.3, Pin())] == pytest.approx(expected, rel=1e-14)
@@ -98,10 +98,10 @@ def test_on_a_fold_curve_the_load_over_alpha_is_stationary(law):
     for curve in curves:
         for values, alpha in zip(curve.parameters, curve.alpha, strict=True):
             if abs(alpha - np.pi / 4.0) < 0.02:
-                continue  # the second derivative grows without bounds, and with it the error of differences
+                continue  # the second derivative is unbounded, and so is the error of differences
             disc = SPEED_LOAD.at(values)
-            # Off the fold by a part p of the shift, the slope is 2p times the bend; the third derivative adds some
-            # shift/0.02, the distance to where friction has no derivatives.
+            # At a distance p·shift from the fold the slope is 2p times the bend. The third derivative adds some
+            # shift/0.02, because friction is not smooth at a distance of 0.02.
             low, here, high = (whirl_at(disc, alpha + shift, law).load for shift in (-1e-4, 0.0, 1e-4))
             bend = abs(high - 2.0 * here + low)
             assert abs(high - low) < 0.02 * bend + 1e-14 * here
@@ -144,7 +144,7 @@ def test_curves_do_not_depend_on_the_step(kind):
 
 
 @pytest.mark.parametrize("plane", PLANES[3:4], ids=lambda plane: ", ".join(plane.names))
-def test_more_lines_and_ratios_find_no_more_curves(plane, monkeypatch):
+def test_finer_search_finds_no_more_curves(plane, monkeypatch):
     found = traced(plane, "Hopf")
     monkeypatch.setattr(parameter_plane, "LINES", 23)
     monkeypatch.setattr(module, "NODES", 97)
@@ -166,8 +166,8 @@ def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
     assert there == pytest.approx(here, rel=1e-12)
 
 
-def test_a_modulation_needs_inertia():
-    """Below some 0.13 kg m² the torsion follows at once, and the whirl is stable for every shaft damping."""
+def test_whirl_is_unstable_only_above_a_polar_inertia():
+    """Below 0.13 kg m² the torsion follows at once, and the whirl is stable for every shaft damping."""
     assert min(np.min(curve.parameters[:, 0]) for curve in traced(PLANES[3], "Hopf")) == pytest.approx(
         0.13, abs=0.01
     )

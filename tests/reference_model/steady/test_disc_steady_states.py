@@ -1,28 +1,26 @@
-"""All steady motions of the disc: against the equations of motion, a brute-force search, and the limiting cases."""
+"""All steady motions of the disc, against the equations of motion, a dense search and limiting cases."""
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from disc_equations import (
     FIG_9,
-    disc_in_units,
     eq_23,
     mirrored,
     points_on_ring,
     rates,
     rates_in_turning_axes,
 )
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
 
 from compare.claims.parameters import FIG8, FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
-from reference_model.formulas.disc import held_pin, pin_of, semicircle_residual, shaft_torque
+from reference_model.formulas.disc import held_pin, pin_of, polar_angle, semicircle_residual, shaft_torque
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
     self_centred_equilibria,
@@ -37,7 +35,7 @@ LAWS = [Ring, ThreeTermRing]
 
 
 def whirling(gain, load=1.0):
-    """Disc with b(|ω| − k)/(βkR) = ``gain``·R and R = 1 at ``load``, in the units b|ω − Ω| = 1."""
+    """Return a disc with b(|ω| − k)/(βkR) = ``gain``·R, R = 1 and b|ω − Ω| = 1."""
     return DiscOnDisc(
         mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=1.0 / gain, friction_force=load, disc_speed=2.0,
         contact_radius=1.0, shaft_damping=1.0, shaft_speed=1.0,
@@ -54,9 +52,19 @@ def friction_of(disc, law):
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("load", [1e-5, 0.02, 0.08, 0.1])
 @pytest.mark.parametrize(
-    "disc", [FIG8, mirrored(FIG8), replace(FIG8, offset=-0.1), replace(FIG8, shaft_speed=2.0), FIG_9]
+    "disc",
+    [
+        FIG8,
+        mirrored(FIG8),
+        replace(FIG8, offset=-0.1),
+        replace(FIG8, shaft_speed=2.0),
+        FIG_9,
+        replace(FIG8, hardening=40.0),
+        replace(FIG8, offset=-0.1, stop_gap=0.03, stop_stiffness=3.0),
+        replace(mirrored(FIG8), hardening=10.0, stop_gap=0.02, stop_stiffness=1.0),
+    ],
 )
-def test_equilibrium_is_one_of_the_equations_of_motion(disc, load, law):
+def test_equilibrium_satisfies_the_equations_of_motion(disc, load, law):
     disc = replace(disc, friction_force=0.15 * load if disc is FIG_9 else load)
     (equilibrium,) = self_centred_equilibria(disc, law(disc.contact_radius))
     x, y, spin = equilibrium.x, equilibrium.y, equilibrium.spin
@@ -66,13 +74,16 @@ def test_equilibrium_is_one_of_the_equations_of_motion(disc, load, law):
     assert semicircle_residual(disc, x, y) == pytest.approx(0.0, abs=1e-16)
     between = sorted((disc.shaft_speed, disc.disc_speed))
     assert between[0] <= spin <= between[1]
-    assert y * disc.disc_speed * disc.offset >= 0.0  # dragged along
+    assert y * disc.disc_speed * disc.offset >= 0.0  # friction drags the disc along
+    # By the third line of (26) radius and deflection are at a right angle on any support.
+    if disc.offset != 0.0:
+        assert polar_angle(disc, math.hypot(x, y), 0.0) == pytest.approx(math.atan2(y, x), abs=1e-11)
 
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("load", [0.0003, 0.01, 1.0])
 @pytest.mark.parametrize("disc", [FIG_9, mirrored(FIG_9), replace(FIG_9, shaft_speed=1.75)])
-def test_whirl_is_a_fixed_point_of_the_axes_that_turn_with_it(disc, load, law):
+def test_whirl_is_a_fixed_point_in_turning_axes(disc, load, law):
     disc = replace(disc, friction_force=load)
     found = whirls(disc, law(disc.contact_radius))
     assert found
@@ -83,11 +94,11 @@ def test_whirl_is_a_fixed_point_of_the_axes_that_turn_with_it(disc, load, law):
         assert whirl.frequency == math.copysign(1.0, disc.disc_speed)
 
 
-# ---------------------------------------------------------------- all of them
+# ---------------------------------------------------------------- completeness
 
 
 def plain_shares(law, radius, slip, rim):
-    """F and M over μN as the paper and the notes to it print them, for arrays."""
+    """Return F and M over μN as the paper and the notes print them, for arrays."""
     if law is ThreeTermRing:
         square = slip**2 + rim**2
         both = 0.75 * (slip * rim / square) ** 2
@@ -101,7 +112,7 @@ def plain_shares(law, radius, slip, rim):
 
 
 def spin_at(disc, law, slip):
-    """R|S| by the torsional balance at given slips U, by bisection: b|ω − Ω| − bS falls and M grows."""
+    """Return S at given slips U by bisection of the torque balance, because b|ω − Ω| − bS falls and M grows."""
     low, high = np.zeros_like(slip), np.full_like(slip, abs(disc.disc_speed - disc.shaft_speed))
     for _ in range(50):
         middle = 0.5 * (low + high)
@@ -112,9 +123,9 @@ def spin_at(disc, law, slip):
 
 
 def brackets_of_radii(disc, law, whirl):
-    """Neighbouring radii between which the balance of forces changes its sign, of the equilibria or whirls.
+    """Return pairs of neighbouring radii between which the balance of forces changes sign.
 
-    From a ten thousandth of the largest radius on: below, the plain form of the law loses its digits.
+    The search starts at 1e-4 of the largest radius, because the plain form of the law is inaccurate below.
     """
     k, speed = disc.natural_frequency, abs(disc.disc_speed)
     largest = disc.friction_force / (disc.damping * k) if whirl else abs(disc.offset)
@@ -134,7 +145,7 @@ def brackets_of_radii(disc, law, whirl):
 
 
 def random_disc(rng, whirl):
-    """Disc with values of any size, for which the balances meet with luck."""
+    """Return a disc with parameters of any size, which may have steady motions."""
 
     def size(least, most):
         return 10.0 ** rng.uniform(math.log10(least), math.log10(most))
@@ -152,8 +163,8 @@ def random_disc(rng, whirl):
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("whirl", [False, True])
-def test_all_steady_motions_are_found_that_a_dense_search_over_the_radius_finds(whirl, law):
-    """The search eliminates in another order: one spin belongs to each radius, and the radius is tried out."""
+def test_steady_motions_agree_with_a_dense_search_over_the_radius(whirl, law):
+    """The dense search eliminates in another order: it computes the spin for each radius."""
     rng = np.random.default_rng(20)
     numbers = set()
     for _ in range(60):
@@ -171,26 +182,14 @@ def test_all_steady_motions_are_found_that_a_dense_search_over_the_radius_finds(
             inside = [radius for radius in left if low * (1.0 - 1e-9) <= radius <= high * (1.0 + 1e-9)]
             assert inside, f"{disc}: none of {radii} between {low} and {high}"
             left.remove(inside[0])
-        assert len(left) % 2 == 0, f"{disc}: {left} besides {brackets}"  # pairs within one step of the search
+        assert len(left) % 2 == 0, f"{disc}: {left} outside {brackets}"  # pairs within one step of the search
         numbers.add(len(radii))
     assert numbers >= ({0, 1, 2} if whirl else {0, 1})
 
 
-def test_ring_has_three_whirls_where_the_centre_slips_about_as_fast_as_the_rim():
-    """Near U = W the force grows with a logarithmic slope, so that b|ω − Ω|/μN has a peak and a dip there.
-
-    For the gain 2 and R = 1 they are 1.9151 at W = 0.986·U and 1.9011 at W = 1.038·U, and at its end 2.
-    """
-    numbers = [len(whirls(whirling(2.0, 1.0 / arm))) for arm in (1.89, 1.905, 1.91, 1.92, 1.99, 2.01)]
-    assert numbers == [1, 3, 3, 1, 1, 0]
-    ratios = [2.0 * (2.0 - whirl.spin) / whirl.radius / 2.0 for whirl in whirls(whirling(2.0, 1.0 / 1.91))]
-    assert ratios == sorted(ratios)
-    assert ratios[0] < 0.986 < ratios[1] < 1.038 < ratios[2]
-
-
 @pytest.mark.parametrize(("gain", "width"), [(1.5, 9e-4), (1.2, 8e-7), (1.12, 6e-10)])
-def test_three_whirls_are_found_in_a_peak_however_narrow(gain, width):
-    """For a gain just above 1 peak and dip are exponentially close to U = W, and to each other."""
+def test_three_whirls_are_found_in_a_very_narrow_peak(gain, width):
+    """For a gain just above 1, peak and dip are exponentially close to U = W and to each other."""
     distances = np.geomspace(1e-14, 0.1, 4000)
     ring = Ring(1.0)
 
@@ -208,27 +207,27 @@ def test_three_whirls_are_found_in_a_peak_however_narrow(gain, width):
 
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("gain", [5.0, 30.0])
-def test_two_whirls_meet_in_a_fold_at_the_smallest_load(gain, law):
+def test_smallest_load_with_a_whirl_is_a_fold(gain, law):
     disc, contact = whirling(gain), law(1.0)
     load = smallest_load_with_whirl(disc, contact)
     assert load < onset_load(disc, contact)
     assert whirls(replace(disc, friction_force=load * (1.0 - 1e-12)), contact) == ()
     outer, inner = whirls(replace(disc, friction_force=load * (1.0 + 1e-10)), contact)
     assert 0.0 < outer.radius - inner.radius < 1e-3 * outer.radius
-    # Beside the phase another eigenvalue is almost zero, negative for one and positive for the other.
+    # Apart from the phase, one eigenvalue is almost zero, with opposite signs for the two whirls.
     slow = [min(whirl.eigenvalues[1:], key=abs) for whirl in (outer, inner)]
     assert slow[0].real < 0.0 < slow[1].real
     assert max(map(abs, slow)) < 1e-3
 
 
 @pytest.mark.parametrize(("law", "limit"), [(Ring, 4.0), (ThreeTermRing, 0.25)])
-def test_whirl_grows_out_of_the_centred_rotation_without_a_jump_below_a_limit_of_the_gain(law, limit):
-    """Expanded at U = 0: the arm is R + gain·R/2 − (R/4)(U/W)²·(1 − gain/limit), with the limits given."""
+def test_whirl_grows_continuously_from_the_centred_rotation_below_a_limit_of_the_gain(law, limit):
+    """The expansion of the arm at U = 0 is R + gain·R/2 − (R/4)(U/W)²·(1 − gain/limit)."""
     contact = law(1.0)
     for factor, jumps in ((0.98, False), (1.02, True)):
         disc = whirling(factor * limit)
         just_above = replace(disc, friction_force=onset_load(disc, contact) * (1.0 + 1e-7))
-        # Without a jump there is a whirl of hardly any size above the onset; with one, just below it.
+        # A continuous branch has a very small whirl just above the onset, and a jump has one just below.
         just_below = replace(disc, friction_force=onset_load(disc, contact) * (1.0 - 1e-7))
         small = [
             any(whirl.radius < 0.02 * (2.0 - whirl.spin) for whirl in whirls(system, contact))
@@ -237,13 +236,13 @@ def test_whirl_grows_out_of_the_centred_rotation_without_a_jump_below_a_limit_of
         assert small == [not jumps, jumps]
 
 
-def test_whirl_at_the_smallest_load_of_the_ring_of_fig_11_is_the_onset_and_for_23_a_fold():
+def test_smallest_load_with_a_whirl_in_fig_11_is_the_onset_for_the_ring_and_a_fold_for_23():
     assert smallest_load_with_whirl(FIG11) == pytest.approx(onset_load(FIG11), rel=1e-14)
     assert smallest_load_with_whirl(FIG11, ThreeTermRing(0.12)) < 0.97 * onset_load(FIG11)
 
 
-def test_whirl_of_fig_11_grows_on_the_ring_and_decays_by_23():
-    """The paper's own simplified equations miss the instability that its figure shows."""
+def test_whirl_of_fig_11_is_unstable_on_the_ring_and_stable_under_23():
+    """The simplified equations of the paper miss the instability in its figure."""
     (on_ring,), (by_23,) = whirls(FIG11), whirls(FIG11, ThreeTermRing(0.12))
     assert not on_ring.stable
     assert on_ring.eigenvalues[1].imag > 0.0
@@ -254,18 +253,18 @@ def test_whirl_of_fig_11_grows_on_the_ring_and_decays_by_23():
 
 
 NEIGHBOURS = 1.0 + np.finfo(float).eps * np.arange(-4, 5)
-"""Factors by which rounding may have changed a number."""
+"""Factors within a few rounding errors of 1."""
 
 
-def test_at_the_onset_there_is_no_whirl_of_no_size():
-    """Below the gain 2 the arm of pure spin, 1 + gain/2, is the largest; near it the arm is flat."""
+def test_at_the_onset_there_is_no_whirl_of_zero_size():
+    """Below the gain 2 the largest arm is the one of pure spin, 1 + gain/2, and the arm is flat nearby."""
     for gain in (2.0, 1.9, 1.7, 0.3, 0.1):
         for load in NEIGHBOURS / (1.0 + gain / 2.0):
             assert whirls(whirling(gain, float(load))) == ()
 
 
 @pytest.mark.parametrize("gain", [0.1, 0.3, 1.0, 3.0])
-def test_whirl_at_the_middle_of_the_ratios_is_found_once(gain):
+def test_whirl_with_equal_slip_and_rim_speed_is_found_once(gain):
     """By (23), U = W takes b|ω − Ω|/μN = (1 + gain)·0.9375/√2."""
     for load in NEIGHBOURS * math.sqrt(2.0) / 0.9375 / (1.0 + gain):
         found = whirls(whirling(gain, float(load)), ThreeTermRing(1.0))
@@ -273,8 +272,8 @@ def test_whirl_at_the_middle_of_the_ratios_is_found_once(gain):
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_equilibrium_comes_to_rest_in_proportion_to_the_load_that_is_missing(law):
-    """Beside that load U and W are zero, at a ratio that they keep as they vanish."""
+def test_slip_near_sticking_is_proportional_to_the_missing_load(law):
+    """U and W vanish at the limit load, and their ratio stays constant."""
     contact = law(0.12)
 
     def spare(load):
@@ -287,13 +286,13 @@ def test_equilibrium_comes_to_rest_in_proportion_to_the_load_that_is_missing(law
             replace(FIG8, friction_force=limit * (1.0 - missing)), contact
         )
         sizes.append((math.hypot(equilibrium.x, equilibrium.y), 0.8 - equilibrium.spin))
-    # The limit is known to 1e-15 of it, these loads to 1e-16.
+    # The relative errors are 1e-15 in the limit and 1e-16 in these loads.
     assert np.divide(*sizes) == pytest.approx([2.0, 2.0], rel=1e-6)
 
 
 @pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 0.8}])
 @pytest.mark.parametrize("load", [0.01, 0.0999])
-def test_disc_that_does_not_spin_against_the_master_disc_rests_where_a_pin_does(changes, load):
+def test_disc_without_relative_spin_has_the_equilibrium_of_a_pin(changes, load):
     disc = replace(FIG8, friction_force=load, **changes)
     (equilibrium,) = self_centred_equilibria(disc)
     (of_pin,) = self_centred_equilibria(pin_of(disc))
@@ -303,7 +302,7 @@ def test_disc_that_does_not_spin_against_the_master_disc_rests_where_a_pin_does(
 
 
 @pytest.mark.parametrize("changes", [{"shaft_damping": 0.0}, {"shaft_speed": 1.5}])
-def test_disc_that_does_not_spin_against_the_master_disc_whirls_like_a_pin(changes):
+def test_disc_without_relative_spin_has_the_whirl_of_a_pin(changes):
     disc = replace(FIG11, friction_force=1e-6, **changes)
     (whirl,) = whirls(disc)
     (of_pin,) = whirls(pin_of(disc))
@@ -312,8 +311,8 @@ def test_disc_that_does_not_spin_against_the_master_disc_whirls_like_a_pin(chang
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-8, 1e-14])
-def test_weak_shaft_lets_the_disc_turn_almost_with_the_master_disc(size):
-    """To first order M = R·W/(2U) gives S = b(ω − Ω)/(μN·R²/(2U) + b); U stays a pin's up to S²."""
+def test_relative_spin_with_a_weak_shaft_agrees_with_the_first_order(size):
+    """To first order M = R·W/(2U) gives S = b(ω − Ω)/(μN·R²/(2U) + b), and U is that of a pin up to S²."""
     disc = replace(FIG8, shaft_damping=size * 0.01)
     (equilibrium,) = self_centred_equilibria(disc)
     (of_pin,) = self_centred_equilibria(pin_of(disc))
@@ -324,8 +323,8 @@ def test_weak_shaft_lets_the_disc_turn_almost_with_the_master_disc(size):
 
 
 @pytest.mark.parametrize("offset", [1e-3, 1e-9, 1e-15])
-def test_small_offset_moves_the_centre_along_a_straight_line(offset):
-    """Near the axis friction is the damper μN/(2W) that turns with ω: (C − iω·μN/(2W))·z = C·X0."""
+def test_deflection_by_a_small_offset_is_linear(offset):
+    """Near the axis friction acts like a damper μN/(2W) that turns with ω: (C − iω·μN/(2W))·z = C·X0."""
     disc = replace(FIG8, friction_force=0.01, offset=offset)
     (equilibrium,) = self_centred_equilibria(disc)
     rim = 0.12 * 0.3 - 0.01 * 0.12**2 / 0.01
@@ -343,7 +342,7 @@ def test_disc_without_an_offset_only_spins(law):
     assert equilibrium.spin == pytest.approx(1.25 + 0.005 * moment / 0.01, rel=1e-15)
 
 
-def test_disc_on_a_master_disc_at_rest_spins_where_its_springs_relax():
+def test_disc_on_a_master_disc_at_rest_spins_at_its_offset():
     disc = replace(FIG8, disc_speed=0.0)
     (equilibrium,) = self_centred_equilibria(replace(disc, friction_force=0.02))
     assert (equilibrium.x, equilibrium.y) == (0.1, 0.0)
@@ -353,14 +352,14 @@ def test_disc_on_a_master_disc_at_rest_spins_where_its_springs_relax():
 
 
 @pytest.mark.parametrize("offset", [0.1, 0.0])
-def test_without_springs_the_axis_is_an_equilibrium_and_not_a_stable_one(offset):
+def test_without_springs_the_axis_is_an_unstable_equilibrium(offset):
     (equilibrium,) = self_centred_equilibria(replace(FIG8, stiffness=0.0, friction_force=0.01, offset=offset))
     assert (equilibrium.x, equilibrium.y) == (0.0, 0.0)
     assert not equilibrium.stable
 
 
 @pytest.mark.parametrize("disc_speed", [0.8, 0.0])
-def test_without_friction_the_disc_turns_with_the_shaft_where_its_springs_relax(disc_speed):
+def test_without_friction_the_disc_turns_with_the_shaft_at_its_offset(disc_speed):
     (equilibrium,) = self_centred_equilibria(replace(FIG8, friction_force=0.0, disc_speed=disc_speed))
     assert (equilibrium.x, equilibrium.y, equilibrium.spin) == (0.1, 0.0, 0.5)
     assert equilibrium.stable
@@ -384,8 +383,7 @@ NO_EQUILIBRIUM = [
 def test_missing_equilibrium_is_explained(changes, reason):
     disc = replace(FIG8, **changes)
     assert self_centred_equilibria(disc) == ()
-    with pytest.raises(AssertionError, match=reason):
-        raise AssertionError(why_no_equilibrium(disc))
+    assert re.search(reason, why_no_equilibrium(disc))
 
 
 NO_WHIRL = [
@@ -402,47 +400,4 @@ NO_WHIRL = [
 def test_missing_whirl_is_explained(changes, reason):
     disc = replace(FIG11, **changes)
     assert whirls(disc) == ()
-    with pytest.raises(AssertionError, match=reason):
-        raise AssertionError(why_no_whirl(disc))
-
-
-# ---------------------------------------------------------------- symmetries and units
-
-
-def assert_same_set(found, expected):
-    assert np.sort_complex(np.round(found, 9)) == pytest.approx(
-        np.sort_complex(np.round(expected, 9)), abs=1e-8
-    )
-
-
-discs = st.builds(
-    lambda seed, whirl: random_disc(np.random.default_rng(seed), whirl), st.integers(0, 10**6), st.booleans()
-)
-
-
-@given(discs)
-def test_disc_turning_the_other_way_has_the_mirrored_motions(disc):
-    motions = whirls if disc.offset == 0.0 else self_centred_equilibria
-    for one, other in zip(motions(disc), motions(mirrored(disc)), strict=True):
-        assert other.spin == -one.spin
-        assert_same_set(other.eigenvalues, one.eigenvalues)
-        if disc.offset == 0.0:
-            assert (other.radius, other.frequency) == (one.radius, -one.frequency)
-        else:
-            assert (other.x, other.y) == (one.x, -one.y)
-
-
-units = st.floats(0.01, 100.0)
-
-
-@given(discs, units, units, units)
-def test_units_do_not_matter(disc, mass, length, time):
-    other = disc_in_units(disc, mass, length, time)
-    if disc.offset == 0.0:
-        for one, two in zip(whirls(disc), whirls(other), strict=True):
-            assert two.radius == pytest.approx(length * one.radius, rel=1e-8)
-            assert time * two.spin == pytest.approx(one.spin, rel=1e-8, abs=1e-8)
-    else:
-        for one, two in zip(self_centred_equilibria(disc), self_centred_equilibria(other), strict=True):
-            assert (two.x, two.y) == pytest.approx((length * one.x, length * one.y), rel=1e-8)
-            assert time * two.spin == pytest.approx(one.spin, rel=1e-8, abs=1e-8)
+    assert re.search(reason, why_no_whirl(disc))

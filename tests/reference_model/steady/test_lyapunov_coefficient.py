@@ -1,4 +1,4 @@
-"""The growth of a modulation with its amplitude, against simulated motions and a normal form that is known."""
+"""Growth rate of a modulation as a function of its amplitude, against simulated motions."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ def marginal_whirl(law, which):
 def simulated_growth(disc, whirl, law, amplitude):
     """Return (1/a₀² − 1/a₁²)/2 over a period of the modulation from ȧ = c·a³.
 
-    a is half the difference of the extremes of the radius, whose second harmonic drops out.
+    a is half the difference between extremes of the radius, which removes the second harmonic.
     """
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state, law))
     pair = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
@@ -34,7 +34,7 @@ def simulated_growth(disc, whirl, law, amplitude):
     period = 2.0 * np.pi / abs(values[pair].imag)
     times = np.linspace(0.0, 4.0 * period, 8001)
     start = whirl.state + np.insert(shift, 2, 0.0)
-    own = law is RING  # whose motions are compiled
+    own = law is RING  # compiled runs support only this law
     radius = simulate(disc, start, times, tolerance=1e-11, contact=None if own else law, compiled=own).radius
     turns = np.flatnonzero(np.diff(np.sign(np.diff(radius)))) + 1
     sizes, instants = [], []
@@ -43,7 +43,7 @@ def simulated_growth(disc, whirl, law, amplitude):
         offset = 0.5 * (a - c) / (a - 2.0 * b + c)
         sizes.append(b - 0.25 * (a - c) * offset)
         instants.append(times[i] + offset * (times[1] - times[0]))
-    # From the third extreme on: what the start left of the fast eigenvalues is gone.
+    # The fast components of the start have decayed by the third extreme.
     extremes, instants = np.array(sizes[2:]), np.array(instants[2:])
     swing = np.abs(np.diff(extremes)) / (2.0 * whirl.radius)
     return (1.0 / swing[0] ** 2 - 1.0 / swing[2] ** 2) / (2.0 * (instants[2] - instants[0]))
@@ -52,8 +52,8 @@ def simulated_growth(disc, whirl, law, amplitude):
 @pytest.mark.parametrize(
     ("law", "which", "amplitude"), [(RING, 0, 0.05), (RING, 1, 0.006), (THREE_TERMS, 0, 0.05)]
 )
-def test_the_growth_of_simulated_modulations_is_the_cube_of_their_amplitude(law, which, amplitude):
-    """The next order is smaller by the square of the amplitude, and extrapolation leaves a tenth of it at most."""
+def test_growth_of_simulated_modulations_is_cubic_in_the_amplitude(law, which, amplitude):
+    """The next order is smaller by the amplitude squared; extrapolation removes 90 % of it."""
     disc, whirl = marginal_whirl(law, which)
     expected = growth_by_amplitude(disc, whirl.state, law)
     assert expected > 0.0
@@ -62,8 +62,8 @@ def test_the_growth_of_simulated_modulations_is_the_cube_of_their_amplitude(law,
     assert small == pytest.approx(expected, rel=0.01)
 
 
-def test_with_23_the_growth_changes_its_sign_along_the_curve():
-    """Near ω = Ω the border is soft, and hard at higher speeds."""
+def test_growth_under_23_changes_sign_along_the_boundary():
+    """The loss of stability is soft near ω = Ω and hard at higher speeds."""
     signs = []
     for speed in (1.28, 2.0):
         (load,) = crossings(replace(PLANE, lower=(1.27, 1e-3)), "Hopf", "disc_speed", speed, THREE_TERMS)
@@ -74,7 +74,7 @@ def test_with_23_the_growth_changes_its_sign_along_the_curve():
 
 
 @pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
-def test_the_whirl_is_at_rest_in_polar_coordinates(law):
+def test_whirl_is_a_fixed_point_in_polar_coordinates(law):
     (whirl,) = whirls(FIG11, law)
     state = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, FIG11.disc_speed - whirl.spin])
     assert polar_rates(FIG11, law)(state) == pytest.approx(np.zeros(4), abs=1e-15)

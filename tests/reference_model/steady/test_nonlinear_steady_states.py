@@ -1,18 +1,16 @@
-"""Equilibria and whirls on a support that hardens and has a stop, against eq. 1 and 19, counts and simulations."""
+"""Equilibria and whirls on hardening supports with stops, against eqs. 1 and 19, searches and simulations."""
 
-import cmath
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import mirrored, points_on_ring, rates, rates_in_turning_axes
+from disc_equations import LARGE, eq_23, mirrored, points_on_ring, rates, rates_in_turning_axes
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from plain_engines import coulomb, support_force
-from plain_engines import rates as rates_of_pin
+from plain_engines import support_force
 from scipy.optimize import brentq
-from test_stability import assert_same_eigenvalues, derivative
+from test_stability import assert_same_eigenvalues, derivative, pin_rates_in_turning_axes, rates_of_eq_1
 
 from compare.claims.parameters import FIG8, FIG11
 from reference_model import (
@@ -25,12 +23,15 @@ from reference_model import (
     why_no_equilibrium,
     why_no_whirl,
 )
-from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas import pin as formulas
-from reference_model.formulas.disc import pin_of, polar_angle, semicircle_residual
-from reference_model.steady.lyapunov_coefficient import polar_rates
-from reference_model.steady.stability import jacobian_without_angle, sliding_jacobian, turning_frame_jacobian
+from reference_model.formulas.disc import pin_of
+from reference_model.steady.stability import (
+    jacobian_without_angle,
+    sliding_jacobian,
+    turning_frame_jacobian,
+    whirl_eigenvalues,
+)
 from reference_model.support import Support
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
@@ -41,49 +42,31 @@ SUPPORTS = [
     {"stop_gap": 0.5, "stop_stiffness": 2.0},
     {"hardening": 5.0, "stop_gap": 0.04, "stop_stiffness": 20.0},
 ]
-STEP = 1e-6
-"""Of differences; their error is some STEP² of third derivatives up to 1e3, and 1e-15/STEP of rounding."""
-
-
-def central_differences(function, point):
-    return np.column_stack(
-        [(function(point + STEP * e) - function(point - STEP * e)) / (2.0 * STEP) for e in np.eye(len(point))]
-    )
-
-
-def in_turning_axes(pin, frequency):
-    """Rates of (1) along axes that turn."""
-
-    def turning(state):
-        turn = np.array([-state[1], state[0], -state[3], state[2]])
-        return rates_of_pin(pin, state, coulomb(pin)) - frequency * turn
-
-    return turning
 
 
 # ---------------------------------------------------------------- the pin's equilibrium
 
 
-@pytest.mark.parametrize("support", SUPPORTS)
+@pytest.mark.parametrize("support", [{}, *SUPPORTS])
 @pytest.mark.parametrize("base", [FIG_5, HEAVY, replace(HEAVY, offset=-0.15)])
-def test_pin_rests_in_its_equilibrium_on_the_semicircle_4(base, support):
+def test_equilibrium_of_the_pin_satisfies_eq_1_and_lies_on_the_semicircle_4(base, support):
     pin = replace(base, **support)
     (found,) = self_centred_equilibria(pin)
-    # Residuals in m/s²; a rounding of the place by 1e-16 moves the stop by that times C_s/m.
-    assert np.abs(rates_of_pin(pin, found.state, coulomb(pin))).max() < 1e-13
+    # A rounding error of 1e-16 m in the position is multiplied by C_s/m.
+    assert np.abs(rates_of_eq_1(pin, found.state)).max() < 1e-13
     assert formulas.semicircle_residual(pin, found.x, found.y) == pytest.approx(0.0, abs=1e-16)
     assert math.hypot(found.x, found.y) == pytest.approx(formulas.equilibrium_radius(pin), rel=1e-13)
     assert math.atan2(found.y, found.x) == pytest.approx(formulas.equilibrium_angle(pin), abs=1e-13)
     pull = math.hypot(*support_force(pin, found.state))
     assert pull == pytest.approx(pin.friction_force, rel=1e-13)
-    jacobian = central_differences(lambda state: rates_of_pin(pin, state, coulomb(pin)), found.state)
-    assert sliding_jacobian(pin, found.state) == pytest.approx(jacobian, abs=1e-6 * np.abs(jacobian).max())
-    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-6)
+    jacobian = derivative(lambda state: rates_of_eq_1(pin, state), found.state)
+    assert sliding_jacobian(pin, found.state) == pytest.approx(jacobian, abs=1e-10 * np.abs(jacobian).max())
+    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-8)
     assert found.stable
 
 
 @pytest.mark.parametrize("support", SUPPORTS)
-def test_equilibrium_exists_up_to_the_force_of_the_support_at_the_offset(support):
+def test_equilibrium_exists_up_to_the_support_force_at_the_offset(support):
     pin = replace(FIG_5, **support)
     most = math.hypot(*support_force(pin, [0.0, 0.0, 0.0, 0.0]))
     assert formulas.largest_load_with_equilibrium(pin) == pytest.approx(most, rel=1e-14)
@@ -103,47 +86,20 @@ def centred(base, **support):
     return replace(base, offset=0.0, **support)
 
 
-WHIRLING = [centred(replace(base, disc_speed=sign * 4.0), **s) for base in (FIG_5, HEAVY) for s in SUPPORTS[:3]
+WHIRLING = [centred(replace(base, disc_speed=sign * 4.0), **s) for base in (FIG_5, HEAVY) for s in [{}, *SUPPORTS[:3]]
             for sign in (1.0, -1.0)]  # fmt: skip
 
 
 @pytest.mark.parametrize("pin", WHIRLING)
-def test_whirl_is_a_fixed_point_of_eq_1_in_turning_axes_with_the_eigenvalues_of_its_differences(pin):
+def test_whirl_of_the_pin_is_a_fixed_point_of_eq_1_in_turning_axes_with_its_jacobian(pin):
     (found,) = whirls(pin)
-    turning = in_turning_axes(pin, found.frequency)
-    assert np.abs(turning(found.state)).max() < 1e-13
+    assert np.abs(pin_rates_in_turning_axes(pin, found.frequency, found.state)).max() < 1e-13
     assert math.copysign(1.0, found.frequency) == math.copysign(1.0, pin.disc_speed)
     assert abs(found.frequency) < abs(pin.disc_speed)
-    jacobian = central_differences(turning, found.state)
+    jacobian = derivative(lambda state: pin_rates_in_turning_axes(pin, found.frequency, state), found.state)
     expected = turning_frame_jacobian(pin)
-    assert expected == pytest.approx(jacobian, abs=1e-6 * np.abs(jacobian).max())
+    assert expected == pytest.approx(jacobian, abs=1e-10 * np.abs(jacobian).max())
     assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(expected), tolerance=1e-11)
-
-
-@given(
-    st.floats(0.1, 10.0),
-    st.floats(0.0, 10.0),
-    st.floats(0.01, 100.0),
-    st.floats(0.01, 1.0),
-    st.floats(0.01, 1.0),
-)
-def test_radius_on_a_cubic_spring_is_the_root_of_a_quadratic_equation(
-    mass, stiffness, hardening, damping, load
-):
-    # C₃ρ⁴ + Cρ² = m(μN/β)², from the balance along the circle, βκρ = μN, and across it, mκ² = C + C₃ρ².
-    right = mass * (load / damping) ** 2
-    squared = 2.0 * right / (stiffness + math.sqrt(stiffness**2 + 4.0 * hardening * right))
-    pin = PinOnDisc(
-        mass=mass,
-        stiffness=stiffness,
-        damping=damping,
-        friction_force=load,
-        hardening=hardening,
-        disc_speed=1e4,
-    )
-    (found,) = whirls(pin)
-    assert found.radius == pytest.approx(math.sqrt(squared), rel=1e-13)
-    assert found.frequency == pytest.approx(load / (damping * found.radius), rel=1e-13)
 
 
 @settings(max_examples=60)
@@ -151,7 +107,7 @@ def test_radius_on_a_cubic_spring_is_the_root_of_a_quadratic_equation(
     st.floats(0.0, 3.0), st.floats(0.0, 30.0), st.floats(0.01, 1.0), st.floats(0.1, 100.0), st.floats(0.02, 1.0),
     st.floats(0.5, 6.0),
 )  # fmt: skip
-def test_pin_has_one_circle_at_most_of_all_that_balance(stiffness, hardening, gap, stop, load, speed):
+def test_whirls_of_the_pin_agree_with_a_search_over_radii(stiffness, hardening, gap, stop, load, speed):
     pin = PinOnDisc(
         mass=1.3, stiffness=stiffness, damping=0.2, friction_force=load, disc_speed=speed, hardening=hardening,
         stop_gap=gap, stop_stiffness=stop,
@@ -168,13 +124,13 @@ def test_pin_has_one_circle_at_most_of_all_that_balance(stiffness, hardening, ga
 
 
 def formulas_turning(pin):
-    """Speed of turning of the circle at the speed μN/β, whether it is a whirl or not."""
+    """Return the angular speed of the circle with the speed μN/β, even if it is not a whirl."""
     radius = formulas.driven_radius(pin, pin.friction_force)
     return formulas.circling_speed(pin, radius)
 
 
 @pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
-def test_where_the_support_would_turn_the_pin_faster_than_the_disc_turns_it_ends_by_sticking(support):
+def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc(support):
     pin = centred(replace(FIG_5, friction_force=0.3), **support)
     assert whirls(pin) == ()
     reason = why_no_whirl(pin)
@@ -186,7 +142,7 @@ def test_where_the_support_would_turn_the_pin_faster_than_the_disc_turns_it_ends
 
 
 @pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
-def test_without_damping_the_circle_grows_until_the_support_turns_the_pin_as_fast_as_the_disc(support):
+def test_circle_of_an_undamped_pin_grows_until_it_turns_as_fast_as_the_disc(support):
     pin = centred(replace(FIG_5, damping=0.0), **support)
     assert whirls(pin) == ()
     assert "as fast as the disc" in why_no_whirl(pin)
@@ -195,7 +151,7 @@ def test_without_damping_the_circle_grows_until_the_support_turns_the_pin_as_fas
     )
     trajectory = simulate(pin, [0.3, 0.0, 0.0, 0.3], np.linspace(0.0, 200.0, 201))
     assert trajectory.phases[-1].kind == "stick"
-    # It sticks within what friction can make up for.
+    # Friction balances the rest of the force.
     stuck = trajectory.radius[-1]
     spare = abs(math.hypot(*support_force(pin, [stuck, 0.0, 0.0, 0.0])) - 1.5**2 * stuck)
     assert spare < pin.friction_force
@@ -231,26 +187,8 @@ OF_A_DISC = [
 ]
 
 
-@pytest.mark.parametrize("law", [Ring, ThreeTermRing, Annulus])
 @pytest.mark.parametrize("support", OF_A_DISC)
-@pytest.mark.parametrize("base", [FIG8, mirrored(FIG8), replace(FIG8, offset=-0.1)])
-def test_equilibrium_of_the_disc_balances_on_the_semicircle(base, support, law):
-    disc = replace(base, damping=0.1, **support)
-    contact = Annulus(0.08, 0.16) if law is Annulus else law(0.12)
-    (found,) = self_centred_equilibria(disc, contact)
-    z = complex(found.x, found.y)
-    force, moment = contact.force_and_moment(-1j * disc.disc_speed * z, disc.disc_speed - found.spin, 0.0)
-    pull = complex(*support_force(pin_of(disc), [found.x, found.y, 0.0, 0.0]))
-    assert pull + disc.friction_force * force == pytest.approx(0.0, abs=1e-13)
-    torque = disc.shaft_damping * (disc.shaft_speed - found.spin)
-    assert torque + disc.friction_force * moment == pytest.approx(0.0, abs=1e-13)
-    assert semicircle_residual(disc, found.x, found.y) == pytest.approx(0.0, abs=1e-15)
-    # The third line of (26): radius and deflection are at a right angle, on any support.
-    assert polar_angle(disc, abs(z), 0.0) == pytest.approx(cmath.phase(z), abs=1e-11)
-
-
-@pytest.mark.parametrize("support", OF_A_DISC)
-def test_eigenvalues_of_the_disc_are_those_of_eq_19(support):
+def test_jacobian_at_the_equilibrium_of_the_disc_is_the_derivative_of_eq_19(support):
     friction_points = 32768
     disc = replace(FIG8, damping=0.1, **support)
     (found,) = self_centred_equilibria(disc)
@@ -267,7 +205,7 @@ def test_eigenvalues_of_the_disc_are_those_of_eq_19(support):
 
 
 def circles_by_radius(disc, contact):
-    """Radii of all whirls, by a search over radii in place of ratios."""
+    """Return the radii of all whirls by a search over radii instead of ratios."""
 
     def lacking(rho):
         turning = math.sqrt(
@@ -298,7 +236,7 @@ def circles_by_radius(disc, contact):
 
 @pytest.mark.parametrize("load", [0.02, 0.0225, 0.026, 0.05, 0.09, 0.2])
 @pytest.mark.parametrize("support", [*OF_A_DISC, {"stop_gap": 0.05, "stop_stiffness": 5.0}])
-def test_disc_has_the_whirls_that_a_search_over_radii_finds(support, load):
+def test_whirls_of_the_disc_agree_with_a_search_over_radii(support, load):
     disc = replace(FIG11, friction_force=load, **support)
     expected = circles_by_radius(disc, Ring(0.12))
     found = whirls(disc)
@@ -308,35 +246,42 @@ def test_disc_has_the_whirls_that_a_search_over_radii_finds(support, load):
         turning = rates_in_turning_axes(
             disc, points_on_ring(disc, 4096), whirl.frequency, np.delete(whirl.state, 2)
         )
-        # 4096 points differ from the ring by their distance squared over the nearness to a point at rest.
+        # The error of 4096 points is their distance squared, divided by the distance to a resting point.
         assert np.abs(turning).max() < 1e-6
         assert abs(whirl.frequency) == pytest.approx(
             math.sqrt(Support.of(disc).secant(whirl.radius)), rel=1e-14
         )
 
 
-@pytest.mark.parametrize("support", OF_A_DISC)
-def test_eigenvalues_of_the_disc_s_whirl_are_those_of_eq_19(support):
-    disc = replace(FIG11, friction_force=0.05, **support)
-    (found,) = whirls(disc)
+LARGE_WHIRLING = replace(LARGE, disc_speed=3.0, offset=0.0, friction_force=1.5)
+
+
+@pytest.mark.parametrize(
+    ("disc", "law"),
+    [
+        (FIG11, Ring),
+        (mirrored(FIG11), Ring),
+        (FIG11, ThreeTermRing),
+        (LARGE_WHIRLING, ThreeTermRing),
+        *((replace(FIG11, friction_force=0.05, **support), Ring) for support in OF_A_DISC),
+    ],
+)
+def test_jacobian_of_a_whirling_disc_is_the_derivative_of_eq_19_in_turning_axes(disc, law):
+    contact = law(disc.contact_radius)
+    friction = eq_23(disc) if law is ThreeTermRing else points_on_ring(disc, 32768)
+    (found,) = whirls(disc, contact)
     part = np.delete(found.state, 2)
-    friction = points_on_ring(disc, 32768)  # one of which nearly rests
     jacobian = derivative(lambda p: rates_in_turning_axes(disc, friction, found.frequency, p), part)
-    assert turning_frame_jacobian(disc, found.state) == pytest.approx(
-        jacobian, abs=1e-9 * np.abs(jacobian).max()
-    )
-    # In polar coordinates there is no phase: the same eigenvalues but the zero.
-    polar = polar_rates(disc, Ring(0.12))
-    whirl = np.array([found.radius, 0.0, found.frequency * found.radius, disc.disc_speed - found.spin])
-    assert np.abs(polar(whirl)).max() < 1e-13
-    # A point of the ring is nearly at rest, where slopes change by 1e-5 of themselves within a step.
-    expected = np.linalg.eigvals(central_differences(polar, whirl))
-    assert_same_eigenvalues(found.eigenvalues[1:], expected, tolerance=2e-5)
+    in_axes = turning_frame_jacobian(disc, found.state, contact)
+    assert in_axes == pytest.approx(jacobian, abs=1e-9 * np.abs(jacobian).max())
+    assert found.eigenvalues == whirl_eigenvalues(disc, found.state, contact)
+    assert found.eigenvalues[0] == 0.0
+    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(in_axes), tolerance=1e-10)
 
 
 def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
     assert onset_load(replace(FIG11, **OF_A_DISC[2])) == onset_load(FIG11)
-    # Just above it the whirl is small, and hardly knows of them: its square grows with the load's excess.
+    # Just above the onset the whirl is small, because its square is proportional to the excess load.
     load = 1.0001 * onset_load(FIG11)
     linear, hard = (
         whirls(replace(disc, friction_force=load)) for disc in (FIG11, replace(FIG11, hardening=40.0))
@@ -349,11 +294,11 @@ def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
 
 
 @pytest.mark.parametrize("support", [{"hardening": 3.0}, {"stop_gap": 0.51, "stop_stiffness": 5.0}])
-def test_orbit_with_an_offset_is_where_a_long_simulation_ends(support):
+def test_long_simulation_ends_on_the_orbit_with_an_offset(support):
     pin = replace(FIG_5, disc_speed=4.0, damping=0.3, friction_force=0.16, **support)
     orbit = whirl_orbit(pin)
     assert orbit.stable
-    if pin.stop_stiffness > 0.0:  # it goes in and out of the stop
+    if pin.stop_stiffness > 0.0:  # the orbit enters and leaves the stop
         d = np.hypot(orbit.trajectory.states[:, 0] - pin.offset, orbit.trajectory.states[:, 1])
         assert d.min() < pin.stop_gap < d.max()
     largest = abs(orbit.multipliers[1])

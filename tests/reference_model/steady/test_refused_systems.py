@@ -1,4 +1,4 @@
-"""What has no steady motion, orbit or boundary is refused with its parameter, its value and what is allowed."""
+"""Error messages of steady motions, orbits and boundaries for systems that have none."""
 
 import math
 from dataclasses import replace
@@ -77,6 +77,11 @@ STEADY = [
         )
     ),
     (equilibrium_eigenvalues, (FIG8,), "state = None"),
+    (
+        equilibrium_eigenvalues,
+        (replace(FIG5, friction_force=0.1),),
+        r"friction_force = 0\.1 N = stiffness.*does not slide",
+    ),
     (growth_by_amplitude, near_the_onset(), "must be one of a complex pair"),
     (ParameterPlane, (replace(FIG11, offset=0.1), *SPEED_LOAD), r"offset = 0\.1 m"),
     (ParameterPlane, (FIG11, ("disc_speed", "contact_points"), *SPEED_LOAD[1:]), "two of mass"),
@@ -166,13 +171,13 @@ ORBITS = [
 
 
 @pytest.mark.parametrize(("function", "arguments", "message"), STEADY)
-def test_what_is_no_steady_motion_is_refused(function, arguments, message):
+def test_system_without_the_steady_motion_is_refused(function, arguments, message):
     with pytest.raises(ValueError, match=message):
         function(*arguments)
 
 
 @pytest.mark.parametrize(("function", "arguments", "message"), ORBITS)
-def test_what_is_no_orbit_is_refused(function, arguments, message):
+def test_system_or_guess_without_an_orbit_is_refused(function, arguments, message):
     if function is basin_boundary:
         arguments = {"ranges": ((-0.3, 0.5), (-0.4, 0.4))} | arguments
     with pytest.raises(ValueError, match=message):

@@ -1,13 +1,14 @@
-"""What is no ensemble is refused at the door, with a sentence that says why."""
+"""Error messages of ensembles and compiled runs for invalid arguments."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from compare.claims.parameters import FIG5
-from reference_model import PinOnDisc
+from compare.claims.parameters import FIG5, FIG9
+from reference_model import Ring, ThreeTermRing, simulate
 from reference_model.ensemble import EndState, simulate_ensemble
 
-HARDENING = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.1, disc_speed=1.0, hardening=2.0)
 START = [0.1, 0.0, 0.0, 0.0]
 
 
@@ -15,7 +16,8 @@ START = [0.1, 0.0, 0.0, 0.0]
     ("system", "states", "options", "message"),
     [
         ("pin", START, {}, r"system = 'pin': it must be a PinOnDisc or a DiscOnDisc"),
-        (HARDENING, START, {}, r"hardening = 2: compiled runs need a linear support"),
+        (replace(FIG5, hardening=2.0), START, {}, r"hardening = 2: compiled runs need a linear support"),
+        (replace(FIG9, contact_points=25), [0.1] * 6, {}, r"contact_points = 25: .* support up to 24"),
         (FIG5, [0.1, 0.0], {}, r"initial_states has shape \(1, 2\): PinOnDisc takes 4 numbers"),
         (FIG5, np.zeros((0, 4)), {}, r"initial_states has shape \(0, 4\)"),
         (FIG5, [START, [0.1, 0.0, np.nan, 0.0]], {}, r"initial_states\[1, 2\] = nan: it must be finite"),
@@ -34,19 +36,42 @@ START = [0.1, 0.0, 0.0, 0.0]
         (FIG5, [START] * 2, {"parameters": {"offset": [0.1] * 3}}, r"initial_states is for 2 trajectories"),
     ],
 )  # fmt: skip
-def test_bad_input_is_refused_with_its_name_and_what_is_allowed(system, states, options, message):
+def test_invalid_ensemble_is_refused(system, states, options, message):
     with pytest.raises(ValueError, match=message):
         simulate_ensemble(system, states, **({"duration": 10.0} | options))
 
 
-def test_one_start_serves_all_parameters():
+@pytest.mark.parametrize(
+    ("system", "options", "message"),
+    [
+        (replace(FIG5, hardening=2.0), {}, "hardening = 2: compiled runs need a linear support"),
+        (
+            replace(FIG9, stop_gap=0.1, stop_stiffness=3.0), {},
+            "stop_stiffness = 3: compiled runs need a linear support",
+        ),
+        (replace(FIG9, contact_points=25), {}, "contact_points = 25: compiled runs support up to 24"),
+        (FIG9, {"contact": ThreeTermRing(0.1)}, "compiled runs support only the law of the system's parameters"),
+        (FIG5, {"contact": Ring(0.1)}, "a pin has point contact"),
+        (FIG5, {"tolerance": 1.0}, "tolerance = 1: it must lie between"),
+        (FIG5, {"times": [0.0, -1.0]}, "times must increase"),
+        (FIG5, {"initial_state": [0.0]}, "initial_state"),
+        ("pin", {}, "it must be a PinOnDisc or a DiscOnDisc"),
+    ],
+)  # fmt: skip
+def test_invalid_compiled_run_is_refused(system, options, message):
+    arguments = {"initial_state": [0.1] * getattr(system, "state_size", 4), "times": [0.0, 1.0]} | options
+    with pytest.raises(ValueError, match=message):
+        simulate(system, compiled=True, **arguments)
+
+
+def test_one_start_is_used_for_all_parameters():
     loads = np.array([0.09, 0.5])
     found = simulate_ensemble(FIG5, START, duration=400.0, parameters={"friction_force": loads})
     assert found.end.tolist() == [EndState.SELF_CENTRED, EndState.STUCK]
     assert found.states.shape == (2, 4)
 
 
-def test_results_do_not_change():
+def test_results_are_immutable():
     found = simulate_ensemble(FIG5, START, duration=10.0)
     with pytest.raises(ValueError, match="read-only"):
         found.end[0] = 3

@@ -1,0 +1,99 @@
+"""Properties of the compiled code itself: reproducible, vectorised, and compiled as rarely as possible."""
+
+import platform
+import re
+import subprocess
+import sys
+from dataclasses import replace
+
+import numba
+import numpy as np
+import pytest
+from plain_engines import stuck_state
+
+from compare.claims.parameters import FIG5, FIG9, FIG11
+from reference_model import simulate
+from reference_model.ensemble import chunks, simulate_ensemble
+from reference_model.ensemble.core.records import layout
+from reference_model.ensemble.disc import kernel as disc_kernel
+from reference_model.ensemble.disc.lanes import DiscLanes
+from reference_model.ensemble.pin import lanes as pin_lanes
+from reference_model.ensemble.pin.kernel import run_pins
+
+SIX = replace(FIG11, contact_points=6)
+ARM = platform.machine() in ("arm64", "aarch64")
+VECTOR_ROOT, SCALAR_ROOT = (r"fsqrt\s+v", r"fsqrt\s+d") if ARM else (r"v?sqrtpd", r"v?sqrtsd")
+
+
+def random_starts(system, number):
+    """Return starts with slip, and for a disc one more without slip."""
+    rng = np.random.default_rng(0)
+    size = system.state_size
+    starts = np.zeros((number, size))
+    starts[:, 0], starts[:, size // 2] = rng.uniform(-0.3, 0.5, number), rng.uniform(-0.4, 0.4, number)
+    if size == 4:
+        return starts
+    starts[:, 5] = rng.uniform(0.0, 1.5, number)
+    return np.concatenate((starts, [stuck_state(system, 0.1, 0.0)]))
+
+
+@pytest.mark.parametrize(
+    ("system", "duration", "chunk"),
+    [(FIG5, 80.0, 7), (FIG11, 20.0, 100), (SIX, 20.0, 100)],
+    ids=["pin", "ring", "points"],
+)
+def test_neighbours_chunks_and_threads_do_not_change_a_single_bit(system, duration, chunk, monkeypatch):
+    def results(starts, threads=1):
+        return vars(simulate_ensemble(system, starts, duration=duration, threads=threads))
+
+    def assert_same(one, other, which=slice(None)):
+        for name, values in one.items():
+            np.testing.assert_array_equal(values[which], other[name], err_msg=name)
+
+    starts = random_starts(system, 150)
+    order = np.random.default_rng(1).permutation(len(starts))
+    together = results(starts)
+    assert_same(together, results(starts, threads=2))
+    assert_same(together, results(starts[order], threads=2), order)
+    assert_same(together, results(starts[17]), slice(17, 18))
+    monkeypatch.setattr(chunks, "CHUNK", chunk)
+    assert_same(together, results(starts, threads=3))
+
+
+@pytest.mark.parametrize(
+    ("advance", "lanes", "around", "roots"),
+    [
+        (pin_lanes.advance, pin_lanes.PinLanes, None, 16),
+        (disc_kernel._advance_rings, DiscLanes, (), 40),
+        (disc_kernel._advance_points, DiscLanes, (1.0, 0.0, -0.5, 0.8, -0.5, -0.8), 40),
+    ],
+    ids=["pin", "ring", "points"],
+)
+def test_step_of_all_lanes_is_vectorised(advance, lanes, around, roots):
+    caller = numba.njit(lambda lanes, around: advance(lanes, around))
+    caller.compile((numba.from_dtype(layout(lanes)), numba.typeof(around)))
+    code = "\n".join(caller.inspect_asm().values())
+    # Each of thirteen right-hand sides takes at least one root for a pin and three for a disc.
+    assert len(re.findall(VECTOR_ROOT, code)) >= roots
+    assert not re.search(SCALAR_ROOT, code)
+
+
+def test_one_kernel_serves_a_single_pin_and_many():
+    for parameters in ({}, {"mass": [1.0, 1.1]}):
+        simulate_ensemble(FIG5, [0.1, 0.0, 0.0, 0.0], duration=1.0, parameters=parameters)
+    assert len(run_pins.kinds) == 1
+
+
+def test_one_kernel_serves_discs_with_and_without_stick():
+    simulate(SIX, [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0], compiled=True)
+    known = len(disc_kernel.run_points.kinds)
+    disc = replace(FIG9, friction_force=2.0 * FIG9.friction_force, contact_points=6)
+    found = simulate(disc, stuck_state(disc, -0.02, 0.0), [0.0, 40.0], compiled=True)
+    assert found.stick_phases
+    assert found.phases[-1].kind == "slip"
+    assert len(disc_kernel.run_points.kinds) == known
+
+
+def test_plain_reference_does_not_import_the_compiler():
+    code = "import sys, reference_model; sys.exit('numba' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
