@@ -199,10 +199,14 @@ class AxialStick:
         """Return S = φ̇ − ω in rad/s."""
         return float(sum(map(mul, self.gradient(q), q_t)))
 
+    @cached_property
+    def mean_radius(self) -> float:
+        """P over |S| of a disc that turns in place, in m."""
+        return mean_radius(self.factors.geometry)
+
     def sliding_moment(self, t: float, spin: float) -> float:
         """Return the magnitude of the moment in N m at the time t (s) and the relative spin (rad/s)."""
-        radius = mean_radius(self.factors.geometry)
-        return radius * self.factors.friction_force(t, 0.0, radius * abs(spin), spin)
+        return self.mean_radius * self.factors.friction_force(t, 0.0, self.mean_radius * abs(spin), spin)
 
     def limits(self, t: float) -> tuple[float, float]:
         """Return the largest moments in N m of a locked contact against sliding forward and backward, at t (s).
@@ -217,7 +221,7 @@ class AxialStick:
     @property
     def slides(self) -> bool:
         """True if the contact slides under a load."""
-        return self.mode in (Mode.FORWARD, Mode.BACKWARD)
+        return self.mode == 1 or self.mode == -1  # called at every evaluation
 
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, but for that of the constraint while the contact is locked."""
@@ -252,6 +256,8 @@ class AxialStick:
                 "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
                 "give add_ring_friction a regularisation for any other solver"
             )
+        if not self.slides:
+            return [0.0] * len(q)
         gradient = self.gradient(q)
         moment = self.moment(t, sum(map(mul, gradient, q_t)))
         return [moment * share for share in gradient]
@@ -271,7 +277,7 @@ class AxialStick:
         slope = 0.0
         spin = float(gradient @ q_t)
         if self.factors.depends_on_motion and self.slides and int(self.mode or 0) * spin > 0.0:
-            radius = mean_radius(self.factors.geometry)
+            radius = self.mean_radius
             _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
             slope = int(self.mode or 0) * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
         return velocity_factor * slope * np.outer(gradient, gradient)

@@ -20,7 +20,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
-from exudyn_models.forces.friction_laws import mean_radius
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     jacobian_of_slip,
@@ -70,11 +69,6 @@ class PlanarStick(AxialStick):
 
     def __post_init__(self) -> None:
         self.set_basis(self.basis)
-
-    @property
-    def mean_radius(self) -> float:
-        """P over |S| of a disc that turns in place, in m."""
-        return mean_radius(self.factors.geometry)
 
     def allow(self, slips: FloatArray) -> None:
         """Set the basis to the span of possible ``slips``, shape (3, n); a pin does not resist spin."""

@@ -203,8 +203,8 @@ class _Run:
                 self._accelerations = data.GetODE2Coordinates_tt()
                 return True
             now = self._margins_at(t)
-            if (now < 0.0).any():
-                passed = t, (margins, now)
+            if min(now) < 0.0:
+                passed = t, (np.array(margins), np.array(now))
             if passed is not None or not self._slides.resolves(t - self._reached):
                 self._take_back()
                 return False
@@ -237,8 +237,8 @@ class _Run:
 
         self._part(self._reached + self._step, 1, end, write=False, keep=False, settles=True)
 
-    def _margins_at(self, t: float) -> FloatArray:
-        return np.array([contact.margin(self._mbs, t) for contact in self._contacts])
+    def _margins_at(self, t: float) -> list[float]:
+        return [contact.margin(self._mbs, t) for contact in self._contacts]
 
     def _try(self, t: float) -> FloatArray:
         """Return the margins after one step to the time t (s) that is not kept."""
@@ -247,7 +247,7 @@ class _Run:
         def look(time: float) -> bool:
             nonlocal found
             if time > self._reached:
-                found = self._margins_at(time)
+                found = np.array(self._margins_at(time))
                 return False
             return True
 
