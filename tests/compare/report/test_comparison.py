@@ -15,8 +15,6 @@ from compare.run.runner import run
 
 pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
-PLACES = "the pin comes to rest at the point of eq. (3)"
-
 
 def written(folder, measure=measure_verdicts, studies=(), engine=GOOD):
     """Return the folder of a report of ``studies`` and a handmade study."""

@@ -148,13 +148,13 @@ def test_a_process_never_works_for_two_engines(workers):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-def test_the_copy_of_a_process_does_not_answer_in_its_place(workers):
+def test_a_forked_worker_does_not_answer_twice(workers):
     assert isinstance(workers.ask(os.fork), int)
     assert workers.ask(len, "four") == 4
 
 
 @pytest.mark.skipif(os.name != "posix", reason="this system has no process groups")
-def test_processes_that_work_has_started_end_with_it():
+def test_child_processes_of_a_worker_end_with_it():
     with Workers() as workers:
         child = workers.ask(start_a_child)
     wait_until(lambda: not is_alive(child))

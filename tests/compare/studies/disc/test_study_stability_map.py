@@ -1,4 +1,4 @@
-"""The study of the stability map: its text says what it finds."""
+"""The study of the stability map: its text contains its results."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from compare.studies.toolkit.fig11 import LAWS, PLANES, curves_in
 from reference_model.steady.bifurcation_curves import crossings
 
 
-def test_a_curve_that_is_a_little_off_does_not_pass():
+def test_a_slightly_shifted_curve_differs():
     (curve,) = curves_in("inertia", "Hopf", "(23)", step=0.2)
     shifted = replace(curve, alpha=curve.alpha + 1e-7)
     for points, verdict in ((curve, Verdict.AGREES), (shifted, Verdict.DIFFERS)):
@@ -23,7 +23,7 @@ def test_a_curve_that_is_a_little_off_does_not_pass():
         assert found.verdict is verdict
 
 
-def test_a_rotation_that_is_damped_a_little_more_needs_another_remedy(monkeypatch):
+def test_slightly_wrong_damping_of_the_rotation_changes_the_remedies(monkeypatch):
     growth = borders.growth_of_rotation
     monkeypatch.setattr(
         borders,
@@ -35,13 +35,13 @@ def test_a_rotation_that_is_damped_a_little_more_needs_another_remedy(monkeypatc
     assert np.all(claim.difference > claim.budget.total)
 
 
-def test_without_a_border_there_is_no_change_of_stability():
+def test_a_change_of_stability_needs_a_border():
     value, _ = theory.change_of_stability("friction_force", 0.024, LAWS["ring"])
     assert np.isnan(value)
 
 
-def test_the_text_gives_the_numbers_of_the_map():
-    """What is said to an engineer, from the curves."""
+def test_the_text_contains_the_numbers_of_the_map():
+    """Compare the advice to engineers with the curves."""
     disc, ring = DISC, LAWS["ring"]
     text = filled(STUDY.prose.paper, STABILITY_MAP.found("theory").claims)
 

@@ -1,4 +1,4 @@
-"""The study of the clutch's scale: its systems are those of the paper in other units."""
+"""The study of the clutch's scale: its systems are the paper's in other units."""
 
 import pytest
 from tested_studies import CLUTCH_SCALE
