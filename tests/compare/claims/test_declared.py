@@ -1,6 +1,5 @@
 """Declared claims: properties known before the measurement, and results of the measurement."""
 
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -157,13 +156,6 @@ def test_a_claim_needs_a_resolution():
 
 def unresolved(engine):
     return Measured(predicted=1.0, value=1.0)
-
-
-def test_a_study_goes_to_another_process():
-    study = study_of()
-    study.claim("It is", resolution=1.0)(unresolved)
-    again = pickle.loads(pickle.dumps(study))
-    assert [claim.identity for claim in again.measure(ENGINE).claims] == ["rest/unresolved"]
 
 
 PROSE = """# A title

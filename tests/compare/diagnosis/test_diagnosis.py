@@ -197,7 +197,3 @@ def test_recorded_engines_have_rows_like_the_others(tmp_path):
     assert content[-1]["sentences"] == ["Errors are of order 1.0 in the tolerance."]
     write_picture([*rows, mine], tmp_path)
     assert (tmp_path / "matrix.png").stat().st_size > 10_000
-
-
-def test_ring_and_disc_have_the_same_times():
-    assert np.all(MOTIONS["ring"].times == MOTIONS["disc"].times)

@@ -36,13 +36,6 @@ def test_engine_names_are_known_without_an_import(name, monkeypatch):
     assert known_name(name) == name
 
 
-def test_an_unknown_setting_gets_a_suggestion():
-    with pytest.raises(ValueError, match=r"unknown setting of mujoco 'piramid': did you mean 'pyramid'\?"):
-        engines(["mujoco:piramid"])
-    with pytest.raises(ValueError, match=r"unknown engine 'mujocco': did you mean 'mujoco'\?"):
-        engines(["mujocco"])
-
-
 def test_the_default_setting_is_the_first():
     first = live("chipmunk")
     assert live("chipmunk:") == first == live("chipmunk:pivot")

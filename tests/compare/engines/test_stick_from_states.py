@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from faults.plain import simulate as viscous_near_rest
 from scipy.integrate import solve_ivp
 
 import reference_model
@@ -116,20 +115,6 @@ def test_a_body_at_rest_does_not_stick_if_friction_cannot_hold_it(force, kinds):
     start = (place - 0.5 * stops**2, 0.0, stops, 0.0)
     found = engine(stopping, phases=False).simulate(BLOCK, start, TIMES)
     assert [phase.kind for phase in found.phases] == kinds
-
-
-def test_stick_under_a_regularised_law_converges_with_the_tolerance():
-    def creeping(pin, start, times, *, tolerance):
-        return viscous_near_rest(pin, start, times, tolerance=tolerance)
-
-    exact = told(FIG5, FIG5_STARTS["equilibrium"], TIMES).stick_times
-    off = []
-    for tolerance in (1e-6, 1e-7):
-        found = engine(creeping, phases=False).simulate(
-            FIG5, FIG5_STARTS["equilibrium"], TIMES, tolerance=tolerance
-        )
-        off.append(np.max(np.abs(found.stick_times - exact)))
-    assert off[1] < 0.5 * off[0] < 0.05
 
 
 def test_stick_is_searched_only_if_the_engine_does_not_report_phases():

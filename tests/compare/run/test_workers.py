@@ -71,11 +71,6 @@ def test_any_end_of_a_process_is_reported_without_a_traceback(function, argument
     assert capfd.readouterr().err == ""
 
 
-def warn(text):
-    print(text, file=sys.stderr, flush=True)
-    return len(text)
-
-
 def done(function, *arguments):
     with Workers(2) as workers:
         workers.submit("key", function, *arguments)
@@ -129,11 +124,6 @@ def test_a_sudden_end_is_reported_with_the_last_line_on_standard_error(workers, 
 def test_output_of_a_worker_is_made_printable(workers, capfd):
     assert workers.ask(speak, "\x1b[31m \x9b") is None
     assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
-
-
-def test_what_a_worker_writes_to_its_standard_error_is_not_lost(workers, capfd):
-    assert workers.ask(warn, "once") == 4
-    assert capfd.readouterr().err == "once\n"
 
 
 def spoil(module):

@@ -3,11 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
-from tested_studies import STABILITY_MAP
 
 from compare.claims.claim import Verdict
-from compare.report.numbers import with_digits
-from compare.report.quotes import filled
 from compare.studies.disc.stability_map import STUDY, borders, theory
 from compare.studies.disc.stability_map.theory import DISC
 from compare.studies.toolkit.fig11 import LAWS, PLANES, curves_in
@@ -40,50 +37,12 @@ def test_a_change_of_stability_needs_a_border():
     assert np.isnan(value)
 
 
-def test_the_text_contains_the_numbers_of_the_map():
-    """Compare the advice to engineers with the curves."""
-    disc, ring = DISC, LAWS["ring"]
-    text = filled(STUDY.prose.paper, STABILITY_MAP.found("theory").claims)
-
-    def borders(plane, name, kind="Hopf", law=ring):
-        fixed = next(other for other in PLANES[plane].names if other != name)
-        return crossings(PLANES[plane], kind, fixed, getattr(disc, fixed), law)
-
-    def percent(value, of, digits=2):
-        change = 100.0 * (value / of - 1.0)
-        return "+" * (change > 0.0) + with_digits(change, digits)
-
-    for plane, name, digits in (
-        ("load", "friction_force", 4),
-        ("dampers", "shaft_damping", 4),
-        ("dampers", "damping", 3),
-    ):
-        here = getattr(disc, name)
-        for value in borders(plane, name):
-            assert f"{value:.{digits}f}" in text
-            assert f"({percent(value, here)} %)" in text
-    near = theory.nearest(borders("speeds", "shaft_speed"), disc.shaft_speed)
-    for value in near:
-        assert f"{value:.3f}" in text
-    (inertia,) = borders("inertia", "polar_inertia")
-    assert f"{inertia:.2f} kg m² ({percent(inertia, disc.polar_inertia)} %)" in text
-
-    (damping,) = borders("dampers", "damping", "onset")
-    (shaft_damping,) = borders("dampers", "shaft_damping", "onset")
-    (load,) = borders("load", "friction_force", "onset")
-    shaft_speed = min(borders("speeds", "shaft_speed", "onset"))
-    slip = (disc.disc_speed - shaft_speed) / (disc.disc_speed - disc.shaft_speed)
-    remedies = (
-        shaft_damping / disc.shaft_damping,
-        slip,
-        damping / disc.damping,
-        load / disc.friction_force,
-    )
-    words = "{} % of shaft damping on, {} % of slip speed ω − Ω, {} % of damping of the springs, "
-    words += "or {} % of friction force"
-    assert words.format(*(percent(ratio, 1.0, 3) for ratio in remedies)) in text
-
-    three = LAWS["(23)"]
-    limits = [borders("load", "friction_force", kind, three)[0] for kind in ("fold", "Hopf", "onset")]
+def test_the_text_contains_the_limits_of_the_expansion_in_the_load():
+    """Check numbers that are not quoted from claims."""
+    limits = [
+        crossings(PLANES["load"], kind, "disc_speed", DISC.disc_speed, LAWS["(23)"])[0]
+        for kind in ("fold", "Hopf", "onset")
+    ]
     assert [f"{value:.4f}" for value in limits] == ["0.0197", "0.0202", "0.0205"]
-    assert "only between 0.0197 and 0.0202 N, below the onset at 0.0205 N" in text
+    words = "only between 0.0197 and 0.0202 N, below the onset at 0.0205 N"
+    assert words in STUDY.prose.paper.replace("\n", " ")
