@@ -16,7 +16,7 @@ def test_the_table_of_equations_is_current(table):
     assert found == table["text"](), "run python docs/write_equations.py"
 
 
-def test_every_equation_has_a_function_and_but_for_definitions_a_claim(table):
+def test_every_equation_has_a_function_and_except_for_definitions_a_claim(table):
     assert len(table["EQUATIONS"]) == 26
     assert [number for number, found in table["functions"]().items() if not found] == []
     assert [number for number, found in table["claims"]().items() if not found] == [2, 24, 25]
@@ -31,5 +31,5 @@ def test_every_equation_has_a_function_and_but_for_definitions_a_claim(table):
         ("shape (n, 4) of 27, (27)", set()),
     ],
 )
-def test_equations_are_read_off_docstrings(table, text, numbers):
+def test_citations_in_docstrings_are_parsed(table, text, numbers):
     assert table["cited"](text) == numbers

@@ -55,7 +55,7 @@ def root(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_the_texts_contain_the_kept_numbers():
+def test_the_texts_contain_the_stored_numbers():
     assert list(BUILDER["outdated"](ROOT)) == []
     names = {study.name for study in STUDIES} | {"claims", "verdicts"}
     assert {name.partition(":")[0] for name in BUILDER["wanted"](ROOT)} <= names
@@ -87,7 +87,7 @@ def test_a_report_writes_its_numbers(root):
     assert list(BUILDER["deviations"](results(), root)) == []
 
 
-def test_a_text_without_the_kept_numbers_is_noticed(root):
+def test_a_text_without_the_stored_numbers_is_detected(root):
     BUILDER["write"](results(), root)
     assert list(BUILDER["outdated"](root)) == []
     (root / "README.md").write_text("All 12 claims, 3.14 times.\n")
@@ -100,7 +100,7 @@ def test_a_text_without_the_kept_numbers_is_noticed(root):
     assert list(BUILDER["outdated"](root)) == ["docs/numbers.json lacks or does not need ['fig05: speed']"]
 
 
-def test_numbers_that_a_report_did_not_measure_stay(root):
+def test_numbers_missing_from_a_report_are_kept(root):
     BUILDER["write"](results(), root)
     before = BUILDER["kept"](root)
     BUILDER["write"](results(measured=0.06, error=1e-3, whole=False), root)
@@ -110,7 +110,7 @@ def test_numbers_that_a_report_did_not_measure_stay(root):
     assert list(BUILDER["deviations"](results(whole=False) | {"studies": []}, root)) == []
 
 
-def test_a_name_that_no_claim_has_is_an_error_of_a_whole_report():
+def test_an_unknown_name_is_an_error_of_a_complete_report():
     assert BUILDER["number_in"](results(whole=False), "fig05: nothing") is None
     with pytest.raises(ValueError, match="'fig05: nothing': no claim of the study 'fig05' has that name"):
         BUILDER["number_in"](results(), "fig05: nothing")
@@ -128,13 +128,13 @@ def test_a_name_that_no_claim_has_is_an_error_of_a_whole_report():
         ({"error": 0.9e-7}, {ERROR}),
     ],
 )
-def test_numbers_deviate_by_more_than_their_nature_allows(root, changed, deviating):
+def test_deviations_beyond_the_error_are_reported(root, changed, deviating):
     BUILDER["write"](results(), root)
     sentences = BUILDER["deviations"](results(**changed), root)
     assert {sentence.rpartition(": docs/")[0] for sentence in sentences} == deviating
 
 
-def test_a_quote_in_a_study_that_no_claim_has_is_an_error_of_a_whole_report():
+def test_a_quote_without_a_claim_is_an_error_of_a_complete_report():
     found = list(BUILDER["unmeasured"](results()))
     assert "basins: no claim has 'share at 1.5 rad/s, %, 3 digits'" in found
     assert list(BUILDER["unmeasured"](results(whole=False))) == []

@@ -26,7 +26,7 @@ def is_clean(text):
 
 
 @given(st.one_of(ANYTHING, ANYTHING.map(lambda text: text * 500)))
-def test_any_text_can_be_encoded_shown_and_read_from_xml(text):
+def test_any_text_can_be_encoded_shown_and_parsed_from_xml(text):
     shown = printable(text)
     assert is_clean(shown)
     assert len(shown) <= MOST
@@ -38,11 +38,11 @@ def test_any_text_can_be_encoded_shown_and_read_from_xml(text):
 
 
 @given(st.text(st.characters(categories=("L", "N", "P", "S")), max_size=MOST))
-def test_text_that_prints_stays_as_it_is(text):
+def test_printable_text_is_unchanged(text):
     assert printable(text) == text
 
 
-def test_what_does_not_print_is_escaped_and_a_long_text_keeps_both_ends():
+def test_unprintable_characters_are_escaped_and_a_long_text_keeps_both_ends():
     assert printable(HOSTILE) == SHOWN
     assert all_printable({HOSTILE: [HOSTILE, 1.5, None]}) == {SHOWN: [SHOWN, 1.5, None]}
     long = printable("begin" + "\x1b" * 20_000_000 + "end")
@@ -80,7 +80,7 @@ def hostile(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("command", ["report verdicts", "matrix --output out", "simulate pin"])
 @pytest.mark.usefixtures("in_this_process")
-def test_a_command_shows_and_writes_what_an_engine_says(command, hostile, tmp_path, capfd):
+def test_hostile_text_of_an_engine_is_shown_and_written_escaped(command, hostile, tmp_path, capfd):
     assert cli.status([*command.split(), "--engine", hostile], fake_studies.ALL) == 1
     out, err = capfd.readouterr()
     assert is_clean(out + err)
@@ -94,7 +94,7 @@ def test_a_command_shows_and_writes_what_an_engine_says(command, hostile, tmp_pa
             assert SHOWN in [error.get("message") for error in ET.fromstring(content).iter("error")]
 
 
-def test_a_comparison_shows_what_stands_in_a_report_of_others(reported, tmp_path, capsys):
+def test_a_comparison_escapes_hostile_text_of_a_report(reported, tmp_path, capsys):
     results = json.loads((reported[1] / "results.json").read_text("utf-8"))
     for study in results["studies"]:
         study["claims"] = []

@@ -127,7 +127,9 @@ def test_every_claim_is_collected_once(tmp_path):
         (("reference", "mine:sliding"), (), NOTHING_MEASURED),
     ],
 )
-def test_the_status_says_what_was_not_measured_also_without_a_terminal(names, options, expected, tmp_path):
+def test_the_status_reports_missing_measurements_without_a_terminal_plugin(
+    names, options, expected, tmp_path
+):
     status, *_ = judge(tmp_path, "sticking-domain", *names, options=(*options, "-p", "no:terminal"))
     assert status == expected
 
@@ -154,7 +156,7 @@ def test_every_claim_is_a_test_of_every_engine(judged):
     assert set(cases) == {f"{claim} [{engine}]" for claim in CLAIMS["sticking-domain"] for engine in engines}
 
 
-def test_a_right_engine_passes_beside_those_that_fail(judged):
+def test_a_correct_engine_passes_next_to_failing_ones(judged):
     _, _, cases = judged
     assert {cases[f"{claim} [reference]"][0] for claim in CLAIMS["sticking-domain"]} == {"passed"}
 
@@ -199,7 +201,7 @@ def of_pins_that_slide(claim):
     return claim.split(": ")[1].startswith(("a pin", "pins")) and "stick" not in claim
 
 
-def test_on_several_cores_every_claim_is_told_once(tmp_path):
+def test_on_several_cores_every_claim_is_reported_once(tmp_path):
     status, output, cases = judge(
         tmp_path, "sticking-domain", "mine:sliding", options=("-n", "2"), run=run_by_itself
     )
@@ -228,7 +230,7 @@ def example(tmp_path):
     return tmp_path
 
 
-def test_the_example_fails_where_it_ignores_its_error_passes_mended_and_is_open_where_it_is_rough(example):
+def test_the_example_fails_without_its_error_and_passes_with_it(example):
     """The number of inconclusive claims of the coarse engine depends on the remaining time."""
     allowed = {
         "example:euler": {"failure"},
@@ -281,7 +283,7 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("arguments", "expected", "sentence"), REFUSED, ids=[one[2] for one in REFUSED])
-def test_what_cannot_be_judged_is_refused_at_once(arguments, expected, sentence, tmp_path):
+def test_invalid_options_are_rejected_at_once(arguments, expected, sentence, tmp_path):
     status, output, _ = run(tmp_path, *arguments.split())
     assert status == expected
     assert sentence in output

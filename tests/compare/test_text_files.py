@@ -34,20 +34,20 @@ def fail_to_write(path, error):
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
-def test_the_older_file_stays_when_writing_fails(error, file):
+def test_the_older_file_stays_if_writing_fails(error, file):
     with pytest.raises(error):
         fail_to_write(file, error)
     assert file.read_text() == OLD
     assert alone(file)
 
 
-def test_nothing_is_left_where_there_was_no_file(tmp_path):
+def test_a_failed_new_file_is_removed(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         fail_to_write(tmp_path / "new.csv", KeyboardInterrupt)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_link_leads_to_the_new_file_which_may_be_read_by_whoever_read_the_older_one(file, tmp_path):
+def test_link_and_permissions_of_a_replaced_file_are_kept(file, tmp_path):
     file.chmod(0o640)
     link = tmp_path / "link.csv"
     link.symlink_to(file)
@@ -59,13 +59,13 @@ def test_a_link_leads_to_the_new_file_which_may_be_read_by_whoever_read_the_olde
     assert alone(file)
 
 
-def test_what_is_no_ordinary_file_is_written_to_as_it_is():
+def test_a_device_is_written_directly():
     with replacing(Path(os.devnull)) as stream:
         stream.write("new\n")
     assert not Path(os.devnull).is_file()
 
 
-def test_a_check_leaves_everything_as_it_is(file):
+def test_a_check_of_a_path_changes_nothing(file):
     before = file.stat()
     check_writable(file)
     check_writable(file.with_name("new.csv"))
@@ -86,9 +86,7 @@ FAILURES = [
 
 
 @pytest.mark.parametrize(("error", "status", "sentence"), FAILURES, ids=["Ctrl-C", "full disk"])
-def test_a_motion_that_is_only_half_written_leaves_the_older_file(
-    error, status, sentence, file, monkeypatch, capsys
-):
+def test_a_half_written_motion_leaves_the_older_file(error, status, sentence, file, monkeypatch, capsys):
     whole = WRITERS[file.suffix]
 
     def failing(trajectory, engine, stream):

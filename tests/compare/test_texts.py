@@ -47,7 +47,7 @@ def wrong(text):
 
 
 @pytest.mark.parametrize("text", ["section 6", "Figs. 9 and 12", "eq. 27", "Section 0"])
-def test_what_the_paper_has_not_is_noticed(text):
+def test_a_citation_outside_the_paper_is_found(text):
     assert len(wrong(text)) == 1
 
 
@@ -66,7 +66,7 @@ def equations_of_claims():
                         yield path.name, each.value
 
 
-def test_equations_of_claims_are_numbers_that_the_paper_has():
+def test_equations_of_claims_exist_in_the_paper():
     found = list(equations_of_claims())
     assert len(found) > 60
     for _, equation in found:
@@ -74,7 +74,7 @@ def test_equations_of_claims_are_numbers_that_the_paper_has():
         assert all(1 <= int(number) <= EQUATIONS for number in re.findall(r"\d+", equation)), equation
 
 
-def test_parentheses_that_stand_for_an_equation_do_so_in_every_text_of_a_study():
+def test_numbers_in_parentheses_in_texts_of_studies_are_equations():
     for study in STUDIES:
         for text in (study.title, study.prose.paper, study.prose.finding, *study.figures.values()):
             assert all(1 <= number <= EQUATIONS for number in map(int, re.findall(r"\((\d+)\)", text))), text
@@ -88,7 +88,7 @@ def test_no_unit_is_changed_by_the_case_of_a_sentence():
                 assert node.func.attr not in ("capitalize", "swapcase") or node.args, path
 
 
-def test_a_percentage_stands_off_its_sign():
+def test_a_space_separates_a_percentage_from_its_sign():
     """A space separates the number, as for any unit; Python's own format writes "1%"."""
     for path in (*SOURCES, *PAGES):
         text = path.read_text(encoding="utf-8")
@@ -97,7 +97,7 @@ def test_a_percentage_stands_off_its_sign():
             assert not re.findall(r"\d%(?!\w)", text), path
 
 
-def test_no_text_names_a_document_that_is_not_there():
+def test_every_named_document_exists():
     names = {path.name for path in ROOT.rglob("*.md") if ".venv" not in path.parts}
     for path in (*SOURCES, *PAGES, *sorted((ROOT / "tests").rglob("*.py"))):
         for name in re.findall(r"[\w./-]+\.md\b", path.read_text(encoding="utf-8")):

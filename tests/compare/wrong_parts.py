@@ -328,10 +328,3 @@ def full_disc_as_a_ring(patch):
 def full_disc_with_a_small_hole(patch):
     """Give a full disc a hole of 2 % of its radius."""
     patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
-
-
-def part_with_a_small_hole(patch):
-    """Give Exudyn's friction part a hole of 2 % of its radius."""
-    add = exudyn_models.add_ring_friction
-    hole = {"inner_radius": 0.02 * thrown_disc.RADIUS}
-    patch.setattr(exudyn_models, "add_ring_friction", lambda *nodes, **contact: add(*nodes, **contact | hole))

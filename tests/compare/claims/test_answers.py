@@ -40,13 +40,13 @@ def of(*margins_and_errors, **more):
         ([1.0, 1.0], [0.1, np.inf], Verdict.INCONCLUSIVE, "1 of 2"),
     ],
 )
-def test_answers_are_counted_by_what_is_sure(margins, errors, verdict, count):
+def test_only_certain_answers_are_counted(margins, errors, verdict, count):
     claim = of(margins, errors)
     assert claim.verdict is verdict
     assert in_short(claim) == count
 
 
-def test_so_many_answers_may_be_open_as_are_allowed():
+def test_the_allowed_number_of_answers_may_be_open():
     margins = np.append(np.ones(1998), [0.0, 0.0])
     assert of(margins, may_be_open=2).verdict is Verdict.AGREES
     assert of(margins, may_be_open=1).verdict is Verdict.INCONCLUSIVE

@@ -58,7 +58,7 @@ def test_a_dataclass_comes_back_to_the_last_bit(system):
         (None, None),
     ],
 )
-def test_every_value_has_words_or_numbers(value, content):
+def test_every_value_has_a_representation_in_json(value, content):
     assert through_json(value) == content
 
 
@@ -73,6 +73,6 @@ def test_every_value_has_words_or_numbers(value, content):
         {},
     ],
 )
-def test_content_of_something_else_is_an_error(broken):
+def test_json_of_another_class_is_rejected(broken):
     with pytest.raises((KeyError, TypeError, ValueError)):
         from_json(Whole, broken)

@@ -1,6 +1,5 @@
 """Declared claims: properties known before the measurement, and results of the measurement."""
 
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -74,7 +73,7 @@ def test_sentences_are_known_without_measuring():
     assert study_of(*ALL).has_theory is True
 
 
-def test_an_inserted_claim_shifts_no_identity():
+def test_inserting_a_claim_keeps_the_ids_of_the_others():
     few, all_of_them = study_of("rests", "sticks"), study_of(*ALL)
     known = {claim.identity for claim in few.measure(ENGINE).claims}
     assert known == {"rest/rests", "rest/sticks"}
@@ -82,12 +81,12 @@ def test_an_inserted_claim_shifts_no_identity():
     assert found - known == {"rest/whirls/slow-disc", "rest/whirls/fast-disc"}
 
 
-def test_two_claims_of_one_name_are_refused():
+def test_a_duplicate_claim_is_rejected():
     with pytest.raises(ValueError, match="duplicate claim id rest/rests"):
         study_of("rests", "rests")
 
 
-def test_an_element_says_what_it_is():
+def test_an_element_is_named_by_its_place():
     (claim,) = study_of("rests").measure(ENGINE).claims
     assert claim.verdict is Verdict.DIFFERS
     assert worst(claim).name == "μN = 0.05 N, x"
@@ -112,24 +111,24 @@ def replace_axes(claim):
         {"at": {"a": (1, 2), "b": (1, 2), "c": ()}},
     ],
 )
-def test_names_that_do_not_fit_are_refused(names):
+def test_names_of_another_shape_are_rejected(names):
     with pytest.raises(ValueError, match=r"numbers of shape \(2, 2\) have names for"):
         _ = Measured(predicted=np.ones((2, 2)), value=np.ones((2, 2)), **names).axes
 
 
-def test_what_an_engine_never_promised_is_missing_and_said():
+def test_a_motion_that_an_engine_does_not_support_is_reported_as_missing():
     found = study_of(*ALL).measure(replace(ENGINE, name="lame"))
     assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
     assert found.not_simulated == "lame does not whirl"
 
 
-def test_a_function_may_claim_nothing_of_an_engine():
+def test_a_function_may_make_no_claim_about_an_engine():
     found = study_of(*ALL).measure(replace(ENGINE, contact_only=True))
     assert not found.not_simulated
     assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
 
 
-def test_less_than_all_can_be_measured():
+def test_a_subset_of_the_claims_can_be_measured():
     found = study_of(*ALL).measure(ENGINE, {"rests": {"loads": (1.0, 2.0)}}, only=("rests",))
     assert [claim.sentence for claim in found.claims] == ["It rests"]
     assert found.data["loads"].tolist() == [1.0, 2.0]
@@ -148,7 +147,7 @@ def test_the_theory_has_no_engine():
     assert float(claim.budget.total) == 0.25
 
 
-def test_without_a_resolution_nothing_is_claimed():
+def test_a_claim_needs_a_resolution():
     study = study_of()
     study.claim("It is")(unresolved)
     with pytest.raises(ValueError, match="no resolution given"):
@@ -157,13 +156,6 @@ def test_without_a_resolution_nothing_is_claimed():
 
 def unresolved(engine):
     return Measured(predicted=1.0, value=1.0)
-
-
-def test_a_study_goes_to_another_process():
-    study = study_of()
-    study.claim("It is", resolution=1.0)(unresolved)
-    again = pickle.loads(pickle.dumps(study))
-    assert [claim.identity for claim in again.measure(ENGINE).claims] == ["rest/unresolved"]
 
 
 PROSE = """# A title
@@ -217,7 +209,7 @@ def test_a_study_without_captions_has_one_figure_with_its_own_name_and_title(fol
     assert beside().figures == {}
 
 
-def test_prose_without_title_word_or_group_is_refused(folder):
+def test_prose_without_title_word_or_group_is_rejected(folder):
     with pytest.raises(ValueError, match=r"\{loads\} is missing"):
         Prose.of(folder / "claims.py", {"loads": "0"})
     (folder / "study.md").write_text(PROSE.replace("# A title", "## A title"), encoding="utf-8")

@@ -71,12 +71,12 @@ def kinds(folder, study, *of):
     return {row.sentence: {name: cell.evidence for name, cell in row.cells.items()} for row in rows}
 
 
-def test_what_follows_from_a_claim_that_agrees_adds_nothing(tmp_path):
+def test_a_claim_implied_by_an_agreeing_claim_adds_no_evidence(tmp_path):
     found = kinds(tmp_path, study_of(measured))
     assert [each["good"] for each in found.values()] == ["independent", "implied", "independent"]
 
 
-def test_what_follows_from_a_claim_that_differs_stands_for_itself(tmp_path):
+def test_a_claim_implied_by_a_differing_claim_is_independent(tmp_path):
     found = kinds(tmp_path, study_of(measured_wrongly))
     assert [each["good"] for each in found.values()] == ["independent"] * 3
 
@@ -88,7 +88,7 @@ def test_a_self_check_does_not_imply_independent_evidence(tmp_path):
     assert found[CIRCLE] == {"reference": "independent", "exudyn": "implied"}
 
 
-def test_an_engine_with_another_contact_repeats_its_kin_but_where_the_contact_decides(tmp_path):
+def test_an_engine_with_another_contact_is_independent_of_its_kin_only_where_the_contact_decides(tmp_path):
     (named,) = engines(["exudyn-native"])
     for contact, evidence in ((False, "implied"), (True, "independent")):
         found = kinds(tmp_path / str(contact), study_of(measured, contact=contact), exudyn, named)
@@ -97,7 +97,7 @@ def test_an_engine_with_another_contact_repeats_its_kin_but_where_the_contact_de
     assert alone[OTHER] == {"exudyn-native": "independent"}  # no related engine takes part
 
 
-def test_unless_it_is_named_an_engine_takes_part_where_its_contact_decides():
+def test_an_unnamed_variant_takes_part_only_where_its_contact_decides():
     usual = next(engine for engine in engines() if engine.name == exudyn_native.name)
     (named,) = engines([exudyn_native.name])
     assert (usual.contact_only, named.contact_only) == (True, False)
@@ -121,7 +121,7 @@ def measured_and_told(engine):
     return replace(measured(engine), data={"contact only": np.array(float(engine.contact_only))})
 
 
-def test_findings_where_the_contact_decides_are_not_taken_for_all_of_an_engine(tmp_path):
+def test_findings_about_the_contact_alone_are_not_reused_for_the_whole_engine(tmp_path):
     study = study_of(measured_and_told, contact=True)
     part = Engine("part", straight, contact_only=True)
     for engine in (part, replace(part, contact_only=False), part):
@@ -136,14 +136,14 @@ def test_findings_where_the_contact_decides_are_not_taken_for_all_of_an_engine(t
         ("power-balance", {"six points thrown on a table, to rest"}),
     ],
 )
-def test_the_motions_of_the_contact_alone_are_among_those_of_its_study(name, sentences):
+def test_motions_for_the_contact_alone_are_a_subset_of_the_study(name, sentences):
     (study,) = studies([name])
     resting = Engine("resting", straight, ("pin", "points"), contact_only=True)
     found = {made.sentence.split(": ")[1] for made in study.measure(resting).claims}
     assert found == sentences
 
 
-def test_of_the_whirl_the_contact_alone_is_asked_for_its_size_and_speed():
+def test_the_contact_alone_is_measured_by_radius_and_frequency_of_the_whirl():
     (study,) = studies(["whirl-stability"])
     part = replace(reference, contact_only=True)
     few = {name: {"speeds": (1.5,)} for name in ("radius", "frequency")}
@@ -178,7 +178,7 @@ def test_the_first_line_counts_independent_evidence_first(reported):
     assert f"<title>Friction discs: {line}</title>" in page
 
 
-def test_the_page_says_what_each_kind_means_and_from_what_a_verdict_follows(reported):
+def test_the_page_explains_each_kind_of_evidence_and_links_to_the_implying_claim(reported):
     page = (reported[1] / "index.html").read_text(encoding="utf-8")
     (legend,) = re.findall(r'<dl class="legend kinds">(.*?)</dl>', page, flags=re.DOTALL)
     assert re.findall("<dt>(.*?)</dt>", legend) == ["independent", "self-check", "algebra", "implied"]
@@ -187,7 +187,7 @@ def test_the_page_says_what_each_kind_means_and_from_what_a_verdict_follows(repo
     assert page.count("Exudyn with its built-in contact in place of the connector") == 1
 
 
-def test_programs_see_the_kind_of_each_verdict(reported):
+def test_machine_readable_results_contain_the_kind_of_evidence(reported):
     matrix, folder = reported
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert {kind: counts["agrees"] for kind, counts in results["evidence"].items()} == {
@@ -215,7 +215,7 @@ def test_programs_see_the_kind_of_each_verdict(reported):
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_matrix_and_table_show_one_number(tmp_path):
+def test_matrix_and_table_show_the_same_number(tmp_path):
     """The claim's smallest budget is much smaller than its largest."""
 
     def budgets(engine):
@@ -238,7 +238,7 @@ def test_matrix_and_table_show_one_number(tmp_path):
     assert made["largest"] == [{"element": 2, "name": "no. 3 of 3", "unit": "m", "difference": 2e-5}]
 
 
-def test_what_implies_a_claim_is_a_claim_of_the_same_study_that_follows_from_none():
+def test_an_implying_claim_belongs_to_the_same_study_and_is_not_itself_implied():
     found = 0
     for study in STUDIES:
         by_sentence = {one.sentence: one for one in study.declared}

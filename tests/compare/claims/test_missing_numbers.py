@@ -6,7 +6,7 @@ import pytest
 from compare.claims.error_estimates import SAFETY, Measurement, change_as_error, known, open_where_coarse
 
 
-def test_what_is_there_at_one_tolerance_only_is_open_and_leaves_the_others_as_they_are():
+def test_a_number_missing_at_one_tolerance_has_an_infinite_error():
     for missing in (np.nan, np.inf):
         found, other = np.array([1.0, missing, 2.0]), np.array([1.1, 3.0, 2.0])
         error = change_as_error(found, other)
@@ -14,14 +14,14 @@ def test_what_is_there_at_one_tolerance_only_is_open_and_leaves_the_others_as_th
         assert error[[0, 2]] == pytest.approx([SAFETY * 0.1, 0.1])
 
 
-def test_what_is_there_at_no_tolerance_has_no_error():
+def test_a_number_missing_at_both_tolerances_has_no_error():
     error = change_as_error(np.array([1.0, np.nan]), np.array([1.1, np.nan]))
     assert np.isnan(error[1])
     assert np.isfinite(error[0])
     assert known(np.array([1.0, np.nan]), np.array([np.nan, np.nan])).tolist()[0] == np.inf
 
 
-def test_what_is_missing_is_open_where_the_states_are_coarse():
+def test_a_missing_number_has_an_infinite_error_if_the_states_are_coarse():
     found = Measurement(np.array([1.0, np.nan]), np.array([0.1, np.nan]))
     fine, coarse = (Measurement(np.ones(2), np.full(2, error)) for error in (1e-6, 1e-3))
     assert np.isinf(open_where_coarse(found, coarse).error[1])

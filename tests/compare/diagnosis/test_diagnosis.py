@@ -67,14 +67,14 @@ def test_a_wrong_law_is_named(wrong):
 
 
 @pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
-def test_coulombs_law_is_named_and_nothing_besides(made):
+def test_coulombs_law_is_named_and_nothing_else(made):
     row, found = sentences(made)
     assert found.startswith("Friction is Coulomb's cone, accurate to ")
     assert found.endswith("A block loaded below μN stays at rest.")
     assert not row.wrong
 
 
-def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
+def test_an_initial_impulse_is_not_attributed_to_friction():
     """MuJoCo's ellipse with Runge-Kutta steps has an impulse of 5e-7 m/s per m/s; μ seemed 0.0025 % too large."""
 
     def simulate(pin, start, times, *, tolerance):
@@ -91,12 +91,12 @@ def test_an_impulse_while_the_contact_settles_is_not_taken_for_friction():
 @pytest.mark.parametrize(
     ("error", "misfit", "sure"), [(11.0, 0.0, False), (1e-7, 0.5, False), (1e-7, 0.0, True)]
 )
-def test_no_force_reads_as_micronewtons(error, misfit, sure):
+def test_forces_are_relative_to_the_limit_of_friction(error, misfit, sure):
     (said,) = Row("any", law=Friction(CONE, 1.0, 0.0, error, misfit, sure)).sentences
     assert " times μN" in said
 
 
-def test_a_law_is_open_where_another_fits_as_well():
+def test_a_law_is_uncertain_if_another_fits_equally_well():
     """A pyramid with corners on the axes is the cone for slip along the axes."""
     slips = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])
     assert not fitted(np.hstack((-slips, slips)), 1e-9).sure
@@ -105,7 +105,7 @@ def test_a_law_is_open_where_another_fits_as_well():
     assert (found.shape, found.sure) == (CONE, True)
 
 
-def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
+def test_a_fixed_regularisation_is_distinguished_from_one_that_falls_with_the_step():
     fixed, said = sentences(engine("fixed", smooth=1e-2))
     # Smoothing acts on the slip before the step, which is larger by the change during the step.
     assert "regularised as min(v/ε, 1) with ε = 0.00" in said
@@ -113,13 +113,13 @@ def test_a_fixed_smoothing_is_told_from_one_that_falls_with_the_step():
     assert fixed.wrong
 
 
-def test_a_lag_of_a_step_is_told_and_is_no_wrong_law():
+def test_a_lag_of_one_step_is_reported_but_is_not_wrong():
     row, said = sentences(engine("previous", lagging=True))
     assert "Friction lags the slip by 1.0 steps." in said or "0.9" in said.split("slip by ")[1]
     assert not row.wrong
 
 
-def test_the_rungs_are_as_many_for_every_engine():
+def test_every_engine_runs_at_the_same_number_of_tolerances():
     stepped, adaptive = tolerances(RIGHT), tolerances(reference)
     assert len(stepped) == len(adaptive) == RUNGS
     assert stepped[-1] == adaptive[-1] == USUAL_TOLERANCE
@@ -129,7 +129,7 @@ def test_the_rungs_are_as_many_for_every_engine():
     assert fourth.step_at(tolerances(fourth)[0]) == pytest.approx(8.0 * fourth.step)
 
 
-def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that_holds():
+def test_a_converging_motion_has_its_order_and_a_valid_error_estimate():
     found = motion(RIGHT, "release")
     assert found.converges
     assert found.order == pytest.approx(1.0, abs=0.4)
@@ -138,7 +138,7 @@ def test_a_motion_that_tends_to_the_exact_one_has_its_order_and_an_estimate_that
 
 
 @pytest.mark.parametrize("order", [0.5, 1.0, 2.0])
-def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_faster(order):
+def test_the_estimate_covers_errors_of_order_one_half_and_higher(order):
     """A smoothed law may converge that slowly without being another law."""
     ladder = Ladder.of(RIGHT, lambda tolerance: 1.0 + RIGHT.step_at(tolerance) ** order)
     off = abs(ladder.finest - 1.0)
@@ -153,7 +153,7 @@ def test_the_estimate_covers_an_error_that_falls_as_the_root_of_the_step_or_fast
     assert found.converges
 
 
-def test_an_engine_that_takes_no_notice_of_the_tolerance_is_told_so():
+def test_an_engine_that_ignores_the_tolerance_is_reported():
     deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
     row = Row("deaf", motions={"slip": deaf})
     told = "Results do not change with the tolerance, so an error cannot be told from another law."
@@ -161,7 +161,7 @@ def test_an_engine_that_takes_no_notice_of_the_tolerance_is_told_so():
     assert row.wrong
 
 
-def test_an_engine_that_does_not_stick_is_not_asked_for_stick():
+def test_an_engine_without_stick_is_not_probed_for_creep():
     assert run.measured(plain, "creep") == "plain does not simulate stick"
     row = run._with(Row("plain"), "creep", "plain does not simulate stick", 0.1)
     assert row.not_simulated == ("creep",)
@@ -172,7 +172,7 @@ def raises(system, start, times, *, tolerance):
     raise RuntimeError("out of order")
 
 
-def test_a_part_without_a_result_is_named_and_the_others_are_there():
+def test_a_failed_probe_is_named_and_the_others_remain():
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == {"law", "creep"}
@@ -180,7 +180,7 @@ def test_a_part_without_a_result_is_named_and_the_others_are_there():
     assert set(run.in_short(broken, Workers(1)).gaps) == {"law"}
 
 
-def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
+def test_recorded_engines_have_rows_like_the_others(tmp_path):
     rows = recorded_rows()
     by_name = {row.engine: row for row in rows}
     assert by_name["Bullet, box"].wrong
@@ -197,7 +197,3 @@ def test_rows_of_recorded_engines_are_of_the_same_kind(tmp_path):
     assert content[-1]["sentences"] == ["Errors are of order 1.0 in the tolerance."]
     write_picture([*rows, mine], tmp_path)
     assert (tmp_path / "matrix.png").stat().st_size > 10_000
-
-
-def test_motions_are_followed_to_the_same_times_as_recorded():
-    assert np.all(MOTIONS["ring"].times == MOTIONS["disc"].times)

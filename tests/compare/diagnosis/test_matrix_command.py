@@ -26,7 +26,7 @@ boxed.kinds, boxed.step = ("block",), 1e-2
     ("name", "status", "said"),
     [("simulate", 0, "Friction is Coulomb's cone, accurate to"), ("boxed", 1, "Friction is a box")],
 )
-def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path, monkeypatch, capsys):
+def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, monkeypatch, capsys):
     (tmp_path / f"of_{name}.py").write_text(BLOCKS)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
@@ -42,7 +42,7 @@ def test_an_engine_is_named_in_sentences_and_files(name, status, said, tmp_path,
     assert row["wrong"] == bool(status)
 
 
-def test_an_engine_that_simulates_nothing_has_a_status_of_its_own(tmp_path, monkeypatch, capsys):
+def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypatch, capsys):
     (tmp_path / "refusing.py").write_text(
         "from compare.engines import UnsupportedSystemError\n"
         "def simulate(*arguments, **accuracy):\n    raise UnsupportedSystemError('nothing')\n"
@@ -52,7 +52,7 @@ def test_an_engine_that_simulates_nothing_has_a_status_of_its_own(tmp_path, monk
     assert "none of these motions can be simulated by refusing:simulate" in capsys.readouterr().err
 
 
-def test_the_names_of_probes_are_those_of_parts():
+def test_probes_come_first_among_the_parts():
     from compare.engines import reference
 
     assert list(findings.parts_of(reference))[: len(findings.PROBES)] == list(findings.PROBES)

@@ -1,5 +1,4 @@
 import math
-import pickle
 import re
 import sys
 from dataclasses import replace
@@ -16,18 +15,13 @@ from compare.engines import (
     Engine,
     UnsupportedSystemError,
     engines,
-    one_of,
     register,
 )
 from compare.studies import studies
 from reference_model.trajectory import Phase, Solution, Trajectory
 
 
-def test_the_two_engines_of_the_project_are_registered():
-    assert [engine.name for engine in engines()][:2] == ["reference", "exudyn"]
-
-
-def test_compiled_runs_take_part_only_where_they_are_named():
+def test_the_compiled_engine_takes_part_only_if_named():
     assert "compiled" not in [engine.name for engine in engines()]
     (compiled,) = engines(["compiled"])
     found = compiled.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 5.0])
@@ -36,7 +30,7 @@ def test_compiled_runs_take_part_only_where_they_are_named():
     np.testing.assert_allclose(found.at_end, plain.at_end, atol=1e-8)
 
 
-def test_the_plain_equations_take_part_only_where_they_are_named_and_tell_no_stick():
+def test_the_plain_engine_takes_part_only_if_named_and_does_not_stick():
     assert "plain" not in [engine.name for engine in engines()]
     (plain,) = engines(["plain"])
     found = plain.simulate(FIG11, [0.1, 0.0, 0.0, 0.03, 0.0, 1.0], [0.0, 2.0], tolerance=1e-6)
@@ -45,7 +39,7 @@ def test_the_plain_equations_take_part_only_where_they_are_named_and_tell_no_sti
         plain.simulate(replace(FIG5, friction_force=0.2), [0.0] * 4, [0.0, 1.0])
 
 
-def test_an_engine_of_linear_supports_says_so_of_each_system():
+def test_an_engine_without_nonlinear_supports_rejects_them():
     (compiled,) = engines(["compiled"])
     hard = replace(FIG5, hardening=2.0), replace(FIG5, stop_stiffness=1.0)
     assert [compiled.simulates(system) for system in (FIG5, FIG11, *hard)] == [True, True, False, False]
@@ -58,7 +52,7 @@ def test_an_engine_of_linear_supports_says_so_of_each_system():
 
 @pytest.fixture
 def module(tmp_path, monkeypatch):
-    """Write a module of the current folder with the function ``simulate`` and more code; return its engine."""
+    """Return a function that writes a module with ``simulate`` and more code, and returns its engine."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     monkeypatch.delitem(sys.modules, "of_mine", raising=False)
@@ -81,7 +75,7 @@ def module(tmp_path, monkeypatch):
         ("simulate.kinds = ()", ()),
     ],
 )
-def test_an_engine_of_ones_own_is_named_by_module_and_function_and_says_what_it_is_for(code, kinds, module):
+def test_a_users_engine_is_named_module_function_and_declares_its_kinds(code, kinds, module):
     engine = module(code)
     assert (engine.name, engine.kinds) == ("of_mine:simulate", kinds)
     assert engine.function(FIG5, None, None) == 42
@@ -102,36 +96,14 @@ def test_an_engine_of_ones_own_is_named_by_module_and_function_and_says_what_it_
         ("simulate.step = 'small'", ", attribute …step = 'small': it must be a number"),
     ],
 )
-def test_a_module_that_fails_or_declares_nonsense_is_refused_in_a_sentence(code, reason, module):
+def test_an_invalid_module_is_rejected(code, reason, module):
     pattern = ".*".join(map(re.escape, reason.split("…")))
     with pytest.raises(ValueError, match=f"^engine 'of_mine:simulate'{pattern}"):
         module(code)
 
 
-@pytest.mark.parametrize(
-    ("name", "sentence"),
-    [
-        ("exudin", "unknown engine 'exudin': did you mean 'exudyn'?"),
-        ("zzz", "unknown engine 'zzz': choose from reference, exudyn"),
-        *(
-            (name, f"engine '{name}' ")
-            for name in (
-                "no_such_module:simulate",
-                "math:no_such_function",
-                ":simulate",
-                "math:pi",
-                ".:simulate",
-            )
-        ),
-    ],
-)
-def test_a_name_that_is_no_engine_is_refused_in_a_sentence(name, sentence):
-    with pytest.raises(ValueError, match=f"^{re.escape(sentence)}"):
-        engines([name])
-
-
 @pytest.mark.parametrize("name", ["reference", "theory"])
-def test_a_name_is_not_taken_twice(name):
+def test_a_registered_name_cannot_be_used_again(name):
     with pytest.raises(ValueError, match="the name is taken"):
         register(Engine(name, fake_studies.straight))
 
@@ -150,7 +122,7 @@ BLOCK = replace(FIG5, disc_speed=0.0)
         (EVERY_KIND, ""),
     ],
 )
-def test_an_engine_simulates_what_it_promises_and_says_what_it_lacks(kinds, lacking):
+def test_an_engine_simulates_the_kinds_that_it_declares(kinds, lacking):
     engine = Engine("mine", fake_studies.straight, kinds)
     systems = {"pin": FIG5, "block": BLOCK, "ring": RING, "points": POINTS}
     assert engine.lacking([*systems.values(), RING]) == lacking
@@ -164,7 +136,7 @@ def test_an_engine_simulates_what_it_promises_and_says_what_it_lacks(kinds, lack
                 engine.simulate(system, state, [0.0, 1.0])
 
 
-def test_who_simulates_pins_simulates_blocks_on_a_plane_at_rest_too():
+def test_an_engine_for_pins_also_simulates_blocks_on_a_plane_at_rest():
     pins, blocks = (
         Engine("mine", fake_studies.straight, (kind,), nonlinear=False) for kind in ("pin", "block")
     )
@@ -175,15 +147,7 @@ def test_who_simulates_pins_simulates_blocks_on_a_plane_at_rest_too():
     assert pins.lacking([hard]) == blocks.lacking([hard]) == sentence
 
 
-def test_an_engine_goes_to_other_processes_with_its_promise():
-    engine = Engine("mine", fake_studies.straight, ("points",))
-    simulate = pickle.loads(pickle.dumps(engine)).simulate
-    with pytest.raises(UnsupportedSystemError):
-        simulate(RING, [0.0] * 6, [0.0, 1.0])
-    assert simulate(POINTS, [0.0] * 6, [0.0, 1.0]).system == POINTS
-
-
-def test_an_engine_of_an_installed_package_is_known_by_its_entry_point(tmp_path, monkeypatch):
+def test_an_installed_package_registers_its_engine_by_an_entry_point(tmp_path, monkeypatch):
     package = tmp_path / "installed_solver-1.0.dist-info"
     package.mkdir()
     (package / "METADATA").write_text("Metadata-Version: 2.1\nName: installed-solver\nVersion: 1.0\n")
@@ -194,7 +158,7 @@ def test_an_engine_of_an_installed_package_is_known_by_its_entry_point(tmp_path,
     monkeypatch.syspath_prepend(tmp_path)
     (engine,) = engines(["solver"])
     assert (engine.name, engine.kinds) == ("solver", ("ring",))
-    assert "solver" not in [engine.name for engine in engines()]  # only where it is asked for
+    assert "solver" not in [engine.name for engine in engines()]  # only on request
     with pytest.raises(ValueError, match="did you mean 'solver'"):
         engines(["sovler"])
 
@@ -202,14 +166,9 @@ def test_an_engine_of_an_installed_package_is_known_by_its_entry_point(tmp_path,
 TIMES = np.linspace(0.0, 1.0, 5)
 
 
-def resting(system, state, times, **accuracy):
-    states = np.tile(np.asarray(state, dtype=float), (len(times), 1))
-    return Trajectory(system, np.array(times), states, (), Solution("none", 0.0, 0, 0, 0.0))
-
-
 def changed(**changes):
-    """Return an engine whose trajectory is right but for ``changes``."""
-    return Engine("mine", lambda *motion, **accuracy: replace(resting(*motion), **changes))
+    """Return an engine whose trajectory is valid except for ``changes``."""
+    return Engine("mine", lambda *motion, **accuracy: replace(fake_studies.straight(*motion), **changes))
 
 
 def spans(*spans, kind="slip"):
@@ -244,19 +203,19 @@ NO_ANSWERS = [
 
 
 @pytest.mark.parametrize(("changes", "sentence"), NO_ANSWERS, ids=[sentence for _, sentence in NO_ANSWERS])
-def test_what_is_no_answer_is_refused_before_a_study_sees_it(changes, sentence):
+def test_an_invalid_trajectory_is_rejected(changes, sentence):
     with pytest.raises(BadTrajectoryError) as error:
         changed(**changes).simulate(FIG5, [0.0] * 4, TIMES)
     assert str(error.value) == sentence
 
 
-def test_what_is_no_trajectory_is_refused_before_a_study_sees_it():
+def test_a_result_that_is_not_a_trajectory_is_rejected():
     engine = Engine("mine", lambda *_, **__: 42)
     with pytest.raises(TypeError, match=r"^simulate\(\) returned 42: it must be a Trajectory$"):
         engine.simulate(FIG5, [0.0] * 4, TIMES)
 
 
-def test_times_that_were_added_up_in_another_order_are_those_asked_for():
+def test_times_may_deviate_by_rounding():
     added_up = np.cumsum(np.full(1000, 0.1)) - 0.1
     asked = 0.1 * np.arange(1000)
     assert not np.array_equal(added_up, asked)
@@ -270,16 +229,14 @@ LET_GO = replace(BLOCK, friction_force=0.01)
 @pytest.mark.parametrize(
     ("system", "start", "slides"),
     [
-        (FIG5, [CENTRE, 0.0, 0.0, CENTRE * FIG5.disc_speed], False),  # in the midst of the sticking domain
+        (FIG5, [CENTRE, 0.0, 0.0, CENTRE * FIG5.disc_speed], False),  # at the centre of the sticking domain
         (FIG5, [0.9, 0.0, 0.0, 0.9], True),
-        (LET_GO, [0.2, 0.0, 0.0, 0.0], False),  # slips from the first, but no slip says in which direction
+        (LET_GO, [0.2, 0.0, 0.0, 0.0], False),  # slips at once, but its direction is undefined at zero slip
         (LET_GO, [0.2, 0.0, -1e-3, 0.0], True),
     ],
 )
-def test_an_engine_that_only_slides_is_asked_for_no_motion_that_sticks_or_starts_at_rest(
-    system, start, slides
-):
-    engine = Engine("mine", resting, sticks=False)
+def test_an_engine_without_stick_rejects_starts_in_stick_or_at_rest(system, start, slides):
+    engine = Engine("mine", fake_studies.straight, sticks=False)
     assert replace(engine, sticks=True).simulate(system, start, TIMES).times is not None
     if slides:
         assert engine.simulate(system, start, TIMES).times is not None
@@ -288,12 +245,12 @@ def test_an_engine_that_only_slides_is_asked_for_no_motion_that_sticks_or_starts
         engine.simulate(system, start, TIMES)
 
 
-def test_a_fixed_step_takes_the_place_of_the_tolerance_and_goes_with_its_root():
+def test_a_fixed_step_is_proportional_to_the_root_of_the_tolerance():
     taken = []
 
     def simulate(*motion, step):
         taken.append(step)
-        return resting(*motion)
+        return fake_studies.straight(*motion)
 
     engine = Engine("mine", simulate, step=1e-2)
     for tolerance in (1e-9, 1e-11, 1e-7):
@@ -302,7 +259,7 @@ def test_a_fixed_step_takes_the_place_of_the_tolerance_and_goes_with_its_root():
 
 
 @pytest.mark.parametrize("order", [1, 2, 4])
-def test_the_estimate_covers_the_error_of_a_fixed_step_from_first_order_on(order):
+def test_the_error_estimate_covers_fixed_steps_of_any_order(order):
     def simulate(system, state, times, *, step):
         steps = math.ceil(1.0 / step)
         end = sum((1j / steps) ** k / math.factorial(k) for k in range(order + 1)) ** steps  # of ż = iz
@@ -317,13 +274,10 @@ def test_the_estimate_covers_the_error_of_a_fixed_step_from_first_order_on(order
     assert error <= np.linalg.norm(estimate)
 
 
-def test_studies_come_in_report_order_whatever_the_order_of_their_names():
+def test_studies_are_returned_in_report_order():
     among = fake_studies.ALL
     assert [study.name for study in studies(["agreement", "verdicts"], among)] == ["verdicts", "agreement"]
     assert studies([], among) == among
-    assert one_of("study", "verdicts", [study.name for study in among]) == "verdicts"
-    with pytest.raises(ValueError, match="unknown study 'verdict': did you mean 'verdicts'"):
-        studies(["verdict"], among)
 
 
 PIN = (FIG5, (0.1, 0.0, 0.03, 0.0))
@@ -342,8 +296,8 @@ TURNING_POINTS = (POINTS, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
         *(("exudyn-native", *motion) for motion in (PIN, TURNING_POINTS)),
     ],
 )
-def test_the_same_motion_is_the_same_to_the_last_bit_however_often_it_is_asked_for(name, system, start):
-    """Tests of the studies keep what the reference has simulated."""
+def test_repeated_runs_are_equal_to_the_last_bit(name, system, start):
+    """Tests of studies rely on this, because they cache trajectories of the reference."""
     (engine,) = engines([name])
     one, other = (engine.simulate(system, start, (0.0, 5.0, 10.0), tolerance=1e-7) for _ in range(2))
     np.testing.assert_array_equal(one.states, other.states)

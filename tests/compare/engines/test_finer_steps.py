@@ -1,4 +1,4 @@
-"""A claim that is open at an engine's own step is asked again at shorter ones, and no wrong engine gains by it."""
+"""An inconclusive claim is measured again with shorter steps, which does not help a wrong engine."""
 
 import itertools
 import math
@@ -17,16 +17,16 @@ from reference_model import PinOnDisc, Trajectory
 STEP = 0.1
 PIN = PinOnDisc(
     mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.0, disc_speed=0.0, offset=0.0
-)  # swings like cos t
+)  # its motion is cos t
 
 
 def euler(system, state, times, *, step):
-    """Swing by the symplectic method of Euler."""
+    """Simulate the oscillator by the symplectic Euler method."""
     return _euler(system, state, times, step, 1.0)
 
 
 def stiffer(system, state, times, *, step):
-    """Do so with a spring that is 1 % too stiff."""
+    """Simulate the same with a spring that is 1 % too stiff."""
     return _euler(system, state, times, step, 1.01)
 
 
@@ -64,7 +64,7 @@ def engine_of(function, **more):
     return Engine(function.__name__, function, step=STEP, **more)
 
 
-def test_a_claim_is_asked_at_shorter_steps_until_it_is_decided():
+def test_an_inconclusive_claim_is_measured_again_with_shorter_steps():
     (claim,) = study_of(2e-2).measure(engine_of(euler)).claims
     assert claim.verdict is Verdict.AGREES
     assert claim.note == "Measured with 1/4 of the engine's own step, which leaves the claim inconclusive."
@@ -73,14 +73,14 @@ def test_a_claim_is_asked_at_shorter_steps_until_it_is_decided():
     assert claim.note == ""
 
 
-def test_a_wrong_engine_is_found_out_at_a_shorter_step():
+def test_a_wrong_engine_differs_at_a_shorter_step():
     (claim,) = study_of(1e-3).measure(engine_of(stiffer)).claims
     assert claim.verdict is Verdict.DIFFERS
 
 
-def test_only_a_fixed_step_becomes_shorter_and_as_long_as_there_is_time(monkeypatch):
+def test_only_a_fixed_step_is_shortened_and_only_within_the_time_limit(monkeypatch):
     def asked(engine, seconds):
-        """Return at which steps an engine is asked that leaves all open, and takes ``seconds`` for an answer."""
+        """Return the steps of an engine that leaves a claim open and needs ``seconds`` for each run."""
         clock, steps = itertools.count(0.0, seconds), []
         monkeypatch.setattr("compare.claims.error_estimates.time.perf_counter", lambda: next(clock))
         decided(
@@ -97,13 +97,13 @@ def test_only_a_fixed_step_becomes_shorter_and_as_long_as_there_is_time(monkeypa
 
 
 def fails_below(system, state, times, *, step):
-    """Swing, but not at steps below that of the engine."""
+    """Simulate the oscillator, but fail below the engine's own step."""
     if step < 0.5 * STEP:
         raise RuntimeError("out of memory")
     return euler(system, state, times, step=step)
 
 
-def test_an_engine_that_fails_at_a_shorter_step_leaves_open_what_it_did():
+def test_a_failure_at_a_shorter_step_leaves_the_claim_inconclusive():
     (claim,) = study_of(2e-2).measure(engine_of(fails_below)).claims
     assert claim.verdict is Verdict.INCONCLUSIVE
     assert claim.note == "The run with 1/4 of the engine's own step failed: out of memory"

@@ -1,4 +1,4 @@
-"""An engine that simulates many motions at once is asked for them at once, and judged as one that does not."""
+"""Engines that simulate batches of motions receive batches, with the same results as single runs."""
 
 import sys
 from dataclasses import replace
@@ -18,7 +18,7 @@ MOTIONS = [
 
 
 class OneByOne:
-    """The reference, which counts how often it is asked for one motion."""
+    """The reference, which counts its single runs."""
 
     def __init__(self):
         self.alone = 0
@@ -30,7 +30,7 @@ class OneByOne:
 
 
 class AtOnce(OneByOne):
-    """The same, which simulates many at once; what it ``returns`` may be spoilt."""
+    """The reference with batches; ``returns`` may spoil their result."""
 
     def __init__(self, returns=list):
         super().__init__()
@@ -46,7 +46,7 @@ class AtOnce(OneByOne):
 
 
 @pytest.mark.parametrize("promise", [{}, {"phases": False}, {"precision": 1e-6}])
-def test_many_at_once_are_to_the_last_bit_what_they_are_one_by_one(promise):
+def test_a_batch_equals_single_runs_to_the_last_bit(promise):
     at_once = AtOnce()
     found = Engine("mine", at_once, **promise).simulate_many(MOTIONS, tolerance=1e-7)
     assert (at_once.many, at_once.alone) == ([2], 0)
@@ -57,13 +57,13 @@ def test_many_at_once_are_to_the_last_bit_what_they_are_one_by_one(promise):
         np.testing.assert_array_equal(run.stick_times, expected.stick_times)
 
 
-def test_who_has_nothing_for_many_is_asked_one_by_one():
+def test_an_engine_without_batches_runs_one_by_one():
     alone = OneByOne()
     assert [len(run.times) for run in Engine("mine", alone).simulate_many(MOTIONS)] == [7, 2]
     assert alone.alone == 2
 
 
-def test_a_study_asks_for_many_at_once_and_finds_the_same():
+def test_a_study_uses_batches_and_finds_the_same():
     (block,) = studies(["block"])
     at_once, alone = AtOnce(), OneByOne()
     found = block.measure(Engine("mine", at_once, ("block",), phases=False))
@@ -102,13 +102,13 @@ def shorter(runs):
         ),
     ],
 )
-def test_what_is_no_answer_for_many_is_told_in_a_sentence(returns, error, sentence):
+def test_an_invalid_result_of_a_batch_is_rejected(returns, error, sentence):
     with pytest.raises(error) as raised:
         Engine("mine", AtOnce(returns)).simulate_many(MOTIONS)
     assert sentence in str(raised.value)
 
 
-def test_one_motion_that_is_not_promised_refuses_all_before_any_is_asked_for():
+def test_an_unsupported_motion_rejects_its_batch_before_it_runs():
     at_once = AtOnce()
     with pytest.raises(UnsupportedSystemError, match="mine does not simulate a disc on a continuous ring"):
         Engine("mine", at_once).simulate_many([*MOTIONS, (FIG11, np.zeros(6), [0.0, 1.0])])
@@ -116,7 +116,7 @@ def test_one_motion_that_is_not_promised_refuses_all_before_any_is_asked_for():
 
 
 @pytest.mark.parametrize("place", ["simulate", "closure"])
-def test_a_function_of_a_module_has_it_as_an_attribute(place, tmp_path, monkeypatch):
+def test_simulate_many_may_be_an_attribute_of_a_function(place, tmp_path, monkeypatch):
     (tmp_path / "many_of_mine.py").write_text(
         """
 def simulate(system, initial_state, times, *, step):

@@ -1,4 +1,4 @@
-"""What an engine of low precision measures has errors that say so."""
+"""Error estimates of engines with low precision."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ SLIDES = ((0.9, 0.0, 0.0, 0.9), (0.0, 5.0, 10.0, 15.0))
 
 
 def in_single_precision(system, start, times, *, tolerance=1e-9):
-    """Round states as an engine in single precision does at its best, whatever the tolerance."""
+    """Return the reference's motion rounded to single precision at every tolerance."""
     start = np.asarray(start, dtype=np.float32).astype(float)
     run = reference_model.simulate(system, start, times, tolerance=tolerance)
     return Trajectory(system, run.times, run.states.astype(np.float32).astype(float))
@@ -31,7 +31,7 @@ def energy(engine, tolerance):
     return 0.5 * np.sum(states**2, axis=1)
 
 
-def test_errors_of_rounding_are_estimated():
+def test_a_declared_precision_enters_the_error_estimate():
     exact = energy(reference, 1e-13)
     unsaid = refined(lambda tolerance: energy(engine(0.0), tolerance))
     said = refined(lambda tolerance: energy(engine(), tolerance))
@@ -41,8 +41,8 @@ def test_errors_of_rounding_are_estimated():
     assert np.all(said.error < 1e-4)
 
 
-def test_an_effect_of_either_sign_is_estimated():
-    """The mean of |noise| is the same at both tolerances unless its size changes, its sum unless its sign does."""
+def test_the_estimate_covers_noise_of_either_sign():
+    """The mean of |noise| changes with the size of the noise, its sum with the sign."""
     for quantity in (np.sum, lambda deviations: np.sum(np.abs(deviations))):
         exact = reference_model.simulate(FIG5, *SLIDES, tolerance=1e-13).states[1:]
 
@@ -53,7 +53,7 @@ def test_an_effect_of_either_sign_is_estimated():
         assert abs(found.value) <= found.error
 
 
-def test_the_same_question_has_the_same_answer():
+def test_the_noise_is_reproducible():
     one, other, finer = (
         engine().simulate(FIG5, *SLIDES, tolerance=tolerance).states
         for tolerance in (1e-9, 1e-9, 1e-9 / COARSENING)
@@ -64,7 +64,7 @@ def test_the_same_question_has_the_same_answer():
     assert np.array_equal(one[0], SLIDES[0])
 
 
-def test_what_begins_with_stick_sticks():
+def test_noise_does_not_end_an_initial_stick():
     start = np.array([0.05, 0.0, 0.0, 0.05 * FIG5.disc_speed])
     times = [0.0, 1.0]
 
@@ -89,6 +89,6 @@ def test_an_orbit_is_found_to_the_precision_of_its_engine():
 
 
 @pytest.mark.parametrize("precision", [-1e-6, 0.1, float("nan")])
-def test_a_precision_that_is_none_is_refused(precision):
+def test_an_invalid_precision_is_rejected(precision):
     with pytest.raises(ValueError, match="precision = "):
         engine(precision)

@@ -54,11 +54,11 @@ def found(seen):
     return {one.engine: one for one in glances(seen, matrix(seen))}
 
 
-def test_engines_of_the_run_come_first_then_the_recorded_ones_the_best_before_the_others(found):
+def test_engines_of_the_run_come_first_then_the_recorded_ones_by_grade(found):
     assert list(found) == ["good", "failing", "ours", "Kite", "Open", "Pins", "Blind", "Wrong"]
 
 
-def test_a_grade_is_the_largest_error_over_what_another_law_would_change(found):
+def test_a_grade_is_the_largest_error_relative_to_the_effect_of_another_law(found):
     grades = {name: one.grade for name, one in found.items()}
     assert grades["ours"] == "exact"  # 1e-12 relative to 0.1 m
     assert grades["Kite"] == "fine"  # 4e-6 relative to 0.1 m
@@ -90,7 +90,7 @@ def test_an_engine_of_the_run_is_described_by_its_claims(found):
     assert found["failing"].sentence == "1 of 1 claims agree on independent evidence; 4 failed."
 
 
-def test_one_that_was_recorded_too_has_the_grade_of_its_motions(seen):
+def test_an_engine_that_was_also_recorded_has_the_grade_of_its_motions(seen):
     one = Run(
         (seen.studies[0],), ("ours",), outcomes={("agreement", "ours"): seen.outcomes["agreement", "good"]}
     )

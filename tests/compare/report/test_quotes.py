@@ -1,4 +1,4 @@
-"""A text quotes what a claim measured, with the digits that its error allows, or says that it was not measured."""
+"""Texts quote measured numbers with the digits that their errors allow."""
 
 import re
 from dataclasses import replace
@@ -41,13 +41,13 @@ CLAIMS = (
         ("second, % from 4, 2 digits", "−50"),
     ],
 )
-def test_a_quote_says_what_it_is_asked_for(words, text):
+def test_a_quote_has_the_requested_quantity_unit_and_digits(words, text):
     found = quote(CLAIMS, words)
     assert found is not None
     assert found.text == text
 
 
-def test_a_quote_knows_its_number_its_error_and_its_nature():
+def test_a_quote_has_value_error_and_nature():
     found = quote(CLAIMS, "place, mm, good")
     assert (found.value, found.error, found.nature) == (pytest.approx(51.23), pytest.approx(0.2), "measured")
     assert quote(CLAIMS, "all, error").nature == "error"
@@ -56,11 +56,11 @@ def test_a_quote_knows_its_number_its_error_and_its_nature():
         quote(CLAIMS, "all")
 
 
-def test_a_text_without_its_claim_says_so():
+def test_a_quote_without_its_claim_is_marked():
     assert filled("{place, 2 digits} m and {nothing} m", CLAIMS) == "0.051 m and (not measured) m"
 
 
-def test_a_claim_has_no_name_for_an_element_that_it_does_not_have():
+def test_a_name_for_a_missing_element_is_rejected():
     with pytest.raises(ValueError, match=r"named\['far'\] = 1: it must be from 0 to 0"):
         claim("The radius", "good", 0.05, 0.05, 1e-6, named={"far": 1})
 
@@ -82,7 +82,7 @@ def page_of(study, folder):
     return (folder / "index.html").read_text(encoding="utf-8")
 
 
-def test_the_page_links_each_quote_to_its_claim_and_tells_its_error(tmp_path):
+def test_the_page_links_each_quote_to_its_claim_and_shows_its_error(tmp_path):
     page = page_of(STUDY, tmp_path)
     first = re.escape(
         f'<a class="quote" href="#{STUDY.name}/the-radius" title="± 1.0×10⁻⁷, one: The radius">'
@@ -92,7 +92,7 @@ def test_the_page_links_each_quote_to_its_claim_and_tells_its_error(tmp_path):
     assert f'<details class="claim" id="{STUDY.name}/the-radius"' in page
 
 
-def test_a_finding_whose_number_was_not_measured_is_none(tmp_path):
+def test_a_finding_without_its_number_is_omitted(tmp_path):
     page = page_of(replace(STUDY, prose=replace(STUDY.prose, finding="It rests at {nowhere} m.")), tmp_path)
     assert "It rests at" not in page
     assert quotes.MISSING not in page

@@ -65,7 +65,7 @@ def questions(found):
     return [json.loads(line) for line in found.motions]
 
 
-def test_claims_that_ask_the_same_of_any_engine_are_planned_and_others_are_not():
+def test_only_claims_with_fixed_motions_are_planned():
     found = planned(STUDY, ("pin",))
     assert (found.claims, found.adaptive) == (2, 2)
     assert [question["tolerance"] for question in questions(found)] == [1e-9, 1.25e-10]

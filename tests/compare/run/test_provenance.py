@@ -60,9 +60,7 @@ def test_a_processor_without_a_name_is_reported_by_its_architecture(monkeypatch)
 
 
 @pytest.mark.parametrize(("first", "settings"), [("compare.engines", "off"), ("exudyn", "on")])
-def test_a_users_own_settings_of_exudyn_are_switched_off_and_reports_say_whether_they_are(
-    first, settings, tmp_path
-):
+def test_a_users_settings_of_exudyn_are_off_and_reports_state_it(first, settings, tmp_path):
     (tmp_path / "config.json").write_text('{"version": 1, "config": {"suppressWarnings": true}}')
     code = (
         f"import {first}, exudyn\n"

@@ -71,11 +71,6 @@ def test_any_end_of_a_process_is_reported_without_a_traceback(function, argument
     assert capfd.readouterr().err == ""
 
 
-def warn(text):
-    print(text, file=sys.stderr, flush=True)
-    return len(text)
-
-
 def done(function, *arguments):
     with Workers(2) as workers:
         workers.submit("key", function, *arguments)
@@ -131,11 +126,6 @@ def test_output_of_a_worker_is_made_printable(workers, capfd):
     assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
 
 
-def test_what_a_worker_writes_to_its_standard_error_is_not_lost(workers, capfd):
-    assert workers.ask(warn, "once") == 4
-    assert capfd.readouterr().err == "once\n"
-
-
 def spoil(module):
     sys.modules[module] = None
     return os.getpid()
@@ -148,13 +138,13 @@ def test_a_process_never_works_for_two_engines(workers):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
-def test_the_copy_of_a_process_does_not_answer_in_its_place(workers):
+def test_a_forked_worker_does_not_answer_twice(workers):
     assert isinstance(workers.ask(os.fork), int)
     assert workers.ask(len, "four") == 4
 
 
 @pytest.mark.skipif(os.name != "posix", reason="this system has no process groups")
-def test_processes_that_work_has_started_end_with_it():
+def test_child_processes_of_a_worker_end_with_it():
     with Workers() as workers:
         child = workers.ask(start_a_child)
     wait_until(lambda: not is_alive(child))

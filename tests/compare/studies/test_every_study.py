@@ -1,4 +1,4 @@
-"""What holds for every study: sound engines agree, each claim fails for a gross and for a small fault."""
+"""Every study: sound engines agree, and each claim differs for a gross and for a small fault."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from compare.studies import STUDIES
 
 @pytest.fixture(scope="module", params=TESTED.values(), ids=TESTED)
 def tested(request):
-    """Each study in turn; the scope lets all tests of one study follow each other, which share its findings."""
+    """Return each study in turn; the scope keeps tests of one study together, because they share findings."""
     return request.param
 
 
@@ -41,8 +41,8 @@ def test_the_theory_holds(tested):
     assert DIFFERS not in claims.values()
 
 
-@pytest.mark.filterwarnings("ignore:No artists with labels")  # of a panel about other systems
-def test_an_engine_of_single_points_is_measured_on_these_and_the_report_says_what_is_missing(tested):
+@pytest.mark.filterwarnings("ignore:No artists with labels")  # from a panel about other systems
+def test_an_engine_for_points_is_measured_on_points_and_missing_systems_are_reported(tested):
     if "reference" not in tested.sound or tested.study.only:
         pytest.skip("the study is not about engines like this one")
     points = replace(engine_named("reference"), name="points", kinds=("points",))
@@ -55,14 +55,14 @@ def test_an_engine_of_single_points_is_measured_on_these_and_the_report_says_wha
 
 
 def unbroken(tested, faults):
-    """Return the claims that no fault breaks, by what chooses them, each with its last measurement."""
+    """Return the claims that agree with every fault, by identifier, each with its last measurement."""
     left = dict.fromkeys(tested.study.sentences().values())
     for fault in faults.values():
         only = getattr(fault, "only", ())
         for part in [part for part in left if not only or part.partition("/")[0] in only]:
             try:
                 claims = tested.claims_of_fault(fault, (part,))
-            except RuntimeError:  # no such motion in the engine, which the report shows as its failure
+            except RuntimeError:  # the engine lacks this motion, which a report shows as a failure
                 del left[part]
                 continue
             if any(claim.verdict is DIFFERS for claim in claims):
@@ -73,7 +73,7 @@ def unbroken(tested, faults):
 
 
 def too_coarse_for_a_per_cent(claim):
-    """Whether the claim counts answers, or its budget exceeds a per cent of what it predicts."""
+    """Return whether the claim counts answers or has a budget above 1 % of its prediction."""
     return claim.relative_error > 0.01 and bool(np.any(claim.predicted))
 
 
@@ -81,17 +81,17 @@ def test_each_claim_fails_for_a_gross_fault(tested):
     assert set(unbroken(tested, tested.gross)) == set()
 
 
-def test_each_claim_fails_for_a_fault_of_a_per_cent_if_it_can(tested):
+def test_each_claim_fails_for_a_fault_of_one_per_cent(tested):
     orders = {
         one.part(case) for one in tested.study.declared if one.kind == "order" for case, _ in one.cases()
     }
     left = unbroken(tested, tested.small)
     fine = {part for part, claim in left.items() if claim is None or not too_coarse_for_a_per_cent(claim)}
-    fine -= orders  # by how much an order may be off is no matter of per cents
+    fine -= orders  # deviations of an order are not relative
     assert {part.partition("/")[0] for part in fine} == set(tested.blind)
 
 
-def test_figures_are_drawn_whatever_is_there(tested):
+def test_figures_are_drawn_from_any_available_data(tested):
     if not tested.drawn:
         pytest.skip("too few numbers, see the study's own test")
     study = tested.study
@@ -107,5 +107,5 @@ def test_figures_are_drawn_whatever_is_there(tested):
         if case is everything:
             assert figures or not study.figures
             for figure in figures.values():
-                figure.set_layout_engine("none")  # tests of reports and of saved figures lay out
+                figure.set_layout_engine("none")  # other tests cover the layout
                 figure.draw_without_rendering()  # all but the pixels, a quarter of the time

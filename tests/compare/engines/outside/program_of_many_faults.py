@@ -1,7 +1,6 @@
-"""A program that speaks the protocol, and does as its first argument says at the second motion that is asked for.
+"""Program with the protocol of ``exec:`` whose first argument selects the fault in its second answer.
 
-At the first it answers as it should: everything stays where it is. What is none of its faults is its second answer
-word for word. It is started by the tests of ``exec:``.
+Its first answer is correct: everything stays where it is. An argument that names no fault is the second answer.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Models for co-simulation as engines: one that is right agrees, one with a mistake differs, others are refused."""
+"""FMUs for co-simulation as engines: a correct one agrees, a wrong one differs, and invalid files are rejected."""
 
 import shutil
 import subprocess
@@ -33,7 +33,7 @@ pytestmark = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler
 
 
 def description(fmi, names, interface="CoSimulation"):
-    """Return the description of a model of these variables, in the order of the source."""
+    """Return the model description with these variables, in the order of the source."""
     places = [(PARAMETERS + STATES).index(name) for name in names]
     parameter, output = 'causality="parameter" variability="tunable"', 'causality="output"'
     known = [
@@ -58,7 +58,7 @@ def description(fmi, names, interface="CoSimulation"):
 
 
 def rest(folder, fmi):
-    """Return a source of all that a library has to have and nothing calls."""
+    """Write a C source with the required functions that no test calls."""
     master = fmpy.fmi2.FMU2Slave if fmi == 2 else fmpy.fmi3.FMU3Slave
     names = [name for name in dir(master) if name.startswith(f"fmi{fmi}") and name not in SOURCE.read_text()]
     path = folder / f"rest{fmi}.c"
@@ -68,7 +68,7 @@ def rest(folder, fmi):
 
 @pytest.fixture(scope="session")
 def packed(tmp_path_factory):
-    """Makes models, and names their files."""
+    """Return a function that builds a model and returns its file."""
     folder = tmp_path_factory.mktemp("models")
 
     def pack(name, fmi=2, mistake=1, names=PARAMETERS + STATES, **more):
@@ -97,17 +97,17 @@ def moves(engine):
     return claim.verdict
 
 
-def test_a_model_that_is_right_agrees(right):
+def test_a_correct_fmu_agrees(right):
     assert moves(right) is Verdict.AGREES
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_a_model_with_a_mistake_differs(packed, fmi):
+def test_a_wrong_fmu_differs(packed, fmi):
     (engine,) = engines([f"fmu:{packed(f'wrong{fmi}', fmi, mistake=2)}"])
     assert moves(engine) is Verdict.DIFFERS
 
 
-def test_a_model_promises_what_its_variables_say(right):
+def test_the_variables_of_an_fmu_determine_its_abilities(right):
     assert (right.kinds, right.nonlinear, right.phases) == (("pin",), False, False)
     assert right.step == (2e-3 if right.name == "right2" else None)
     assert right.lacking([FIG11, replace(FIG5, hardening=1.0)]).endswith(
@@ -116,7 +116,7 @@ def test_a_model_promises_what_its_variables_say(right):
 
 
 class Stub:
-    """An instance that stays where it is, and a list of what it was told."""
+    """Instance that stays at rest and stores the values that it receives."""
 
     def __init__(self):
         self.told = {}
@@ -130,7 +130,7 @@ class Stub:
 
 
 @pytest.mark.parametrize(("points", "kind"), [(None, "ring"), (6, "points")])
-def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(points, kind):
+def test_a_disc_has_its_own_parameters_and_states(points, kind):
     disc, start = replace(FIG11, contact_points=points), np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
     names = [*asdict(FIG11), *(name for name, _ in COLUMNS[type(disc)])]
     names = [name for name in names if points or name != "contact_points"]
@@ -147,7 +147,7 @@ def test_a_disc_has_its_own_parameters_and_states_and_whole_numbers_of_points(po
     assert fmu._kinds("disc.fmu", variables) == (kind,)
 
 
-def test_a_disc_that_takes_no_points_is_one_on_the_ring_too():
+def test_zero_points_stand_for_the_continuous_ring():
     variables = dict.fromkeys([*asdict(FIG11), *(name for name, _ in COLUMNS[type(FIG11)])])
     variables["contact_points"] = SimpleNamespace(min="0")
     assert fmu._kinds("disc.fmu", variables) == ("ring", "points")
@@ -156,26 +156,26 @@ def test_a_disc_that_takes_no_points_is_one_on_the_ring_too():
     assert fmu._values(replace(FIG11, contact_points=6), start, variables)["contact_points"] == 6
 
 
-def test_points_of_a_disc_that_only_spins_creep_in_proportion_to_the_speed_of_its_rim():
+def test_creep_of_a_spinning_disc_is_proportional_to_its_rim_speed():
     disc = replace(FIG11, contact_points=6, disc_speed=0.0)
     (creep,) = fmu._creep(disc, {"spin": -2.0}, {fmu.CREEPS: None}, 1e-9).values()
     assert creep == pytest.approx(1e2 * 1e-9 * 2.0 * FIG11.contact_radius)
     assert fmu._creep(disc, {"spin": -2.0}, {}, 1e-9) == {}
 
 
-def test_a_motion_may_start_at_any_time_and_is_the_same_each_time(right):
+def test_a_motion_does_not_depend_on_its_start_time(right):
     times = np.array([0.0, 0.1, 0.1 + 1e-9, 1.0])
     found = [right.simulate(FIG5, START, shift + times).states for shift in (0.0, 0.0, 8.0)]
     np.testing.assert_array_equal(found[1], found[0])
     np.testing.assert_allclose(found[2], found[0], atol=1e-9)
 
 
-def test_a_call_that_fails_is_told(right):
+def test_a_failed_call_of_an_fmu_is_reported(right):
     with pytest.raises(FmuError, match=r"^right[23]\.fmu: fmi[23]DoStep failed with status 3 \(error\)\.$"):
         right.simulate(replace(FIG5, mass=200.0), START, [0.0, 1.0])
 
 
-def test_a_parameter_that_the_model_lacks_is_not_attempted_unless_it_is_nothing(packed):
+def test_a_missing_parameter_must_be_zero(packed):
     centred = tuple(name for name in PARAMETERS + STATES if name != "offset")
     (engine,) = engines([f"fmu:{packed('centred', names=centred)}"])
     engine.simulate(replace(FIG5, offset=0.0), START, [0.0, 0.1])
@@ -184,14 +184,14 @@ def test_a_parameter_that_the_model_lacks_is_not_attempted_unless_it_is_nothing(
 
 
 def refusal(file):
-    """Return in which sentence a file is refused as an engine."""
+    """Return the message that rejects a file as an engine."""
     with pytest.raises(ValueError, match=r"\.fmu") as error:
         engines([f"fmu:{file}"])
     assert "\n" not in str(error.value)
     return str(error.value)
 
 
-def test_what_is_no_model_of_a_system_is_refused_in_one_sentence(packed, tmp_path):
+def test_a_file_that_is_not_a_model_of_a_system_is_rejected(packed, tmp_path):
     (tmp_path / "text.fmu").write_text("no archive")
     lacking = packed("lacking", names=tuple(name for name in PARAMETERS + STATES if name != "mass"))
     exchange = packed("exchange", interface="ModelExchange")
@@ -210,11 +210,11 @@ BROKEN = {
     "large": ({"data": bytes(10**6)}, "it would unpack to 1e+06 bytes, the limit is 1e+05"),
     "no description": ({}, "There is no item named 'modelDescription.xml'"),
 }
-"""Members of archives besides the description, and what the sentence says."""
+"""Members of the archive in addition to the description, and part of the message."""
 
 
 @pytest.mark.parametrize("kind", BROKEN)
-def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path, monkeypatch, kind):
+def test_an_invalid_archive_is_rejected(tmp_path, monkeypatch, kind):
     members, reason = BROKEN[kind]
     monkeypatch.setattr(fmu, "MOST_BYTES", 1e5)
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "unpacked"))
@@ -231,7 +231,7 @@ def test_an_archive_that_cannot_be_unpacked_is_refused_in_one_sentence(tmp_path,
     assert not list((tmp_path / "unpacked").iterdir())
 
 
-def test_an_archive_with_any_byte_changed_is_used_or_refused(packed, tmp_path):
+def test_a_damaged_archive_is_used_or_rejected(packed, tmp_path):
     whole = packed("whole").read_bytes()
     for place in np.linspace(0, len(whole) - 1, 60).astype(int):
         file = tmp_path / f"{place}.fmu"
@@ -240,7 +240,7 @@ def test_an_archive_with_any_byte_changed_is_used_or_refused(packed, tmp_path):
             fmu.fmu_engine(str(file))
 
 
-def test_a_library_that_cannot_be_loaded_is_named_as_in_the_archive(tmp_path):
+def test_a_missing_library_is_reported(tmp_path):
     with zipfile.ZipFile(tmp_path / "pin.fmu", "w") as archive:
         archive.writestr("modelDescription.xml", description(2, PARAMETERS + STATES))
     (engine,) = engines([f"fmu:{tmp_path}/pin.fmu"])

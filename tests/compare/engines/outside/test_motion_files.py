@@ -1,4 +1,4 @@
-"""Motions from a folder of files: what is there is taken, what is missing is named, what is wrong is told."""
+"""Motions from a folder of files: missing ones are named, invalid ones are reported."""
 
 import json
 
@@ -27,7 +27,7 @@ def folder(tmp_path):
 
 @pytest.fixture
 def answer(folder):
-    """Writes the answer, with some change, and returns what the engine makes of it."""
+    """Return a function that writes a changed answer and simulates with the engine of the folder."""
     exact = simulate(FIG5, START, TIMES)
     (asked,) = (path for path in folder.glob("*.json") if path.name != "plan.json")
     path = asked.with_suffix(".csv")
@@ -43,16 +43,16 @@ def answer(folder):
     return ask
 
 
-def test_what_simulate_has_written_is_an_answer_to_the_last_bit(answer):
+def test_a_motion_is_read_back_to_the_last_bit(answer):
     np.testing.assert_array_equal(answer().states, answer.exact.states)
 
 
-def test_a_line_of_names_may_be_missing_and_empty_lines_do_no_harm(answer):
+def test_the_header_is_optional_and_empty_lines_are_ignored(answer):
     found = answer(lambda text: text.partition("\n")[2].replace("\n", "\r\n\r\n"))
     np.testing.assert_array_equal(found.states, answer.exact.states)
 
 
-def test_the_engine_is_called_by_its_folder_and_promises_what_was_planned(folder, tmp_path, monkeypatch):
+def test_the_engine_is_named_after_its_folder_and_supports_the_planned_kinds(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (engine,) = engines(["files:motions"])
     assert (engine.name, engine.kinds, engine.phases) == ("motions", ("pin",), False)
@@ -60,7 +60,7 @@ def test_the_engine_is_called_by_its_folder_and_promises_what_was_planned(folder
 
 
 def lines(change):
-    """Return a change of the text that changes the list of its lines."""
+    """Return a function of a text that applies ``change`` to its lines."""
     return lambda text: "\n".join(change(text.splitlines())) + "\n"
 
 
@@ -73,13 +73,13 @@ def lines(change):
         (lambda text: text[: text.rindex(",")], "ends after 2 of 3 times, before t = 1 s"),
     ],
 )
-def test_what_is_cut_short_is_named_and_not_scored(change, reason, answer):
+def test_a_truncated_file_is_unsupported_not_wrong(change, reason, answer):
     with pytest.raises(UnsupportedSystemError) as error:
         answer(change)
     assert str(error.value) == f"motions/{answer.path.name} {reason}"
 
 
-def test_what_is_missing_is_named_and_not_scored(answer, folder):
+def test_a_missing_file_is_unsupported_not_wrong(answer, folder):
     (engine,) = engines([f"files:{folder}"])
     with pytest.raises(UnsupportedSystemError, match=f"^motions/{answer.path.name} is missing$"):
         engine.simulate(FIG5, START, TIMES)
@@ -113,7 +113,7 @@ def test_what_is_missing_is_named_and_not_scored(answer, folder):
         ),
     ],
 )
-def test_what_is_wrong_in_a_file_is_told_with_its_line(change, kind, reason, answer):
+def test_an_invalid_file_is_reported_with_its_line(change, kind, reason, answer):
     with pytest.raises(kind) as error:
         answer(change)
     assert str(error.value).endswith(reason)
@@ -129,7 +129,7 @@ def test_what_is_wrong_in_a_file_is_told_with_its_line(change, kind, reason, ans
         (json.dumps({"format": 1, "kinds": ["sphere"], "motions": []}), "it is not a plan of this version"),
     ],
 )
-def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folder):
+def test_a_folder_without_a_valid_plan_is_rejected(index, reason, folder):
     if index is None:
         (folder / "plan.json").unlink()
     else:
@@ -139,7 +139,7 @@ def test_a_folder_without_a_plan_is_refused_in_one_sentence(index, reason, folde
             look(f"files:{folder}")
 
 
-def test_another_question_has_other_files():
+def test_different_motions_have_different_files():
     lines = {
         question(FIG5, START, TIMES, {"tolerance": tolerance})
         for tolerance in (1e-9, 1e-9 * (1.0 + 2.0**-52), 1.25e-10)

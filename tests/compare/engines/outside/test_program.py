@@ -1,4 +1,4 @@
-"""Programs of any language as engines: whatever they do ends in a sentence, and none is left behind."""
+"""Programs in any language as engines: every fault gives a message, and no process is left behind."""
 
 import json
 import os
@@ -63,13 +63,13 @@ def alive(process):
 
 
 def process_of(engine):
-    """Return the number of the engine's process, which fails at the first motion but one."""
+    """Return the process id that the engine reports at its second motion."""
     with pytest.raises(conversation.ProgramError) as error:
         asked_twice(engine)
     return int(str(error.value).rpartition(": ")[2])
 
 
-def test_numbers_come_back_to_the_last_bit():
+def test_numbers_are_exchanged_to_the_last_bit():
     np.testing.assert_array_equal(asked(faulty("none")).states, [START] * 3)
 
 
@@ -81,9 +81,7 @@ def test_numbers_come_back_to_the_last_bit():
         (replace(FIG11, contact_points=6), (*START, 0.0, 0.0), "points"),
     ],
 )
-def test_the_question_has_the_parameters_by_their_names_the_start_the_times_and_the_tolerance(
-    system, state, kind
-):
+def test_the_request_contains_parameters_start_times_and_tolerance(system, state, kind):
     engine = faulty("tells the question", kinds=["pin", "ring", "points"])
     engine.simulate(system, state, TIMES)
     with pytest.raises(conversation.ProgramError) as error:
@@ -97,7 +95,7 @@ def test_the_question_has_the_parameters_by_their_names_the_start_the_times_and_
     }
 
 
-def test_a_program_with_a_fixed_step_is_told_the_step():
+def test_a_program_with_a_fixed_step_receives_the_step():
     engine = faulty("tells the question", step=1e-3)
     with pytest.raises(conversation.ProgramError) as error:
         asked_twice(engine)
@@ -106,7 +104,7 @@ def test_a_program_with_a_fixed_step_is_told_the_step():
     assert "tolerance" not in question
 
 
-def test_the_greeting_promises_what_attributes_of_a_function_would():
+def test_the_greeting_declares_the_abilities():
     engine = faulty("none", kinds=["pin", "ring"], sticks=False, nonlinear=False, phases=True)
     assert (engine.kinds, engine.sticks, engine.nonlinear, engine.phases) == (
         ("pin", "ring"),
@@ -134,7 +132,7 @@ def test_the_greeting_promises_what_attributes_of_a_function_would():
         ("{}\n{}", "wrote more than one line as its greeting"),
     ],
 )
-def test_a_program_that_does_not_greet_is_refused_in_one_sentence(greeting, reason):
+def test_an_invalid_greeting_is_rejected(greeting, reason):
     with pytest.raises(ValueError, match=re.escape(reason)) as error:
         engines(["exec:" + shlex.join([sys.executable, "-S", str(FAULTY), "none", greeting])])
     assert "\n" not in str(error.value)
@@ -152,7 +150,7 @@ def test_a_program_that_does_not_greet_is_refused_in_one_sentence(greeting, reas
         ("'open", "no closing quotation"),
     ],
 )
-def test_a_command_that_can_not_be_started_is_refused(command, reason, tmp_path, monkeypatch):
+def test_a_command_that_cannot_be_started_is_rejected(command, reason, tmp_path, monkeypatch):
     (tmp_path / "here").write_text("")
     (tmp_path / "folder").mkdir()
     monkeypatch.chdir(tmp_path)
@@ -168,7 +166,7 @@ def states(*last, **more):
 
 
 def phases(*begun, state=(0.0,) * 4):
-    """Return an answer with phases of a kind from a time on."""
+    """Return an answer with phases, each given by its kind and start time."""
     told = [{"kind": kind, "start": start, "state": list(state)} for kind, start in begun]
     return states(*START, phases=told)
 
@@ -226,20 +224,18 @@ TOLD = [
 
 
 @pytest.mark.parametrize(("fault", "kind", "reason", "ends"), TOLD, ids=[fault[:50] for fault, *_ in TOLD])
-def test_whatever_a_program_does_is_told_in_one_sentence_and_the_next_question_is_answered(
-    fault, kind, reason, ends
-):
+def test_any_fault_of_a_program_is_reported_and_the_next_request_is_answered(fault, kind, reason, ends):
     engine = faulty(fault)
     asked(engine)
     with pytest.raises(kind, match=".*".join(map(re.escape, reason.split("…")))) as error:
         asked(engine)
     assert "\n" not in str(error.value)
-    if ends:  # a new process is asked for the first time
+    if ends:  # a new process gives its first answer
         np.testing.assert_array_equal(asked(engine).states, [START] * 3)
 
 
 @pytest.mark.parametrize("fault", ["hang", pytest.param("hang with a child", marks=posix)])
-def test_a_program_that_does_not_answer_is_ended_after_its_limit_with_all_that_it_started(fault):
+def test_a_silent_program_and_its_children_are_ended_at_the_limit(fault):
     engine = faulty(fault, limit=0.4)
     asked(engine)
     group = conversation.conversation_with(engine.function.command, engine.function.folder)._process.pid
@@ -250,7 +246,7 @@ def test_a_program_that_does_not_answer_is_ended_after_its_limit_with_all_that_i
 
 
 def _members(group):
-    """Return the living processes of a group, where the system tells."""
+    """Return the living processes of a group, empty on systems without /proc."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -261,11 +257,11 @@ def _members(group):
     return found
 
 
-def test_much_on_the_standard_error_holds_nothing_up():
+def test_much_output_on_standard_error_does_not_block():
     np.testing.assert_array_equal(asked_twice(faulty("chatty")).states, [START] * 3)
 
 
-def test_phases_are_taken_over():
+def test_phases_of_a_program_are_used():
     found = asked_twice(faulty(phases(("slip", 0.0), ("stick", 0.5))))
     assert [(phase.kind, phase.start, phase.end) for phase in found.phases] == [
         ("slip", 0.0, 0.5),
@@ -273,7 +269,7 @@ def test_phases_are_taken_over():
     ]
 
 
-def test_a_process_is_kept_alive_and_ended_with_the_last_question():
+def test_a_program_runs_until_the_last_request():
     engine = faulty("tells its process")
     process = process_of(engine)
     with pytest.raises(conversation.ProgramError, match=f"says: {process}$"):
@@ -285,7 +281,7 @@ def test_a_process_is_kept_alive_and_ended_with_the_last_question():
         os.waitpid(process, os.WNOHANG)
 
 
-def test_another_process_has_a_program_of_its_own():
+def test_each_worker_starts_its_own_program():
     engine = faulty("tells its process")
     assert pickle.loads(pickle.dumps(engine)) == engine
     with Workers(2) as workers:
@@ -305,7 +301,7 @@ def _killed_while_it_waits(engine, file):
 
 
 @posix
-def test_a_worker_that_is_killed_as_by_a_study_limit_takes_its_program_along(tmp_path):
+def test_a_killed_worker_ends_its_program(tmp_path):
     with Workers(2) as workers:
         engine = faulty("hang with a child", limit=1000.0)
         workers.submit("key", _killed_while_it_waits, engine, tmp_path / "process")
@@ -317,14 +313,14 @@ def test_a_worker_that_is_killed_as_by_a_study_limit_takes_its_program_along(tmp
 
 @pytest.fixture
 def in_the_foreground():
-    """Take SIGINT as a terminal's foreground does: what is started in the background ignores it."""
+    """Handle SIGINT as in the foreground of a terminal, because background processes ignore it."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
 
 
 @posix
-def test_ctrl_c_ends_the_program_that_was_asked(in_the_foreground):
+def test_ctrl_c_ends_the_running_program(in_the_foreground):
     engine = faulty("hang")
     asked(engine)
     threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
@@ -344,11 +340,11 @@ def test_ctrl_c_ends_the_program_that_was_asked(in_the_foreground):
         ("node", "node"),
     ],
 )
-def test_an_engine_is_called_by_its_command_in_short(command, name):
+def test_an_engine_has_the_short_name_of_its_command(command, name):
     assert name_of(tuple(shlex.split(command))) == name
 
 
-def test_two_engines_of_one_short_name_are_told_apart(tmp_path, monkeypatch):
+def test_engines_with_the_same_short_name_keep_their_commands(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = FAULTY.read_text()
     for folder in ("one", "two"):
@@ -363,7 +359,7 @@ def test_two_engines_of_one_short_name_are_told_apart(tmp_path, monkeypatch):
     assert [engine.name for engine in engines([taken])] == ["reference none"]
 
 
-def test_an_engine_may_not_be_called_as_one_that_is_registered(tmp_path, monkeypatch):
+def test_a_program_cannot_take_the_name_of_a_registered_engine(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "reference").write_text(f"#!{sys.executable}\nprint('{{}}', flush=True)\ninput()\n")
     (tmp_path / "reference").chmod(0o755)
@@ -371,7 +367,7 @@ def test_an_engine_may_not_be_called_as_one_that_is_registered(tmp_path, monkeyp
         assert [engine.name for engine in engines(["exec:./reference"])] == ["exec:./reference"]
 
 
-def test_the_lines_in_the_document_are_those_that_are_exchanged():
+def test_the_documented_messages_are_the_exchanged_ones():
     document = (Path(__file__).parents[4] / "docs" / "judge-your-engine.md").read_text("utf-8")
     section = document.partition("## Any language")[2].partition("\n## ")[0]
     greeting, question, answer, *_ = re.findall(r"```\n( *\{.*?)```", section, re.DOTALL)

@@ -1,4 +1,4 @@
-"""The study of the laws of contact: claims of the theory fail for laws that are broken on purpose."""
+"""The study of contact laws: claims about the theory differ for broken laws."""
 
 import math
 
@@ -14,7 +14,7 @@ from reference_model.contact.elliptic import mean_directions
 
 
 def naive_directions(slip, rim):
-    """The modulus 4UW/(U + W)² in double precision, which cancels at extreme ratios."""
+    """Return the mean directions with the modulus 4UW/(U + W)², which loses digits at extreme ratios."""
     from scipy.special import ellipe, ellipk
 
     m = 4.0 * slip * rim / (slip + rim) ** 2
@@ -28,7 +28,7 @@ def naive_directions(slip, rim):
 
 @pytest.fixture
 def fresh():
-    """Forget what was found of the laws before, and afterwards what was found of broken ones."""
+    """Clear the caches of the theory before and after the test."""
     searches = theory.greatest_errors_of_expansion, theory.greatest_errors_of_points
     for search in searches:
         search.cache_clear()
@@ -45,12 +45,12 @@ def fresh():
         lambda slip, rim: tuple(np.array(mean_directions(slip, rim)) * (1.0 + 1e-9)),
     ],
 )
-def test_a_wrong_closed_form_is_found_out(broken, monkeypatch):
+def test_a_wrong_closed_form_differs(broken, monkeypatch):
     monkeypatch.setattr("reference_model.contact.contact_law.mean_directions", broken)
     assert theory_of(STUDY, "closed_form") == {"closed_form": DIFFERS}
 
 
-def test_a_wrong_expansion_is_found_out(monkeypatch, fresh):
+def test_a_wrong_expansion_differs(monkeypatch, fresh):
     def two_terms(self, slip_speed, relative_spin):
         _, c, s = self._polar(slip_speed, relative_spin)
         return Shares(c * (1.0 - 0.5 * s**2), self.radius * s * (1.0 - 0.5 * c**2))
@@ -60,7 +60,7 @@ def test_a_wrong_expansion_is_found_out(monkeypatch, fresh):
     assert set(found.values()) == {DIFFERS}
 
 
-def test_points_in_the_wrong_places_are_found_out(monkeypatch, fresh):
+def test_contact_points_at_wrong_angles_differ(monkeypatch, fresh):
     def uneven(self, angle):
         return [
             self.radius * np.exp(1j * (angle + 2.0 * np.pi * i / (self.points + 1)))
@@ -73,21 +73,14 @@ def test_points_in_the_wrong_places_are_found_out(monkeypatch, fresh):
     assert DIFFERS in found.values()
 
 
-def test_an_annulus_that_is_not_split_at_its_kink_is_found_out(monkeypatch):
+def test_an_annulus_that_is_not_split_at_its_resting_radius_does_not_agree(monkeypatch):
     monkeypatch.setattr(Annulus, "_resting_radius", lambda self, slip, spin: self.outer_radius)
     assert AGREES not in theory_of(STUDY, "annulus_converges", "slopes_converge").values()
 
 
-def test_an_annulus_with_all_its_load_outside_is_found_out(monkeypatch):
+def test_an_annulus_with_a_wrong_load_distribution_differs(monkeypatch):
     monkeypatch.setattr(Annulus, "_pressure_at", lambda self, radius: radius)
     assert theory_of(STUDY, "in_place") == {"in_place": DIFFERS}
     monkeypatch.setattr(Annulus, "_resting_radius", lambda self, slip, spin: self.inner_radius)
     monkeypatch.setattr(Annulus, "_loads", lambda self, centre: [(self.outer_radius, 1.0)])
     assert theory_of(STUDY, "thin_annulus") == {"thin_annulus": DIFFERS}
-
-
-def test_the_top_of_a_parabola_is_found():
-    place, size, error = theory.top(lambda ratio: 2.0 - (ratio - 0.9) ** 2, 1e-12)
-    assert place == pytest.approx(0.9, abs=error)
-    assert size == pytest.approx(2.0)
-    assert error == pytest.approx(2e-6, rel=0.01)

@@ -1,4 +1,4 @@
-"""The study of the simulated map: which ends can not be, and what Fig. 11 ends in."""
+"""The study of the simulated map: impossible ends differ, and the disc of Fig. 11 is modulated."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from reference_model.ensemble import EndState
 CLAIMS = ("leaves_axis", "no_unstable_whirl")
 
 
-def test_all_is_of_theory_and_decided():
+def test_both_claims_are_about_the_theory_and_the_map_is_decided():
     assert len(SIMULATED_MAP.found("theory").claims) == len(CLAIMS)
     assert np.mean(simulated() == EndState.UNDECIDED) < 0.01
 
@@ -30,7 +30,7 @@ def test_the_disc_of_fig_11_is_modulated():
         (EndState.MODULATED, EndState.WHIRL, "no_unstable_whirl"),
     ],
 )
-def test_ends_that_can_not_be_are_found_out(where, instead, seen_by):
+def test_impossible_ends_differ(where, instead, seen_by):
     ends = simulated()
     wrong = np.where(ends == where, instead, ends).astype(np.uint8)
     findings = STUDY.measure_theory({name: {"ends": wrong} for name in CLAIMS}, only=CLAIMS)

@@ -1,4 +1,4 @@
-"""The study of the coupled clutches: Exudyn's own connector, and records that are wrong."""
+"""The study of the coupled clutches: Exudyn's built-in connector, and wrong records."""
 
 from dataclasses import replace
 
@@ -16,7 +16,7 @@ NATIVE = replace(engine_named("exudyn-native"), contact_only=False)
 
 
 def of_bristles(name, fault=None):
-    """Return the verdict of the claim about speeds of Exudyn's own connector, with a fault."""
+    """Return the verdict of the claim about speeds of Exudyn's built-in connector, with a fault."""
     with pytest.MonkeyPatch.context() as patch:
         if fault is not None:
             fault(patch)
@@ -24,7 +24,7 @@ def of_bristles(name, fault=None):
     return claim.verdict
 
 
-def test_exudyns_own_connector_agrees():
+def test_exudyns_built_in_connector_agrees():
     assert of_bristles("bristles") is Verdict.AGREES
 
 
@@ -32,7 +32,7 @@ def test_exudyns_own_connector_agrees():
     "fault",
     [coupled_off(COEFFICIENT=1.005), first_load_late, coupled_off(coarse=False, STATIC_RATIO=1.0 / 1.1)],
 )
-def test_a_wrong_connector_with_bristles_is_seen(fault):
+def test_a_wrong_built_in_connector_differs(fault):
     assert of_bristles(f"wrong bristles {id(fault)}", fault) is Verdict.DIFFERS
 
 
@@ -47,7 +47,7 @@ def test_a_wrong_connector_with_bristles_is_seen(fault):
         (lambda record: replace(record, times=record.times + 2e-5), "published_switches"),
     ],
 )
-def test_a_wrong_record_is_seen(change, function, monkeypatch):
+def test_a_wrong_published_record_differs(change, function, monkeypatch):
     record = change(published())
     monkeypatch.setattr(claims, "published", lambda: record)
     (claim,) = STUDY.measure_theory({}, (function,)).claims

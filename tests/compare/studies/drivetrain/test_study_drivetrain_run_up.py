@@ -1,4 +1,4 @@
-"""The run-up: its figures show what is there, and its spectrum finds a known whirl."""
+"""The run-up: figures from any data, and the spectrum of a known whirl."""
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ MOVES = {
 }
 
 
-def test_a_disc_on_the_lines_is_found_on_them():
+def test_a_disc_on_the_predicted_lines_agrees():
     (claim,) = RUN_UP.claims_of_fault(Patched(moving(MOVES["on its lines"]())), ("lines",))
     assert np.max(claim.difference) < 0.5 / TURNS
 
@@ -48,7 +48,7 @@ def test_a_disc_on_the_lines_is_found_on_them():
         ("beside its lines", "above"),
     ],
 )
-def test_a_disc_beside_its_line_is_found_out_in_the_windows_where_it_is(move, windows):
+def test_a_disc_off_its_line_differs_in_the_affected_windows(move, windows):
     (claim,) = RUN_UP.claims_of_fault(Patched(moving(MOVES[move]())), ("lines",))
     speeds, _ = strongest_line(MOVES[move]())
     ends = natural_frequency(passenger_car()), whirls_above_onset(passenger_car())[0, 0]
@@ -57,7 +57,7 @@ def test_a_disc_beside_its_line_is_found_out_in_the_windows_where_it_is(move, wi
     assert np.all(off[chosen >= ends[1]] if windows == "above" else off[chosen < 0.8 * ends[0]])
 
 
-def test_the_mean_torque_brings_the_engine_to_the_end():
+def test_the_mean_torque_brings_the_engine_to_its_final_speed():
     data = RUN_UP.found("exudyn").data
     assert data["engine"][-1, 1] == pytest.approx(SHORT * RPM, rel=0.02)
     assert data["slip"][-1] == pytest.approx(SLIP, abs=4.0)
@@ -72,11 +72,11 @@ def test_the_reference_predicts_self_centring_below_the_onset_and_a_whirl_above(
     assert speed[-1] < data["onset"][0] < data["whirl"][0, 0]
     assert data["onset"][0] == onset_speed(car, SLIP, transmitted(car))
     assert np.all(data["whirl"][:, 1] > car.stop_gap)
-    # The unbalance resonates where the disc itself, which slips, turns at k.
+    # The unbalance resonates if the slipping disc turns at k.
     assert speed[np.argmax(data["unbalance"])] == pytest.approx(data["onset"][1] + SLIP, rel=0.02)
 
 
-def test_figures_are_drawn_whatever_is_there(monkeypatch):
+def test_figures_are_drawn_from_any_available_data(monkeypatch):
     monkeypatch.setattr(pictures, "FRAMES", 1)
     theory = RUN_UP.found("theory").data
     drawn = {"exudyn": run_up_with({0.9: 5e-4, 0.0: 2e-4}), "theory": theory}
@@ -89,7 +89,7 @@ def test_figures_are_drawn_whatever_is_there(monkeypatch):
     assert set(drawn["exudyn"]) == set(RUN_UP.found("exudyn").data)
 
 
-def test_the_spectrum_finds_amplitude_order_and_sense_of_a_whirl():
+def test_the_spectrum_has_amplitude_order_and_sense_of_a_whirl():
     speed, orders, amplitude = order_spectrum(run_up_with({0.9: 5e-4, -0.9: 1e-4, 0.0: 2e-4}))
     assert speed[0] > 800.0 * RPM
     assert speed[-1] < 6000.0 * RPM
@@ -97,12 +97,12 @@ def test_the_spectrum_finds_amplitude_order_and_sense_of_a_whirl():
     for order, expected in ((0.9, 5e-4), (-0.9, 1e-4), (0.0, 2e-4)):
         near = np.abs(orders - order) < 0.2
         peak = amplitude[near].max(axis=0)
-        # A window of Hann loses up to 4 % of a line half way between two of twice its own spacing.
+        # A Hann window loses up to 4 % of a line between two frequencies of the spectrum.
         np.testing.assert_allclose(peak, expected, rtol=0.05)
         assert np.all(np.abs(orders[near][amplitude[near].argmax(axis=0)] - order) <= width)
 
 
-def test_the_envelope_goes_from_the_least_to_the_largest_distance():
+def test_the_envelope_spans_the_least_and_the_largest_distance():
     data = run_up_with({0.0: 2e-4, 1.0: 1e-4})
     speed, least, largest = pictures.envelope(data, np.abs(centre(data["disc"])))
     np.testing.assert_allclose(least[1:-1], 1e-4, rtol=0.05)

@@ -1,4 +1,4 @@
-"""Sound engines with random admissible parameters: no claim may accuse them, and wrong ones differ."""
+"""Random admissible parameters: no claim differs for sound engines, and wrong engines differ."""
 
 import functools
 import itertools
@@ -17,15 +17,15 @@ from compare.studies.toolkit.random_systems import any_disc, any_pin, any_start
 from reference_model import simulate
 
 DRAWN = 12
-"""Four of each kind of system, of which two come to rest."""
+"""Four motions of each kind of system; two of them stick."""
 
 SEED = 50
 
 UNTIL = 10.0
-"""In s: three to thirty radians of the support's own oscillation."""
+"""Duration in s: three to thirty radians of the natural oscillation."""
 
 RESOLUTION = 1e-4
-"""Of a claim, as a part of the largest number in the start."""
+"""Resolution of a claim relative to the largest number in the start."""
 
 SYSTEMS = {
     "pin": any_pin,
@@ -36,7 +36,7 @@ SYSTEMS = {
 
 @functools.cache
 def motions():
-    """Return motions with random parameters and starts, of pins and discs by turns."""
+    """Return motions with random parameters and starts, alternating between the kinds of systems."""
     random = np.random.default_rng(SEED)
     found = {}
     for i, kind in zip(range(DRAWN), itertools.cycle(SYSTEMS), strict=False):
@@ -56,27 +56,27 @@ def motions():
 
 
 def differing(engine, count):
-    """Return what an engine differs in of the first ``count`` motions."""
+    """Return the sentences that differ for the first ``count`` motions."""
     few = dict(itertools.islice(motions().items(), count))
     return [claim.sentence for claim in measure(engine, few).claims if claim.verdict is Verdict.DIFFERS]
 
 
 @pytest.mark.parametrize("engine", SOUND, ids=lambda engine: engine.name)
-def test_no_claim_accuses_a_sound_engine(engine):
+def test_no_claim_differs_for_a_sound_engine(engine):
     assert sum(motion.sticks for motion in motions().values()) == 2
     found = measure(engine, motions()).claims
     assert len(found) > 2 * DRAWN
     assert not [claim.sentence for claim in found if claim.verdict is Verdict.DIFFERS]
     agree = sum(claim.verdict is Verdict.AGREES for claim in found)
-    assert agree > 0.8 * len(found)  # where a point comes to rest, integrals of forces say little
+    assert agree > 0.8 * len(found)  # integrals of forces are uncertain if a point comes to rest
 
 
-def test_the_exudyn_models_do_not_fail_either():
+def test_no_claim_differs_for_exudyn():
     assert not differing(engines(["exudyn"])[0], 6)
 
 
 @pytest.mark.parametrize("parameter", ["mass", "offset", "friction_force"])
-def test_an_engine_that_is_wrong_by_1e_5_fails_with_every_kind_of_system(parameter):
+def test_a_parameter_error_of_1e_5_differs_for_every_kind_of_system(parameter):
     wrong = differing(altered(**{parameter: 1.0 + 1e-5}), 3)
     for kind in SYSTEMS:
         assert any(kind in sentence for sentence in wrong)

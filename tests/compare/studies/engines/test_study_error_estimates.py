@@ -1,4 +1,4 @@
-"""The study of error estimates: errors that are known are covered and exceeded as computed."""
+"""The study of error estimates: coverage and overestimate of known errors."""
 
 from dataclasses import replace
 
@@ -15,22 +15,13 @@ from compare.engines import Engine
 from compare.studies.engines.error_estimates.study import STUDY, simulated
 from compare.studies.engines.error_estimates.theory import KNOWN, PROBLEMS, Calibration, Problem, calibrated
 
-CLOSED = [kind for kind in PROBLEMS if not kind.startswith("any motion")]
-
 
 def of(motions):
-    """Return the arguments with which so many random motions are measured."""
+    """Return arguments for this number of random motions."""
     return {"coverage": {"motions": motions}, "over_estimate": {"motions": motions}}
 
 
-def thrown_rings_off(system, *arguments, **options):
-    """Put thrown rings off by 1e-6 of their way."""
-    trajectory = simulate(system, *arguments, **options)
-    thrown = system.stiffness == 0.0
-    return replace(trajectory, states=trajectory.states * (1.0 + 1e-6 * thrown))
-
-
-def test_native_contact_has_error_bars_that_mean_something_in_all_that_it_simulates():
+def test_error_bars_of_exudyns_built_in_contact_are_calibrated():
     engine = engine_named("exudyn-native")
     found = STUDY.measure(engine, of(36))
     assert len(found.claims) == 2 * len(simulated(engine)) > 0
@@ -40,19 +31,8 @@ def test_native_contact_has_error_bars_that_mean_something_in_all_that_it_simula
     assert set(figures) == set(STUDY.figures)
 
 
-@pytest.mark.parametrize("kind", CLOSED)
-def test_closed_form_is_what_the_reference_comes_to_at_its_tightest(kind):
-    random = np.random.default_rng(3)
-    for _ in range(5):
-        problem = PROBLEMS[kind](random)
-        found = problem.measured(engine_named("reference"), 1e-13)
-        # The response is a mean over X0, which takes as many digits as X0 is small.
-        accuracy = 1e-4 if kind == "response to an offset" else 3e-12
-        assert np.max(np.abs(found - problem.exact)) <= accuracy * np.max(np.abs(problem.exact))
-
-
 def off_by(error):
-    """Return an engine that is exact in a motion at rest but for ``error(tolerance)``."""
+    """Return an engine with the error ``error(tolerance)`` in a motion at rest."""
 
     def simulated(system, initial_state, times, *, tolerance=1e-9):
         trajectory = simulate(system, initial_state, times)
@@ -67,14 +47,14 @@ ONES = Problem(
 
 
 @pytest.mark.parametrize("power", [1 / 3, 0.5, 1.0, 2.0])
-def test_an_error_that_falls_as_a_power_of_the_tolerance_is_covered_and_exceeded_as_computed(power):
+def test_coverage_and_overestimate_of_an_error_that_is_a_power_of_the_tolerance(power):
     found = calibrated(off_by(lambda tolerance: tolerance**power), [(ONES, 1e-5)] * 3)
     assert found.motions == 3
     assert found.coverage == 1.0
     assert found.over_estimate == pytest.approx(SAFETY * (1.0 - COARSENING**-power), rel=1e-3)
 
 
-def test_an_error_that_does_not_fall_is_not_covered():
+def test_a_constant_error_is_not_covered():
     assert calibrated(off_by(lambda tolerance: 1e-6), [(ONES, 1e-5)]).coverage == 0.0
 
 
@@ -93,7 +73,7 @@ def test_standard_error_of_the_coverage_counts_motions_not_numbers():
     assert found.coverage_noise == pytest.approx(np.sqrt(0.9 * 0.1 / 99))
 
 
-def test_one_of_several_numbers_that_changes_by_nothing_by_chance_is_covered_by_the_others():
+def test_a_number_that_does_not_change_by_chance_is_covered_by_the_others():
     def errors(tolerance):
         return np.array([tolerance, 0.5e-5, -tolerance, 2.0 * tolerance])  # the second does not change
 
@@ -103,13 +83,13 @@ def test_one_of_several_numbers_that_changes_by_nothing_by_chance_is_covered_by_
     assert found.ratios[1] == pytest.approx(2.0 * (1.0 - 1.0 / COARSENING) / 0.5, rel=1e-3)
 
 
-def test_an_error_below_what_is_known_of_the_motion_counts_as_that():
+def test_an_error_below_the_known_accuracy_counts_as_that_accuracy():
     found = Calibration(np.zeros(2, dtype=int), np.array([0.0, KNOWN / 3.0]), np.full(2, ROUNDING))
     assert found.over_estimate == pytest.approx(ROUNDING / KNOWN)
 
 
-def test_rounding_of_a_release_counts_for_the_place_too_only_if_both_are_of_one_size():
-    """Else the estimate of the place would be far above its error, whatever the engine does."""
+def test_times_and_positions_of_releases_have_the_same_scale():
+    """Otherwise rounding of the time would dominate the error estimate of the position."""
     random = np.random.default_rng(5)
     for _ in range(20):
         assert np.all(np.abs(PROBLEMS["stick and release"](random).exact[4:]) < 7.0)

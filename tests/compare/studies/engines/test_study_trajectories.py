@@ -1,4 +1,4 @@
-"""The study of plain motions: how motions are drawn, pooled and integrated."""
+"""The study of trajectories: random motions, pooled claims and integrals of forces."""
 
 from dataclasses import replace
 
@@ -34,25 +34,20 @@ def test_no_two_parameters_are_equal():
 
 
 @pytest.mark.parametrize("name", ["exudyn", "intact"])
-def test_sound_engines_move_as_the_reference_and_their_forces_add_up(name):
+def test_sound_engines_agree_on_motions_and_forces(name):
     found = measure(engine_named(name), MOTIONS).claims
     assert len(found) == 3 * len(MOTIONS)
     assert {claim.verdict for claim in found} == {Verdict.AGREES}
 
 
-def test_native_contact_does_so_over_the_whole_range_of_what_it_simulates():
+def test_exudyns_built_in_contact_agrees_over_its_whole_range():
     found = STUDY.measure(engine_named("exudyn-native"))
     of_rings = 3 * (sum("ring" in name for name in MOTIONS) + 1)
     assert len(found.claims) == 3 * (len(MOTIONS) + len(DRAWN)) - of_rings
     assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}
 
 
-def test_one_that_is_another_in_its_contact_alone_is_asked_for_one_of_each_kind():
-    contact_only = replace(engine_named("exudyn-native"), contact_only=True)
-    assert len(STUDY.measure(contact_only).claims) == 9
-
-
-def test_the_whole_range_has_slow_and_fast_discs_in_both_senses_and_all_that_a_mistake_may_be_confined_to():
+def test_the_random_motions_cover_all_speeds_senses_and_contact_states():
     for motions in DRAWN.values():
         speeds = [motion.system.disc_speed for motion in motions]
         for sense in (1.0, -1.0):
@@ -73,7 +68,7 @@ def test_the_whole_range_has_slow_and_fast_discs_in_both_senses_and_all_that_a_m
         assert samples_in_stick(by_reference(motion))
 
 
-def test_a_moment_of_stick_is_no_phase_but_one_of_a_millisecond_is():
+def test_a_stick_phase_below_a_microsecond_does_not_count():
     (motion, *_) = DRAWN["pins that stick"]
     run = by_reference(motion)
     stick, slip = run.phases[:2]
@@ -88,7 +83,7 @@ def test_a_moment_of_stick_is_no_phase_but_one_of_a_millisecond_is():
         assert stick_times(replace(run, phases=split)).shape == (2 * phases,)
 
 
-def test_pooled_claims_keep_every_number_and_its_own_error_bar():
+def test_pooled_claims_keep_every_number_and_its_error():
     few = list(DRAWN["pins"])[:2]
     single = [moves(engine_named("reference"), (motion,)) for motion in few]
     both = pooled(single)
@@ -104,7 +99,7 @@ def test_pooled_claims_keep_every_number_and_its_own_error_bar():
 
 
 @pytest.mark.parametrize("name", MOTIONS)
-def test_nothing_comes_to_rest_where_forces_are_integrated(name):
+def test_no_contact_point_rests_while_forces_are_integrated(name):
     motion = MOTIONS[name]
     run = simulate(motion.system, motion.start, np.linspace(0.0, motion.until, 801), tolerance=1e-10)
     assert any(phase.kind != "slip" for phase in run.phases) is motion.sticks
@@ -114,7 +109,7 @@ def test_nothing_comes_to_rest_where_forces_are_integrated(name):
 
 
 @pytest.mark.parametrize("pole", [0.01, 0.1, 1.0])
-def test_gauss_integrates_to_the_error_that_it_tells(pole):
+def test_the_error_of_the_quadrature_is_covered(pole):
     places = times_of(MOTIONS[PIN])[1 : len(NODES) + 1]
     found, error = gauss((1.0 / (pole + places))[np.newaxis, :, np.newaxis])
     missed = abs(found.item() - np.log((pole + PANEL) / pole))
@@ -122,8 +117,8 @@ def test_gauss_integrates_to_the_error_that_it_tells(pole):
 
 
 @pytest.mark.parametrize("name", [PIN, "a pin on a support that hardens, beyond its stop", RING, SIX])
-def test_forces_are_those_that_the_reference_moves_by(name):
-    """The change of velocity over a short time, by a simulation."""
+def test_forces_change_the_momentum_of_the_reference(name):
+    """Compare with the change of velocity over a short simulation."""
     motion = MOTIONS[name]
     half, h = motion.system.state_size // 2, 1e-4
     states = simulate(motion.system, motion.start, [0.0, h, 2.0 * h], tolerance=1e-13).states
@@ -132,7 +127,7 @@ def test_forces_are_those_that_the_reference_moves_by(name):
     assert forces(motion.system, states[1]) == pytest.approx(change, abs=1e-6)
 
 
-def test_an_engine_is_measured_on_what_it_promises():
+def test_an_engine_is_measured_on_its_declared_kinds():
     findings = measure(Engine("pins that slip", simulate, ("pin",), sticks=False), MOTIONS)
     assert len(findings.claims) == 9
     assert "disc" in findings.not_simulated

@@ -1,10 +1,9 @@
-"""The study of the basins: claims of the theory fail for wrong ends of motions."""
+"""The study of the basins: claims about the theory differ for wrong ends of motions."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from studies_under_test import altered
 from tested_studies import BASINS
 
 from compare.claims.claim import Verdict
@@ -14,14 +13,9 @@ from compare.studies.pin.basins.theory import enclosed, smooth
 from reference_model.ensemble import EndState
 
 
-def test_a_little_more_damping_gives_the_saddle_another_period_and_multiplier():
-    (claim,) = BASINS.claims_of_fault(altered(damping=1.0 + 1e-5), ("returns",))
-    assert np.all((claim.difference > claim.budget.total)[[0, 2]])
-
-
 @pytest.fixture
 def anew(monkeypatch):
-    """Let nothing that was found before the test, or in it, be found again."""
+    """Clear the caches of the theory before and after the test, and return a ``MonkeyPatch``."""
     cached = (theory.ends_on_grid, theory.ends_on_finer_grid, theory.shares_over_speed)
     for each in cached:
         each.cache_clear()
@@ -38,8 +32,8 @@ def all_differ(*functions, few=BASINS.few):
     return {claim.verdict for claim in claims_of_theory(*functions, few=few)} == {Verdict.DIFFERS}
 
 
-def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
-    """Of starts that come to the equilibrium in the quarter of the rectangle that is nearest to its middle."""
+def test_a_wrong_share_of_the_basin_differs(monkeypatch):
+    """Let the middle quarter of the rectangle be the basin of the equilibrium."""
     x, vx = np.meshgrid(np.linspace(-1.0, 1.0, 401), np.linspace(-1.0, 1.0, 401))
     middle = (abs(x) <= 0.5) & (abs(vx) <= 0.5)
     ends = np.where(middle, EndState.SELF_CENTRED, EndState.WHIRL).astype(np.uint8)
@@ -49,8 +43,8 @@ def test_a_share_that_is_not_the_area_of_the_basin_is_found_out(monkeypatch):
     assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
 
 
-def test_ends_of_wrong_starts_are_found_out(anew):
-    """Of an ensemble that takes 4 mm too much for x0, on a grid of 4 mm."""
+def test_ends_of_shifted_starts_differ(anew):
+    """Shift x0 by 4 mm, the spacing of the grid."""
     right = theory.ensemble_of
 
     def shifted(starts, *pin, **parameters):
@@ -60,7 +54,7 @@ def test_ends_of_wrong_starts_are_found_out(anew):
     assert all_differ("divides", few={"divides": {"side": 200, "cells": 6}})
 
 
-def test_a_basin_that_grows_with_the_speed_is_found_out(anew):
+def test_a_basin_that_grows_with_the_speed_differs(anew):
     right = theory.ensemble_of
 
     def slower(starts, *pin, **parameters):
@@ -70,7 +64,7 @@ def test_a_basin_that_grows_with_the_speed_is_found_out(anew):
     assert all_differ("shrinks")
 
 
-def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(anew):
+def test_an_ensemble_with_swapped_ends_differs(anew):
     right = theory.ensemble_of
 
     def swapped(starts, *pin, **parameters):
@@ -82,7 +76,7 @@ def test_an_ensemble_that_disagrees_with_the_plain_reference_is_found_out(anew):
     assert all_differ("divides", "recomputes")
 
 
-def test_a_circle_is_smooth_to_fourth_order():
+def test_the_spline_through_a_circle_has_order_four():
     """The spline through n points misses the area of the circle by ~ n⁻⁴."""
     missed = []
     for n in (12, 24):

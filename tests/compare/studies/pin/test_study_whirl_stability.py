@@ -1,4 +1,4 @@
-"""The study of the whirl: its theory sees wrong formulas."""
+"""The study of the whirl: wrong formulas differ."""
 
 import numpy as np
 import pytest
@@ -9,14 +9,14 @@ from compare.studies.pin.whirl_stability.study import STUDY
 from reference_model.formulas.pin import characteristic_coefficients_as_printed
 
 
-def test_the_count_of_disagreements_sees_a_wrong_condition(monkeypatch):
-    """The margin of (16) shifted a little disagrees with the eigenvalues at some points of the grid."""
+def test_a_wrong_stability_condition_differs(monkeypatch):
+    """A slightly shifted margin (16) disagrees with eigenvalues at some points of the grid."""
     margin = study.upper_branch_margin
     monkeypatch.setattr(study, "upper_branch_margin", lambda pin: margin(pin) + 0.02)
     assert theory_of(STUDY, "hurwitz") == {"hurwitz": DIFFERS}
 
 
-def test_the_printed_equation_13_does_not_pass(monkeypatch):
+def test_the_printed_equation_13_differs(monkeypatch):
     monkeypatch.setattr(study, "characteristic_coefficients", characteristic_coefficients_as_printed)
     assert theory_of(STUDY, "same_eigenvalues") == {"same_eigenvalues": DIFFERS}
 

@@ -1,4 +1,4 @@
-"""What is left of a transient, and which deviations decay, from motions known in closed form."""
+"""Remaining transients and decaying deviations of motions known in closed form."""
 
 import numpy as np
 import pytest
@@ -17,13 +17,13 @@ def decaying(times, tolerance):
     return np.column_stack((END + envelope * np.cos(FREQUENCY * t), END + tolerance * np.arange(len(t))))
 
 
-def test_what_is_left_of_a_transient_covers_it_and_no_more_than_twice():
+def test_the_remaining_transient_is_bounded_from_both_sides():
     period = 2.0 * np.pi / FREQUENCY
     found = settled(decaying, duration=60.0, delay=10.0, period=period, rate=RATE, tolerance=1e-9)
-    # At most the change from the farthest instant on one side to an end on the other.
+    # The bound assumes the largest deviation at the sampled time and an end on the other side.
     most = (np.exp(RATE * (10.0 + period)) + 1.0) / np.expm1(RATE * 10.0) * np.exp(-RATE * 60.0)
     assert abs(found.value[0] - END) < found.left[0] < most
-    # Of the second quantity the last instant is the farthest off, by 13 tolerances.
+    # The last sample of the second quantity deviates most, by 13 tolerances.
     assert found.error[1] > 13e-9
     assert found.value.shape == found.error.shape == found.left.shape == (2,)
 
@@ -37,7 +37,7 @@ def test_what_is_left_of_a_transient_covers_it_and_no_more_than_twice():
         (1e-4, 0, Verdict.INCONCLUSIVE),
     ],
 )
-def test_a_deviation_that_does_not_decay_is_counted_unless_it_is_left_out(slowest, but, verdict):
+def test_a_growing_deviation_differs_unless_it_is_excluded(slowest, but, verdict):
     values = np.array([[-1.0, slowest, -0.5 + 2j, -0.5 - 2j]], dtype=complex)
     rates = Rates(values, values, np.array([1e-3]))
     study = Study("rates", Prose("title"), source="ours")

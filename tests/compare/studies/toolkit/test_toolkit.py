@@ -1,4 +1,4 @@
-"""What the studies share: parameters in words, turns about the axis, eigenvalues from simulations."""
+"""Shared code of the studies: parameters in words, rotated states, eigenvalues from simulations."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from compare.claims.error_estimates import TIGHTEST
-from compare.claims.linearised_flow import matched, measured_eigenvalues, rotated
-from compare.claims.parameters import FIG5, FIG8, FIG9, FIG11, parameters_of
-from compare.engines import engines
-from reference_model.steady.stability import whirl_eigenvalues
-from reference_model.steady.steady_states import self_centred_equilibria, whirls
+from compare.claims.linearised_flow import measured_eigenvalues, rotated
+from compare.claims.parameters import FIG5, FIG11, parameters_of
+from reference_model.steady.steady_states import self_centred_equilibria
 
 
 def test_parameters_of_a_claim_name_the_ring_in_words():
@@ -23,7 +21,7 @@ def test_parameters_of_a_claim_name_the_ring_in_words():
     assert parameters_of(FIG5)["offset"] == FIG5.offset
 
 
-def test_parameters_of_a_claim_tell_of_hardening_and_stop_where_there_are_any():
+def test_parameters_of_a_claim_contain_hardening_and_stop_only_if_present():
     assert not {"hardening", "stop_gap", "stop_stiffness"} & set(parameters_of(FIG5))
     hard = parameters_of(replace(FIG5, hardening=2.0, stop_stiffness=3.0))
     assert (hard["hardening"], hard["stop_stiffness"]) == (2.0, 3.0)
@@ -31,17 +29,17 @@ def test_parameters_of_a_claim_tell_of_hardening_and_stop_where_there_are_any():
 
 
 @pytest.mark.parametrize("angle", [0.7, -2.0, 100.0])
-def test_turning_a_state_keeps_radius_speed_and_spin(angle):
+def test_rotating_a_state(angle):
     pin, disc = np.array([1.0, 2.0, 3.0, -4.0]), np.array([1.0, 2.0, 0.5, 3.0, -4.0, 7.0])
     c, s = np.cos(angle), np.sin(angle)
     expected = [c - 2.0 * s, s + 2.0 * c, 3.0 * c + 4.0 * s, 3.0 * s - 4.0 * c]
     assert rotated(pin, angle) == pytest.approx(expected)
     assert rotated(disc, angle) == pytest.approx([*expected[:2], 0.5 + angle, *expected[2:], 7.0])
     assert rotated(rotated(disc, angle), -angle) == pytest.approx(disc)
-    assert disc[2] == 0.5  # the state itself stays as it is
+    assert disc[2] == 0.5  # the argument is unchanged
 
 
-def test_many_states_are_turned_by_one_angle_or_by_one_each():
+def test_rotating_states_by_one_angle_or_one_each():
     discs = np.arange(18.0).reshape(3, 6)
     angles = np.array([0.1, 0.2, 0.3])
     each = rotated(discs, angles)
@@ -51,27 +49,8 @@ def test_many_states_are_turned_by_one_angle_or_by_one_each():
     assert rotated(discs, 0.1)[2] == pytest.approx(rotated(discs[2], 0.1))
 
 
-@pytest.mark.parametrize("name", ["reference", "exudyn"])
-@pytest.mark.parametrize(
-    "figure", [FIG8, replace(FIG11, friction_force=0.01), FIG11, FIG9], ids=["8", "centred", "11", "9"]
-)
-def test_eigenvalues_of_a_disc_are_measured_within_their_error(name, figure):
-    (engine,) = engines([name])
-    if figure in (FIG11, FIG9):
-        disc = replace(figure, offset=0.0)
-        motion = whirls(disc)[0]
-        frame, expected = motion.frequency, whirl_eigenvalues(disc, motion.state)
-    else:
-        disc, frame = figure, 0.0
-        motion = self_centred_equilibria(disc)[0]
-        expected = motion.eigenvalues
-    measured, error = measured_eigenvalues(engine, disc, motion.state, duration=1.0, frame_speed=frame)
-    assert len(measured) == 5
-    assert np.max(np.abs(matched(measured, expected) - expected)) < error < 1e-5
-
-
-def test_the_error_of_eigenvalues_covers_a_flow_that_is_curved():
-    """Differences of two steps remove the cubic part of this flow; the next part is in the error."""
+def test_the_error_of_eigenvalues_covers_a_nonlinear_flow():
+    """Two steps eliminate the cubic term of this flow, and the error covers the next term."""
     (rest,) = self_centred_equilibria(FIG5)
     rates, slip = np.array([-0.1, -0.2, -1.0, -2.0]), FIG5.disc_speed * np.hypot(rest.x, rest.y)
 
@@ -89,8 +68,8 @@ def test_the_error_of_eigenvalues_covers_a_flow_that_is_curved():
     assert 1e-7 < off < error < 30.0 * off
 
 
-def test_eigenvalues_of_an_exact_linear_flow_are_uncertain_by_the_tolerance():
-    """Errors below the tolerance need not show in any difference, so they count although this engine makes none."""
+def test_the_error_of_eigenvalues_contains_the_tolerance():
+    """The estimate contains errors below the tolerance, although this engine has none."""
     (rest,) = self_centred_equilibria(FIG5)
     slow, fast, duration = -0.1, -2.0, 1.5
     rates = np.array([slow, slow, fast, fast])
@@ -104,7 +83,7 @@ def test_eigenvalues_of_an_exact_linear_flow_are_uncertain_by_the_tolerance():
     engine = SimpleNamespace(simulate_many=simulate_many)
     found, error = measured_eigenvalues(engine, FIG5, rest.state, duration=duration)
     assert sorted(found.real) == pytest.approx(sorted(rates), abs=1e-9)
-    # A deviation of 0.004 of the slip, in m/s or in m, is left as exp(fast·duration) of itself.
+    # A deviation of 0.004 times the slip, in m/s or in m, decays by exp(fast·duration).
     slip = FIG5.disc_speed * np.hypot(rest.x, rest.y)
     smallest = 4e-3 * min(slip, slip / FIG5.disc_speed)
     within_tolerance = 10.0 * TIGHTEST * np.abs(rest.state).max() / smallest

@@ -208,16 +208,6 @@ def test_an_interrupted_sweep_continues_without_repeating_work(tmp_path):
     assert_same(content(tmp_path / "s"), content(tmp_path / "whole"))
 
 
-def test_a_chunk_with_a_missing_file_is_recomputed(tmp_path):
-    swept(tmp_path / "s", RANDOM, 7)
-    before = content(tmp_path / "s")
-    (tmp_path / "s" / "round-0" / "steps" / "c" / "3").unlink()
-    again = Recording()
-    swept(tmp_path / "s", RANDOM, 7, again)
-    assert again.simulated() == [list(range(21, 28))]
-    assert_same(content(tmp_path / "s"), before)
-
-
 @pytest.mark.parametrize(("compiled", "at_once"), [(True, AT_ONCE), (False, 1)])
 def test_only_compiled_tasks_run_in_parallel(compiled, at_once):
     running, most = [], []

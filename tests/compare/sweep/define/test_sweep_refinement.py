@@ -58,12 +58,6 @@ def test_the_number_of_simulated_points_grows_like_the_length_of_the_boundary():
     np.testing.assert_allclose(np.log2(np.divide(counts[1:], counts[:-1])), 1.0, atol=0.1)
 
 
-def test_a_coarse_grid_as_fine_as_the_finest_simulates_all():
-    grid, _, numbers = refine((30, 40), 30, disc)
-    assert len(numbers) == 1200
-    assert np.all(grid.simulated)
-
-
 @pytest.mark.parametrize(
     ("points", "coarse", "stride"), [(257, 65, 4), (1000, 65, 8), (65, 65, 1), (64, 65, 1), (3, 2, 2)]
 )
