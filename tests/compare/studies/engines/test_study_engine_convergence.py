@@ -34,6 +34,13 @@ def test_scatter_widens_the_budget_of_an_exponent():
     assert 0.9 <= inside / 200 <= 0.99
 
 
+def test_order_is_extrapolated_to_small_steps():
+    h = 0.5 ** np.arange(2, 8)
+    order, numerical, model = extrapolated_order(h**4 * (1.0 + h), 0.0)
+    assert order == pytest.approx(4.0, abs=1e-3)
+    assert abs(order - 4.0) <= numerical + model < 0.05
+
+
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 0.0])
 def test_an_order_of_invalid_errors_is_nan(bad):
     errors = np.array([1e-2, 1e-3, bad, 1e-5, 1e-6])
