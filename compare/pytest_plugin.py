@@ -343,21 +343,6 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
         session.exitstatus = NOTHING_SHOWN
 
 
-def _diagnoses(failed: list[pytest.TestReport]) -> Iterator[str]:
-    """Yield a line with the short diagnosis of each engine that failed."""
-    from compare.diagnosis.run import IN_SHORT, in_short
-    from compare.run.runner import loaded
-    from compare.run.workers import Workers
-
-    with Workers(1, IN_SHORT) as workers:
-        for name in dict.fromkeys(filter(None, map(_engine_of, failed))):
-            try:
-                (engine,) = loaded([name], workers)
-                yield f"{name}: {' '.join(in_short(engine, workers).sentences)}"
-            except ValueError as error:  # the engine cannot be imported
-                yield str(error)
-
-
 def _engine_of(report: pytest.TestReport) -> str:
     """Return the engine of a test, "" if the test is not a claim."""
     return next((str(value) for name, value in report.user_properties if name == ENGINE), "")
@@ -367,7 +352,9 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     """Write the diagnosis of failed engines, and each reason for missing verdicts once."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
-        for line in _diagnoses(failed):
+        from compare.diagnosis.run import in_short
+
+        for line in in_short(dict.fromkeys(filter(None, map(_engine_of, failed)))):
             terminalreporter.write_line(f"diagnosis: {line}")
     for why in NO_VERDICT:
         reports = terminalreporter.stats.get(why, [])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from enum import Enum
 from functools import cached_property
 from typing import Any, Literal, get_args
@@ -152,8 +152,9 @@ class Claim:
     """
 
     sentence: str
+    _: KW_ONLY
     equation: str
-    kind: Kind
+    kind: Kind = "formula"
     engine: str
     predicted: FloatArray
     measured: FloatArray
@@ -162,7 +163,7 @@ class Claim:
     source: str
     unit: str = ""
     note: str = ""
-    basis: Basis = "independent"
+    basis: Basis = ""  # type: ignore[assignment]  # replaced by the usual one
     implied_by: str = ""
     answers: bool = False
     named: Mapping[str, int | None] = field(default_factory=dict)
@@ -170,50 +171,13 @@ class Claim:
     size: FloatArray | None = None
     axes: tuple[tuple[str, ...], ...] = ()
 
-    def __init__(
-        self,
-        sentence: str,
-        *,
-        equation: str,
-        kind: Kind = "formula",
-        engine: str,
-        predicted: ArrayLike,
-        measured: ArrayLike,
-        budget: ErrorBudget,
-        parameters: Mapping[str, float | str],
-        source: str,
-        unit: str = "",
-        note: str = "",
-        basis: Basis | None = None,
-        implied_by: str = "",
-        answers: bool = False,
-        named: Mapping[str, int | None] | None = None,
-        identity: str = "",
-        size: ArrayLike | None = None,
-        axes: Sequence[Sequence[str]] = (),
-    ) -> None:
-        values = {
-            "sentence": sentence,
-            "equation": equation,
-            "kind": kind,
-            "engine": engine,
-            "predicted": np.asarray(predicted, dtype=float),
-            "measured": np.asarray(measured, dtype=float),
-            "budget": budget,
-            "parameters": parameters,
-            "source": source,
-            "unit": unit,
-            "note": note,
-            "basis": usual_basis(kind, engine) if basis is None else basis,
-            "implied_by": implied_by,
-            "answers": answers,
-            "named": dict(named or {}),
-            "identity": identity,
-            "size": None if size is None else np.asarray(size, dtype=float),
-            "axes": tuple(tuple(names) for names in axes),
-        }
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
+    def __post_init__(self) -> None:
+        """Turn numbers into arrays and choose the usual basis; raise ``ValueError`` for inconsistent fields."""
+        for name in ("predicted", "measured", "size"):
+            if (value := getattr(self, name)) is not None:
+                object.__setattr__(self, name, np.asarray(value, dtype=float))
+        object.__setattr__(self, "basis", self.basis or usual_basis(self.kind, self.engine))
+        object.__setattr__(self, "axes", tuple(map(tuple, self.axes)))
         self._check()
 
     def _check(self) -> None:
@@ -255,10 +219,6 @@ class Claim:
                 f"predicted {self.predicted.shape}"
             )
 
-    def unit_of(self, index: int) -> str:
-        """Return the unit of element ``index`` (flat)."""
-        return self.units[index % len(self.units)]
-
     @cached_property
     def units(self) -> tuple[str, ...]:
         """Units along the last axis if they are mixed, else the one unit."""
@@ -299,12 +259,8 @@ class Claim:
     def worst(self) -> int:
         """Flat index of the element with the largest ratio; ties are resolved by the largest difference."""
         ratio = self.ratio
-        return _place_of_largest(np.where(ratio == np.max(ratio), self.difference, -1.0))
-
-    @cached_property
-    def largest(self) -> int:
-        """Flat index of the element with the largest difference; a missing number counts as the largest."""
-        return _place_of_largest(self.difference)
+        nearest = np.where(ratio == np.max(ratio), self.difference, -1.0)
+        return int(np.argmax(np.nan_to_num(nearest, nan=np.inf, posinf=np.inf)))
 
     @cached_property
     def relative_error(self) -> float:
@@ -354,10 +310,6 @@ class Claim:
 def _unit(name: str) -> str:
     """Return the unit in the name of a component, such as "m" for "x in m"; "" without one."""
     return name.rpartition(" in ")[2] if " in " in name else ""
-
-
-def _place_of_largest(values: FloatArray) -> int:
-    return int(np.argmax(np.nan_to_num(values, nan=np.inf, posinf=np.inf)))
 
 
 def usual_basis(kind: Kind, engine: str) -> Basis:

@@ -29,6 +29,7 @@ Figures: TypeAlias = "dict[str, Figure]"
 """Matplotlib figures by the names of their captions."""
 
 Few = Mapping[str, Mapping[str, Any]]
+Value = TypeVar("Value")
 Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 
@@ -163,25 +164,23 @@ class Study:
 
     def draw(self, data: ByEngine) -> Figures:
         """Return the figures by name."""
-        figures: Figures = self.provided["figures"](data) if "figures" in self.provided else {}
-        return figures
+        return self._provided("figures", {}, data)
 
     def animate(self, data: ByEngine) -> dict[str, bytes]:
         """Return the animations (GIF) by name."""
-        animations: dict[str, bytes] = (
-            self.provided["animations"](data) if "animations" in self.provided else {}
-        )
-        return animations
+        return self._provided("animations", {}, data)
 
     def tables(self) -> tuple[Table, ...]:
         """Return the tables that the report shows in addition to claims and figures."""
-        tables: tuple[Table, ...] = self.provided["tables"]() if "tables" in self.provided else ()
-        return tables
+        return self._provided("tables", ())
 
     def recorded(self) -> tuple[Recorded, ...]:
         """Return recorded results of engines, which are not part of a run."""
-        settings: tuple[Recorded, ...] = self.provided["recorded"]() if "recorded" in self.provided else ()
-        return settings
+        return self._provided("recorded", ())
+
+    def _provided(self, name: str, otherwise: Value, *arguments: Any) -> Value:
+        found: Value = self.provided[name](*arguments) if name in self.provided else otherwise
+        return found
 
     def claim(
         self,
@@ -220,16 +219,18 @@ class Study:
                 swept=tuple(swept),
                 each=dict(each) if isinstance(each, Mapping) else {name: name for name in each},
             )
-            names = {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
             for case, _ in declared.cases():
-                if declared.identity(self.name, case) in names:
-                    raise ValueError(
-                        f"duplicate claim id {declared.identity(self.name, case)}: rename the function or the case"
-                    )
+                if (identity := declared.identity(self.name, case)) in self.identities:
+                    raise ValueError(f"duplicate claim id {identity}: rename the function or the case")
             self.declared.append(declared)
             return function
 
         return declare
+
+    @property
+    def identities(self) -> set[str]:
+        """Permanent ids of all claims."""
+        return {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
 
     def _declared_by(self, function: Callable[..., Any]) -> Declared:
         return next(one for one in self.declared if one.function is function)
@@ -306,8 +307,8 @@ class Study:
             equation=declared.equation,
             kind=declared.kind,
             engine=THEORY if engine is None else engine.name,
-            predicted=measured.predicted,
-            measured=measured.value,
+            predicted=np.asarray(measured.predicted),
+            measured=np.asarray(measured.value),
             budget=ErrorBudget(measured.error, model=measured.model, resolution=resolution),
             parameters=known | dict(measured.parameters),
             source=measured.source or self.source,
@@ -318,7 +319,7 @@ class Study:
             answers=measured.answers,
             named={**declared.named, **measured.named},
             identity=declared.identity(self.name, case),
-            size=measured.size,
+            size=None if measured.size is None else np.asarray(measured.size),
             axes=measured.axes,
         )
 

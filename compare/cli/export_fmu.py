@@ -8,9 +8,8 @@ from typing import Annotated, Literal, cast
 
 import typer
 
-from compare.cli.command import BadInputError, Command, EngineFailedError, refused
-from compare.cli.options import Settings, changes_of, whole, with_options
-from compare.output.text_files import check_writable
+from compare.cli.command import Command, EngineFailedError, refused
+from compare.cli.options import Settings, changes_of, check_file, whole, with_options
 
 export_fmu = typer.Typer(rich_markup_mode=None)
 
@@ -113,10 +112,7 @@ def _export(name: str, unit: Unit) -> None:
         model = fmu_models.MODELS[name]
         known = [one.name for one in model.variables if one.settable]
         model = model.starting(**_numbers(changes_of(unit.settings or [], known)))
-        try:
-            check_writable(unit.output)
-        except OSError as error:
-            raise BadInputError(f"cannot write the file {str(unit.output)!r}: {error.strerror}") from None
+        check_file(unit.output)
         try:
             made = fmu_models.export(model, unit.output, cast(Literal[2, 3], unit.fmi))
         except RuntimeError as error:

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec, TypeVa
 import typer
 
 from compare.cli.command import refused
+from compare.output.outside_text import one_of
+from compare.output.text_files import check_writable
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -33,24 +35,17 @@ MOST_JOBS = 1000
 
 def whole(name: str, least: int, most: int) -> Callable[[str], int]:
     """Return a parser of integers from ``least`` to ``most``."""
-
-    def parsed(text: str) -> int:
-        with refused():
-            return count(name, text, least, most)
-
-    return parsed
+    return refused()(lambda text: count(name, text, least, most))
 
 
 def positive(name: str, unit: str) -> Callable[[str], float]:
     """Return a parser of numbers > 0; messages show ``unit``."""
 
+    @refused()
     def parsed(text: str) -> float:
-        from reference_model.systems import finite_number
-
-        with refused():
-            value = finite_number(name, text)
-            if value <= 0.0:
-                raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
+        value = _number(name, text)
+        if value <= 0.0:
+            raise ValueError(f"{name} = {value:g} {unit}: it must be > 0")
         return value
 
     return parsed
@@ -58,34 +53,26 @@ def positive(name: str, unit: str) -> Callable[[str], float]:
 
 def finite(name: str) -> Callable[[str], float]:
     """Return a parser of finite numbers."""
-
-    def parsed(text: str) -> float:
-        from reference_model.systems import finite_number
-
-        with refused():
-            return finite_number(name, text)
-
-    return parsed
+    return refused()(lambda text: _number(name, text))
 
 
 def chosen_from(kind: str, names: Sequence[str]) -> Callable[[str], str]:
     """Return a parser that accepts only ``names``."""
-
-    def parsed(text: str) -> str:
-        from compare.engines import one_of
-
-        with refused():
-            return one_of(kind, text, names)
-
-    return parsed
+    return refused()(lambda text: one_of(kind, text, names))
 
 
+@refused()
 def tolerance_of(text: str) -> float:
     """Return ``text`` as a valid tolerance."""
-    from reference_model.systems import checked_tolerance, finite_number
+    from reference_model.systems import checked_tolerance
 
-    with refused():
-        return checked_tolerance(finite_number("tolerance", text))
+    return checked_tolerance(_number("tolerance", text))
+
+
+def _number(name: str, text: str) -> float:
+    from reference_model.systems import finite_number
+
+    return finite_number(name, text)
 
 
 def count(name: str, text: str, least: int, most: int) -> int:
@@ -178,8 +165,6 @@ def changed(system: System, settings: Sequence[str]) -> System:
 
 def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
     """Return the values of settings "name=value" by name; raise ``ValueError`` for a name not in ``names``."""
-    from compare.engines import one_of
-
     changes: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
@@ -201,6 +186,19 @@ def studies_of(context: typer.Context, names: Sequence[str], level: str = "full"
             raise ValueError(f"--level quick cannot be combined with named studies ({', '.join(names)})")
         found = studies(names, STUDIES if context.obj is None else context.obj)
     return tuple(study for study in found if study.quick or level == "full")
+
+
+def check_file(path: Path) -> None:
+    """Raise ``ValueError`` if ``path`` cannot be written; do not change an existing file."""
+    try:
+        check_writable(path)
+    except OSError as error:
+        raise ValueError(unwritable(path, error)) from None
+
+
+def unwritable(path: Path, error: OSError) -> str:
+    """Return the message for a file that cannot be written."""
+    return f"cannot write the file {str(path)!r}: {error.strerror}"
 
 
 def check_folder(folder: Path) -> None:

@@ -130,7 +130,8 @@ def report(
       friction-discs report fig03 fig05 --engine exudyn --output fig
       friction-discs report --claim fig06/rests --engine exudyn
     """
-    from compare.run.runner import loaded
+    from compare.claims.errata import ERRATA
+    from compare.run.runner import loaded, run
     from compare.run.workers import Workers
 
     studies = _requested_studies(context, names or [], claim, level, resume)
@@ -139,9 +140,6 @@ def report(
         chosen = loaded(engine or [], workers)
         check_folder(output)
         check_folder(store := store_of(output))
-
-    from compare.claims.errata import ERRATA
-    from compare.run.runner import run
 
     part = context.obj is not None or names or claim is not None or level != "full"
     with measurements() as progress:
@@ -161,7 +159,7 @@ def report(
             _print_numbers(matrix)
         _print_summary(result, matrix, output / "index.html")
     if not result.interrupted:
-        _print_diagnoses(one for one in chosen if _is_suspect(matrix, one.name))
+        _print_diagnoses(chosen, matrix)
     return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
 
 
@@ -205,22 +203,15 @@ def _print_numbers(matrix: Matrix) -> None:
         print(f"{claim.engine} {claim.verdict.value}: {account(claim)}")
 
 
-def _is_suspect(matrix: Matrix, engine: str) -> bool:
+def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
+    """Print the short diagnosis of each engine that differs or failed."""
+    from compare.diagnosis.run import in_short
     from compare.report.matrix import State
 
-    found = matrix.count(engine)
-    return bool(found[State.DIFFERS] or found[State.FAILED])
-
-
-def _print_diagnoses(suspects: Iterable[Engine]) -> None:
-    from compare.diagnosis.run import IN_SHORT, in_short
-    from compare.run.workers import Workers
-
-    with Workers(1, IN_SHORT) as workers:
-        for engine in suspects:
-            row = in_short(engine, workers)
-            with printing():
-                print(f"{row.engine}: {' '.join(row.sentences)}")
+    counts = ((engine, matrix.count(engine.name)) for engine in engines)
+    for line in in_short(engine for engine, of in counts if of[State.DIFFERS] or of[State.FAILED]):
+        with printing():
+            print(line)
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:

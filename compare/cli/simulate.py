@@ -11,8 +11,18 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from compare.cli.command import BadInputError, Command, EngineFailedError, printing, refused
-from compare.cli.options import Settings, Tolerance, changed, finite, positive, whole, with_options
-from compare.output.text_files import check_writable, replacing
+from compare.cli.options import (
+    Settings,
+    Tolerance,
+    changed,
+    check_file,
+    finite,
+    positive,
+    unwritable,
+    whole,
+    with_options,
+)
+from compare.output.text_files import replacing
 
 if TYPE_CHECKING:
     from compare.engines import Engine
@@ -140,7 +150,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             times = np.linspace(0.0, request.until, request.samples)
             write = write_csv if output is None else writer(output)
             if output is not None:
-                _check_file(output)
+                check_file(output)
         trajectory = workers.ask(
             _simulated, chosen, system, state, times, request.tolerance, write is not write_csv
         )
@@ -154,7 +164,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
         with replacing(output) as stream:
             write(trajectory, chosen.name, stream)
     except OSError as error:
-        raise BadInputError(_unwritable(output, error)) from None
+        raise BadInputError(unwritable(output, error)) from None
 
 
 def _simulated(
@@ -165,15 +175,3 @@ def _simulated(
 
     found = engine.simulate(system, state, times, tolerance=tolerance)
     return Trajectory(system, found.times, found.states, found.phases if phases else (), found.solution)
-
-
-def _unwritable(path: Path, error: OSError) -> str:
-    return f"cannot write the file {str(path)!r}: {error.strerror}"
-
-
-def _check_file(path: Path) -> None:
-    """Raise ``ValueError`` if ``path`` cannot be written; do not change an existing file."""
-    try:
-        check_writable(path)
-    except OSError as error:
-        raise ValueError(_unwritable(path, error)) from None

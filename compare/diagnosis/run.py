@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,7 @@ from compare.diagnosis.findings import PROBES, RUNGS, Motion, falling, parts_of
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, TOLERANCE, Recording, estimate, recordings
+from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import FloatArray
 
@@ -59,17 +60,24 @@ def diagnosed(
                 yield rows[name]
 
 
-def in_short(engine: Engine, workers: Workers) -> Row:
-    """Return the results of the probes, within seconds; stop after the first part without a result.
+def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
+    """Yield a line with the diagnosis of each engine, or of its name, from the probes alone."""
+    with Workers(1, IN_SHORT) as workers:
+        for engine in engines:
+            name = engine if isinstance(engine, str) else engine.name
+            try:
+                (known,) = loaded([engine], workers) if isinstance(engine, str) else (engine,)
+                yield f"{name}: {' '.join(_probed(known, workers).sentences)}"
+            except ValueError as error:  # the engine cannot be imported
+                yield str(error)
 
-    ``workers`` should be a single worker with the limit ``IN_SHORT``, reused for all engines.
-    """
+
+def _probed(engine: Engine, workers: Workers) -> Row:
+    """Return the results of the probes; stop after the first part without a result."""
     row, parts = _empty(engine), parts_of(engine)
     for part in PROBES:
         if part in parts and not row.gaps:
-            workers.submit(part, measured, engine, part, owner=owner_of(engine))
-            (done,) = workers.finished()
-            row = _with(row, part, done.value, done.seconds)
+            row = _with(row, part, workers.ask(measured, engine, part, owner=owner_of(engine)))
     return row
 
 
@@ -85,7 +93,7 @@ def _empty(engine: Engine) -> Row:
     return Row(engine.name, engine.version, engine.step or math.nan)
 
 
-def _with(row: Row, part: str, found: Any, seconds: float) -> Row:
+def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     """Return ``row`` with the result of a part."""
     row = replace(row, seconds=row.seconds + seconds)
     if isinstance(found, Failure):

@@ -213,7 +213,8 @@ class Engine:
         """Raise ``UnsupportedSystemError`` for a motion that the engine does not simulate."""
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
-        if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *_ends(times)):
+        ends = np.asarray(times, dtype=float)[[0, -1]].tolist()
+        if not self.sticks and not _slips(system, tuple(np.ravel(initial_state)), *ends):
             raise UnsupportedSystemError(f"{self.name} does not simulate stick")
 
     def _accuracy(self, tolerance: float) -> dict[str, float]:
@@ -263,7 +264,7 @@ class Engine:
 
     def simulates(self, system: System) -> bool:
         """Return whether the engine simulates ``system``."""
-        return self._promises(_kind(system)) and (self.nonlinear or Support.of(system).linear)
+        return self._promises(kind_of(system)) and (self.nonlinear or Support.of(system).linear)
 
     def _promises(self, kind: str) -> bool:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
@@ -271,22 +272,18 @@ class Engine:
     def lacking(self, systems: Iterable[System]) -> str:
         """Return a sentence that names the kinds of ``systems`` the engine does not simulate, or ""."""
         words = dict.fromkeys(
-            KINDS[_kind(system)] + (" on a nonlinear support" if self._promises(_kind(system)) else "")
+            KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
             for system in systems
             if not self.simulates(system)
         )
         return f"{self.name} does not simulate {' or '.join(words)}" if words else ""
 
 
-def _kind(system: System) -> str:
+def kind_of(system: System) -> str:
+    """Return the kind of a system, one of ``KINDS``."""
     if isinstance(system, PinOnDisc):
         return "block" if system.disc_speed == 0.0 else "pin"
     return "ring" if system.contact_points is None else "points"
-
-
-def _ends(times: ArrayLike) -> tuple[float, float]:
-    times = np.asarray(times, dtype=float)
-    return float(times[0]), float(times[-1])
 
 
 @functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances in succession

@@ -49,6 +49,11 @@ def one_of(kind: str, name: str, names: Iterable[str]) -> str:
     raise ValueError(f"unknown {kind} {name!r}: {hint}")
 
 
+def reason_of(error: BaseException) -> str:
+    """Return the message of an exception in one line, or its class if it has no message."""
+    return " ".join(str(error).split()) or type(error).__name__
+
+
 def all_printable(content: Any) -> Any:
     """Return JSON values with all texts and names ``printable``."""
     if isinstance(content, dict):

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 COLOURS = 64
 """Number of colours of a frame, enough for lines and labels in a small file."""
 
+DPI = 80.0
+
 
 def gif(
     figure: Figure,
@@ -21,7 +23,6 @@ def gif(
     frames: int,
     *,
     moving: Sequence[Artist] = (),
-    dpi: float = 80.0,
     fps: float = 20.0,
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
@@ -33,7 +34,7 @@ def gif(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     canvas: Any = FigureCanvasAgg(figure)  # untyped
-    figure.set_dpi(dpi)
+    figure.set_dpi(DPI)
     update(0)
     canvas.draw()
     figure.set_layout_engine("none")

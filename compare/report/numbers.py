@@ -110,7 +110,7 @@ def worst(claim: Claim) -> Worst:
         float(claim.difference.flat[i]),
         float(numerical.flat[i]),
         claim.budget.model,
-        claim.unit_of(i),
+        claim.units[i % len(claim.units)],
         _largest(claim),
     )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -71,11 +71,11 @@ def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
-    for only in _pieces(study):
+    for part in study.sentences().values():  # claims can be measured separately
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
-        found = _measured(study, exact, kinds, only)
+        found = _measured(study, exact, kinds, part)
         with suppress(Exception):  # a study may raise anything for wrong answers
-            _measured(study, off, kinds, only)
+            _measured(study, off, kinds, part)
         if list(exact.asked) != list(off.asked):
             adaptive += found
         elif found > 0:  # no claims if the system is of another kind
@@ -84,14 +84,8 @@ def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
     return Planned(tuple(motions), claims, adaptive)
 
 
-def _pieces(study: Study) -> Iterator[tuple[str, ...]]:
-    """Yield the selection of each claim, since claims can be measured separately."""
-    for part in study.sentences().values():
-        yield (part,)
-
-
-def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], only: tuple[str, ...]) -> int:
-    return len(study.measure(Engine("plan", recorder, kinds, phases=False), only=only).claims)
+def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], part: str) -> int:
+    return len(study.measure(Engine("plan", recorder, kinds, phases=False), only=(part,)).claims)
 
 
 class _Truth:

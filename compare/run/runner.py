@@ -174,7 +174,7 @@ class _Runner:
             column: engine_stamp(engines.get(column)) for column in {column for _, column in work}
         }
         for key, (study, engine) in work.items():
-            found = self._store.find(*key, self._stamps[key[1]], _identities(study)) if resume else None
+            found = self._store.find(*key, self._stamps[key[1]], study.identities) if resume else None
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             else:
@@ -241,10 +241,6 @@ def measured(study: Study, engine: Engine | str | None, only: Collection[str] = 
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
     return replace(findings, not_simulated=printable(findings.not_simulated))
-
-
-def _identities(study: Study) -> set[str]:
-    return {one.identity(study.name, case) for one in study.declared for case, _ in one.cases()}
 
 
 # --- Engines by name. Their modules are imported in another process, because an import may end its process.

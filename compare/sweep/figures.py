@@ -59,12 +59,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
 
     Raises ``ValueError`` if the sweep is not finished.
     """
-    result = store.get(RESULT)
-    if result is None:
-        raise ValueError(
-            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
-        )
-    contents = {}
+    result, contents = store.finished(RESULT), {}
     with paper_style():
         drawn = figures(store.plan, result, store.get(CURVES) or store.get(BRANCHES))
     for name, figure in drawn.items():

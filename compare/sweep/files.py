@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile, ZipFile
 
+from compare.output.outside_text import reason_of
 from compare.output.text_files import replacing
 
 OPTIONS: dict[str, dict[str, Any]] = {
@@ -139,7 +140,7 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
     except (FileExistsError, MemoryError, StoreError):
         raise
     except Exception as error:  # each file system has its own exceptions
-        reason = getattr(error, "strerror", None) or " ".join(str(error).split()) or type(error).__name__
+        reason = getattr(error, "strerror", None) or reason_of(error)
         raise StoreError(f"cannot {action} {url!r}: {reason}") from error
 
 

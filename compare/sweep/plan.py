@@ -6,21 +6,19 @@ them into rounds: a single one, or, for a refined basin, one for each step of th
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from compare.claims.as_json import as_json, from_json
+from compare.claims.shares import Ends, IntArray
 from compare.sweep.distributions import Uncertain, uniform_rows
 from compare.sweep.quantities import Axis, components, parameters
 from compare.sweep.refinement import refined
 from reference_model.systems import FloatArray, System
-
-IntArray = NDArray[np.int64]
-Ends = NDArray[np.uint8]
 
 Numbers: TypeAlias = range | IntArray
 """Numbers of trajectories."""
@@ -36,8 +34,8 @@ BASES = 2
 
 
 @dataclass(frozen=True, kw_only=True)
-class Common:
-    """Fields that all plans share.
+class Plan(ABC):
+    """A plan, with the fields that all plans share.
 
     Parameters
     ----------
@@ -59,43 +57,17 @@ class Common:
     tolerance: float
     seed: int
 
-
-class Plan(Protocol):
-    """Interface of a plan."""
-
-    kind: ClassVar[str]
-
-    @property
-    def system(self) -> System:
-        """Parameters that are not swept."""
-        ...
-
-    @property
-    def duration(self) -> float:
-        """Longest duration of a trajectory, in s."""
-        ...
-
-    @property
-    def tolerance(self) -> float:
-        """Requested relative accuracy."""
-        ...
-
-    @property
-    def seed(self) -> int:
-        """Random seed."""
-        ...
-
+    @abstractmethod
     def rounds(self) -> Rounds:
         """Yield the numbers of the trajectories of each round."""
-        ...
 
+    @abstractmethod
     def trajectories(self, numbers: Numbers) -> Trajectories:
         """Return initial states and parameters of trajectories; each depends only on its own number."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
-class Basin(Common):
+class Basin(Plan):
     """Starts on a grid in a plane of two state components, numbered y·(points of x) + x.
 
     Parameters
@@ -128,7 +100,7 @@ class Basin(Common):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RandomBasin(Common):
+class RandomBasin(Plan):
     """Uniformly distributed starts in a plane of two state components.
 
     Parameters
@@ -162,7 +134,7 @@ class RandomBasin(Common):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Map(Common):
+class Map(Plan):
     """A grid in a plane of two parameters, numbered (start·(points of y) + y)·(points of x) + x.
 
     Parameters
@@ -197,7 +169,7 @@ class Map(Common):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Uncertainty(Common):
+class Uncertainty(Plan):
     """Random parameters and starts in the design for Sobol indices by Saltelli et al. (2010).
 
     Each row contains two independent draws A and B and, for each uncertain quantity, a mixture with this quantity
@@ -247,7 +219,7 @@ class Uncertainty(Common):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Continuation(Common):
+class Continuation(Plan):
     """Random starts, the same at each value of one parameter, numbered value·samples + start.
 
     Parameters
@@ -282,7 +254,7 @@ class Continuation(Common):
         return _changed(self.system, self.start, starts | {self.x.name: self.x.values[value]}, len(numbers))
 
 
-PLANS: dict[str, type[Any]] = {
+PLANS: dict[str, type[Plan]] = {
     plan.kind: plan for plan in (Basin, RandomBasin, Map, Uncertainty, Continuation)
 }
 
@@ -302,8 +274,7 @@ def plan_as_json(plan: Plan) -> dict[str, Any]:
 def plan_from_json(content: Mapping[str, Any]) -> Plan:
     """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
     values = dict(content)
-    plan: Plan = from_json(PLANS[values.pop("kind")], values)
-    return plan
+    return from_json(PLANS[values.pop("kind")], values)
 
 
 def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:

@@ -13,12 +13,8 @@ from collections.abc import Generator
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from compare.claims.shares import Ends, mixed
-
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
+from compare.claims.shares import BoolArray, Ends, IntArray, mixed
 
 Lines: TypeAlias = tuple[IntArray, IntArray]
 """Positions of a coarser grid's lines on the finest grid, along y and x."""

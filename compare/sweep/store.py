@@ -188,6 +188,15 @@ class SweepStore:
         group = self._group(name)
         return group.dataset() if self._is_intact(group, name) else None
 
+    def finished(self, name: str) -> xr.Dataset:
+        """Return an intact group; raise ``ValueError`` if it is missing or damaged."""
+        group = self.get(name)
+        if group is None:
+            raise ValueError(
+                f"the sweep in {self.path!r} is not finished; repeat it with --resume to complete it"
+            )
+        return group
+
     def _group(self, name: str) -> Group:
         return Group(self.files, self._description, name)
 

@@ -20,7 +20,7 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 def summary(store: SweepStore) -> Iterator[str]:
     """Yield the lines of the results of a finished sweep."""
-    result, check = _group(store, RESULT), _group(store, CHECK)
+    result, check = store.finished(RESULT), store.finished(CHECK)
     total = result["end"].size
     if "simulated" in result:
         yield f"{np.count_nonzero(result['simulated'].values)} of {total} starts simulated"
@@ -49,12 +49,12 @@ def summary(store: SweepStore) -> Iterator[str]:
 
 def same_ends(store: SweepStore) -> bool:
     """Return whether no trajectory of the random sample ended differently with the plain reference."""
-    return not np.any(_differing(_group(store, CHECK)))
+    return not np.any(_differing(store.finished(CHECK)))
 
 
 def undecided(store: SweepStore) -> float:
     """Return the share of undecided trajectories."""
-    count = _group(store, RESULT)["count"].values
+    count = store.finished(RESULT)["count"].values
     return float(count[EndState.UNDECIDED] / np.sum(count))
 
 
@@ -117,12 +117,3 @@ def _differing(check: xr.Dataset) -> np.ndarray:
     found, plain = check["end"].values, check["plain_end"].values
     differing: np.ndarray = (found != plain) & (found != EndState.UNDECIDED) & (plain != EndState.UNDECIDED)
     return differing
-
-
-def _group(store: SweepStore, name: str) -> xr.Dataset:
-    group = store.get(name)
-    if group is None:
-        raise ValueError(
-            f"the sweep in {store.path!r} is not finished; repeat it with --resume to complete it"
-        )
-    return group

@@ -25,6 +25,7 @@ from compare.cli.sweep.options import (
     YAxis,
 )
 from compare.cli.sweep.run import redraw
+from compare.output.outside_text import one_of
 
 if TYPE_CHECKING:
     from compare.sweep.quantities import Axis
@@ -198,7 +199,6 @@ def sweep_continuation(
     Example:
       friction-discs sweep continuation pin --x friction_force=0.02:0.12:50 --samples 4000
     """
-    from compare.engines import one_of
     from compare.sweep.distributions import Uncertain
     from compare.sweep.plan import Continuation
     from compare.sweep.quantities import Axis, components, parameters
@@ -246,7 +246,6 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
 
 def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
     """Return the default state with the changes "NAME=VALUE,..."; raise ``ValueError`` for an invalid text."""
-    from compare.engines import one_of
     from reference_model.systems import finite_number
 
     state = dict(zip(names, STARTS[system], strict=True))

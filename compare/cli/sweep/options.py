@@ -29,15 +29,15 @@ For single contact points it is shorter: the plain reference simulates their res
 further motion."""
 
 
+@refused()
 def rows(text: str) -> int:
     """Return ``text`` as a number of rows, a power of 2."""
     from compare.sweep.compute.sensitivity import LEAST_SAMPLES
 
-    with refused():
-        number = count("samples", text, LEAST_SAMPLES, MOST_SAMPLES)
-        if number & (number - 1):
-            nearest = 1 << number.bit_length()
-            raise ValueError(f"samples = {number}: it must be a power of 2, for example {nearest}")
+    number = count("samples", text, LEAST_SAMPLES, MOST_SAMPLES)
+    if number & (number - 1):
+        nearest = 1 << number.bit_length()
+        raise ValueError(f"samples = {number}: it must be a power of 2, for example {nearest}")
     return number
 
 

@@ -7,11 +7,13 @@ import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
-from types import MappingProxyType
 
 from compare.engines.engine import Engine
 from compare.engines.registry import ByName, Scheme, register_scheme
 from compare.output.outside_text import one_of
+
+KINDS = ("pin", "points")
+"""Systems that these engines simulate, as in ``compare.engines.KINDS``."""
 
 
 @dataclass(frozen=True)
@@ -35,10 +37,6 @@ class Installed:
     package: str
     wheels: str
     settings: Mapping[str, str]
-
-    def __post_init__(self) -> None:
-        """Make the settings read-only."""
-        object.__setattr__(self, "settings", MappingProxyType(dict(self.settings)))
 
 
 INSTALLED = {
@@ -110,7 +108,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     return Engine(
         f"{name}:{setting}" if setting != next(iter(known.settings)) else name,
         ByName(module, known.settings[setting]),
-        kinds=simulate.kinds,
+        kinds=KINDS,
         nonlinear=not simulate.linear,
         phases=False,
         precision=simulate.precision,

@@ -69,8 +69,6 @@ class Setting:
         Least step in units of 1/max(k, ω).
     linear : bool
         True if the engine has linear springs only.
-    kinds : tuple of str
-        Systems that it simulates, as in ``compare.engines.KINDS``.
     step : float, optional
         Fixed step in s for a tolerance of 1e-9, as in ``compare.engines.Engine``, short enough for accuracy but
         faster than real time. None for an integrator that controls its error.
@@ -85,14 +83,8 @@ class Setting:
     options: Mapping[str, Any] = field(default_factory=dict)
     finest: float = 0.0
     linear: bool = True
-    kinds: tuple[str, ...] = ("pin", "points")
     step: float | None = 2e-3
     precision: float = 0.0
-
-    @property
-    def __wrapped__(self) -> type[Model]:
-        """The class with the code on which findings depend."""
-        return self.model
 
     def __call__(
         self,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.engines.answer import PHASES
-from compare.engines.engine import UnsupportedSystemError
+from compare.engines.engine import UnsupportedSystemError, kind_of
 from compare.engines.registry import DECLARED
 from compare.output.outside_text import one_line, one_of, printable
 from reference_model.systems import PinOnDisc, System, finite_number
@@ -94,14 +94,8 @@ def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[
 
 @functools.lru_cache(maxsize=64)  # successive questions often have the same system
 def _system(system: System) -> str:
-    return _written({"kind": kind_of(system)} | asdict(system))
-
-
-def kind_of(system: System) -> str:
-    """Return the kind of a system in a question: "pin", "ring" or "points"."""
-    if isinstance(system, PinOnDisc):
-        return "pin"
-    return "ring" if system.contact_points is None else "points"
+    kind = "pin" if isinstance(system, PinOnDisc) else kind_of(system)  # a block is a pin on a disc at rest
+    return _written({"kind": kind} | asdict(system))
 
 
 def most_bytes(system: System, times: ArrayLike) -> int:

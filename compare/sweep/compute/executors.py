@@ -14,9 +14,10 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, TypeAlias
 from urllib.parse import urlsplit
 
+from compare.output.outside_text import reason_of
 from compare.run.provenance import stamp
 
 WAIT = 3.0
@@ -46,26 +47,14 @@ class Task(NamedTuple):
     compiled: bool
 
 
-class Executor(Protocol):
-    """Interface of an executor."""
-
-    @property
-    def threads(self) -> int | None:
-        """Number of threads per task, None for all cores."""
-        ...
-
-    def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they become available; ``tasks`` is consumed on demand."""
-        ...
-
-
 class InProcess:
     """The cores of this machine; the next task fills cores that a task leaves idle."""
 
     threads = None
+    """Number of threads per task, here all cores."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results in order."""
+        """Yield keys and results in order; ``tasks`` is consumed on demand."""
         running: deque[tuple[Hashable, Future[Any]]] = deque()
         with ThreadPoolExecutor(AT_ONCE) as pool:
             for task in tasks:
@@ -158,7 +147,7 @@ class Cluster:
         except Exception as error:
             lost = (OSError, self._dask.CancelledError, self._dask.KilledWorker)
             if isinstance(error, lost) or self._client.status != "running":
-                raise ClusterError(f"lost the cluster at {self._address}: {_in_words(error)}") from None
+                raise ClusterError(f"lost the cluster at {self._address}: {reason_of(error)}") from None
             raise
 
     def _room(self) -> int:
@@ -167,6 +156,9 @@ class Cluster:
             self._counted = now
             self._most = max(1, IN_FLIGHT * sum(self._client.nthreads().values()))
         return self._most
+
+
+Executor: TypeAlias = InProcess | Cluster
 
 
 def _reach(dask: Any, address: str) -> None:
@@ -192,7 +184,3 @@ def _checked_address(address: str) -> str:
     except ValueError:  # invalid port
         pass
     raise ValueError(f"scheduler = {address!r}: write it as tcp://HOST:PORT")
-
-
-def _in_words(error: BaseException) -> str:
-    return " ".join(str(error).split()) or type(error).__name__

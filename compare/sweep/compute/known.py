@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, get_args
 
 import numpy as np
 
-from compare.sweep.compute.motions import matched
+from compare.sweep.compute.motions import Known, matched
 from compare.sweep.plan import Continuation, Map
 from reference_model import Orbit, self_centred_equilibria, whirl_orbit, whirls
 from reference_model.formulas.pin import largest_load_with_equilibrium
@@ -21,15 +21,6 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 SAMPLES = 64
 """Number of samples of an orbit for its radii; between two, the radius of a nearly circular orbit varies by 1e-3."""
-
-
-class Known(NamedTuple):
-    """A motion: its kind, least and largest radius in m, and stability."""
-
-    meaning: str
-    least: float
-    largest: float
-    stable: bool
 
 
 def known_branches(plan: Continuation) -> list[dict[int, Known]]:

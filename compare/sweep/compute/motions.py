@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from typing import NamedTuple, Protocol, TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -48,21 +48,16 @@ def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motio
     return found
 
 
-class Sized(Protocol):
-    """Interface of an object with a least and a largest radius in m."""
+class Known(NamedTuple):
+    """A motion of the theory: its kind, least and largest radius in m, and stability."""
 
-    @property
-    def least(self) -> float:
-        """Least radius in m."""
-        ...
-
-    @property
-    def largest(self) -> float:
-        """Largest radius in m."""
-        ...
+    meaning: str
+    least: float
+    largest: float
+    stable: bool
 
 
-One = TypeVar("One", bound=Sized)
+One = TypeVar("One", Motion, Known)
 
 
 def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> list[dict[int, One]]:

@@ -177,7 +177,7 @@ def test_a_failed_probe_is_named_and_the_others_remain():
     (row,) = run.diagnosed((broken,), limit=60.0)
     assert set(row.gaps) == {"law", "creep"}
     assert row.sentences[0].startswith("No result for law, creep: out of order")
-    assert set(run.in_short(broken, Workers(1)).gaps) == {"law"}
+    assert set(run._probed(broken, Workers(1)).gaps) == {"law"}
 
 
 def test_recorded_engines_have_rows_like_the_others(tmp_path):

@@ -153,7 +153,7 @@ def test_ctrl_c_keeps_finished_results_and_lists_missing_ones(tmp_path):
         preexec_fn=interruptible,
     )
     wait_for(process, running)
-    wait_until(lambda: list(store_of(output).glob("unending--good--*.json.xz")))
+    wait_until(lambda: list(store_of(output).glob("unending--good--*.zip")))
     os.killpg(process.pid, signal.SIGINT)  # to all processes, as a terminal does
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130

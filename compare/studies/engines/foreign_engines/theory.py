@@ -222,7 +222,7 @@ def recorded_claims(recording: Recording) -> Recorded:
                 equation=case.equation,
                 kind=case.kind,
                 engine=recording.name,
-                predicted=0.0,
+                predicted=np.array(0.0),
                 measured=runs[-1, ERROR],
                 budget=ErrorBudget(estimate(runs) + rounding, resolution=case.resolution),
                 parameters=parameters_of(case.system)
