@@ -16,7 +16,7 @@ from exudyn_models.forces.friction_laws import (
     friction_of_slip,
     slip_potential_of_contact,
 )
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import KeptOnDisk, compiled
 from exudyn_models.forces.laws.product import Law, friction_force_under
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
@@ -248,3 +248,6 @@ def slip_in_step(
         spin,
         math.sqrt(x * x + y * y),
     )
+
+
+change_of_slip = KeptOnDisk(slip_in_step)

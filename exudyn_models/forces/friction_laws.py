@@ -25,7 +25,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import KeptOnDisk, compiled
 from exudyn_models.forces.laws.pressures import mean_radius_of
 from exudyn_models.forces.slip_potential import (
     slip_potential_gradient,
@@ -372,3 +372,6 @@ def _derivatives_of_circles(
     result[2, 2] = -friction * (factor * by_spin_twice + tip * by_spin * by_spin)
     push = -friction * (1.0 if sliding else mean / epsilon) * by_speed
     return push * ex, push * ey, result
+
+
+friction_of, potential_of = KeptOnDisk(friction_of_slip), KeptOnDisk(slip_potential_of_contact)

@@ -14,7 +14,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from exudyn_models.forces.jit import compiled, taking_lists
+from exudyn_models.forces.jit import KeptOnDisk, compiled, taking_lists
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
     PLANAR,
@@ -68,7 +68,7 @@ def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law:
 
 def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
     def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        forces = support_on_nodes(kinds, reference + q, np.array(q_t), offset, law)
+        forces = on_nodes(kinds, reference + q, np.array(q_t), offset, law)
         return cast(list[float], forces.tolist())
 
     return force
@@ -90,7 +90,7 @@ def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, 
         coordinates, velocities, factors = reference.copy(), zeros.copy(), (position_factor, velocity_factor)
         coordinates[hidden:] += q
         velocities[hidden:] = q_t
-        derivatives = support_derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
+        derivatives: FloatArray = derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
         return -derivatives[hidden:, hidden:]  # Exudyn expects derivatives of the left-hand side
 
     return jacobian
@@ -218,3 +218,6 @@ def support_derivatives_on_nodes(
             change = secant * shift[i] + along * w[i] + damping * rate_change[i]
             result[:, j] -= change * to_slip[i] + (secant * w[i] + damping * rate[i]) * map_change[i]
     return result
+
+
+on_nodes, derivatives_on_nodes = KeptOnDisk(support_on_nodes), KeptOnDisk(support_derivatives_on_nodes)

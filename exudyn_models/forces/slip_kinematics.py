@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.jit import compiled, inlined
+from exudyn_models.forces.jit import KeptOnDisk, compiled, inlined
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 
@@ -258,3 +258,6 @@ def _lever(start: Vector, end: Vector, axis: Vector) -> Vector:
 def _product(a: Vector, b: Vector) -> Any:
     """Return a·b without complex conjugation."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+jacobian_of_slip, slip_and_place_of_nodes = KeptOnDisk(slip_jacobian), KeptOnDisk(slip_and_place)

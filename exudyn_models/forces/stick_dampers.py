@@ -24,7 +24,7 @@ from exudyn_models.forces.friction_laws import (
     point_regularisation,
 )
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place
+from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place_of_nodes
 from reference_model.systems import FloatArray
 
 
@@ -47,7 +47,7 @@ class StickDampers:
         They hold at the time t (s) and the nodes' ``coordinates`` relative to the reference, shape (n,).
         """
         place = self.reference + coordinates
-        to_slip, _, (cosine, sine), (x, y) = slip_and_place(self.kinds, place)
+        to_slip, _, (cosine, sine), (x, y) = slip_and_place_of_nodes(self.kinds, place)
         friction = self.factors.friction_force(t, math.hypot(x, y), 0.0, 0.0)
         dampers = friction * slip_dampers(self.factors.geometry, math.atan2(sine, cosine))
         if np.abs(to_slip[:2]).max() < ROUNDING:  # rotors on one axis: all points slip equally

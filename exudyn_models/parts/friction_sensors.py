@@ -14,13 +14,13 @@ import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, on_one_axis
-from exudyn_models.forces.friction_laws import friction_of_slip, mean_radius, slip_potential_of_contact
+from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
     Kinds,
-    slip_and_place,
+    slip_and_place_of_nodes,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.thermal_node import ThermalNode
@@ -235,7 +235,7 @@ class RingFriction:
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine), (x, y) = slip_and_place(self._kinds, coordinates)
+        to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(self._kinds, coordinates)
         return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
@@ -264,7 +264,7 @@ class RingFriction:
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""
         contact, spin = self._factors.geometry, float(slip[2])
-        speed = slip_potential_of_contact(float(slip[0]), float(slip[1]), spin, angle, contact)
+        speed: float = potential_of(float(slip[0]), float(slip[1]), spin, angle, contact)
         if self._factors.friction_force(t, radius, speed, spin) == 0.0:
             return None
         return speed / contact[3]
@@ -272,11 +272,9 @@ class RingFriction:
     def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
         arguments = (*slip.tolist(), angle, self._factors.contact_at(t))
-        friction = np.array(friction_of_slip(*arguments))
+        friction = np.array(friction_of(*arguments))
         if self._factors.depends_on_motion:
-            friction *= self._factors.friction_force(
-                t, radius, slip_potential_of_contact(*arguments), float(slip[2])
-            )
+            friction *= self._factors.friction_force(t, radius, potential_of(*arguments), float(slip[2]))
         return friction
 
 

@@ -34,7 +34,7 @@ from exudyn_models.forces.slip_kinematics import (
     ROTOR,
     SPATIAL,
     Kinds,
-    slip_and_place,
+    slip_and_place_of_nodes,
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
@@ -112,7 +112,7 @@ class RadialSupport:
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
-        to_slip, axes, _, place = slip_and_place(self._kinds, coordinates)
+        to_slip, axes, _, place = slip_and_place_of_nodes(self._kinds, coordinates)
         w = np.array(place) - self._offset
         square, rate, damping = float(w @ w), to_slip[:2] @ velocities, self._law[4]
         force = np.array(axes[:2]).T @ (-secant_stiffness(square, self._law) * w - damping * rate)

@@ -14,7 +14,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.any_pair import slip_in_step
+from exudyn_models.forces.any_pair import change_of_slip
 from exudyn_models.solver.repeated_steps import user_function
 from exudyn_models.solver.step_limit import contacts_of
 
@@ -68,7 +68,7 @@ def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
 def _right_share(contact: Any, t: float, start: Any, rates: Any, end: Any, end_rates: Any) -> float:
     """Return the share, up to 1, of a step to the time t (s) that skips no peak of a contact's friction."""
     factors, reference = contact.factors, contact.reference
-    before, after, change, spin, radius = slip_in_step(
+    before, after, change, spin, radius = change_of_slip(
         contact.kinds, factors.geometry, reference + start, rates, reference + end, end_rates
     )
     epsilon = factors.geometry[3]

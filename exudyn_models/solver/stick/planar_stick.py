@@ -20,9 +20,9 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.slip_kinematics import jacobian_of_slip
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
-    jacobian_of_slip,
     linear_friction,
     resisted_slip,
     slip_motion,

@@ -208,4 +208,3 @@ def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> F
 
 slip_motion, linear_friction = KeptOnDisk(_slip_motion), KeptOnDisk(_linear_friction)
 unit_friction, resisted_slip = KeptOnDisk(_unit_friction), KeptOnDisk(_resisted_slip)
-jacobian_of_slip = KeptOnDisk(slip_jacobian)

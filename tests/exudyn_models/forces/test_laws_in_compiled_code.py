@@ -1,6 +1,9 @@
 """Coefficients and loads as compiled code asks for them: functions of Python and of numba, and what they raise."""
 
 import math
+import subprocess
+import sys
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -98,3 +101,45 @@ def test_a_table_outlives_what_it_was_made_from():
     laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
     found = [law.friction_force(0.0, 0.0, 0.5, 0.0) for law in laws]
     np.testing.assert_allclose(found, 0.1 * np.arange(200), rtol=1e-14)
+
+
+USE_OF_ALL_PARTS = """
+import gc
+import sys
+
+from numba.core.dispatcher import Dispatcher
+
+sys.path.insert(0, sys.argv[1])
+from free_bodies import new_model, planar_body, rotor, settings_of
+import exudyn as exu
+from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
+
+for regularisation in (1e-3, None):
+    mbs = new_model()
+    nodes = rotor(mbs, 0.2, 9.0), planar_body(mbs, 0.6, 0.01, [0.001, 0.0, 0.0], [0.0] * 3)
+    shaft = add_radial_support(mbs, None, nodes[1], stiffness=1e4, damping=20.0)
+    contact = add_ring_friction(
+        mbs, *nodes, contact_radius=0.1, friction_coefficient=0.3, normal_load=8.0, regularisation=regularisation
+    )
+    contact.add_sensor("heat"), contact.add_sensor("mode"), shaft.add_sensor("force")
+    mbs.Assemble()
+    solve_dynamic(mbs, settings_of(0.05, 50), exu.DynamicSolverType.TrapezoidalIndex2)
+for one in gc.get_objects():
+    if isinstance(one, Dispatcher) and one.stats.cache_misses:
+        print(one.py_func.__name__)
+"""
+
+
+def test_a_second_process_compiles_nothing_that_takes_long():
+    """Functions that Python calls are kept on disk, also those of sensors and Jacobians."""
+    folder = str(Path(__file__).parents[1])
+    for _ in range(2):
+        run = subprocess.run(
+            [sys.executable, "-c", USE_OF_ALL_PARTS, folder], capture_output=True, text=True, check=True
+        )
+    assert set(run.stdout.split()) <= {
+        "secant_stiffness",
+        "elastic_energy",
+        "share_of_ring",
+        "impl",
+    }  # 0.1 s each
