@@ -68,6 +68,12 @@ def test_the_stamp_changes_with_the_data(data):
     assert drawing_stamp(data) != drawing_stamp(ZEROS)
 
 
+@pytest.mark.parametrize("engines", [(fake.GOOD, fake.ALSO_GOOD), (fake.FAILING,)], ids=len)
+def test_other_data_are_drawn_again(engines, run):
+    run(fake.VERDICTS, fake.GOOD)
+    assert run(fake.VERDICTS, *engines)[1]
+
+
 def test_figures_are_drawn_again_after_a_change_of_style(run, tmp_path, monkeypatch):
     run(fake.VERDICTS, fake.GOOD)
     for package in PACKAGES:

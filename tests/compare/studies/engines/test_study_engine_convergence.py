@@ -2,17 +2,8 @@
 
 import numpy as np
 import pytest
-from tested_studies import ENGINE_CONVERGENCE
 
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
-from compare.studies.engines.engine_convergence.study import STUDY
-
-
-@pytest.mark.parametrize("names", [("exudyn", "reference"), ("reference",), ("exudyn",), ()])
-def test_figures_are_drawn_for_any_finished_engines(names):
-    figures = STUDY.draw({name: ENGINE_CONVERGENCE.found(name).data for name in names})
-    assert set(figures) <= set(STUDY.figures)
-    assert ("engine-convergence-orders" in figures) == ("exudyn" in names)
 
 
 def test_the_exponent_of_a_power_law_with_a_next_term():
@@ -32,6 +23,13 @@ def test_scatter_widens_the_budget_of_an_exponent():
         exponent, numerical, _ = observed_exponent(x, errors, next_term=0.125)
         inside += abs(exponent - 1.0) <= numerical
     assert 0.9 <= inside / 200 <= 0.99
+
+
+def test_order_is_extrapolated_to_small_steps():
+    h = 0.5 ** np.arange(2, 8)
+    order, numerical, model = extrapolated_order(h**4 * (1.0 + h), 0.0)
+    assert order == pytest.approx(4.0, abs=1e-3)
+    assert abs(order - 4.0) <= numerical + model < 0.05
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, 0.0])

@@ -82,5 +82,12 @@ def test_the_critical_velocity_is_nan_without_enough_stick_phases():
     assert math.isnan(study.critical_velocity(GROSS["friction along the slip"], 1e-6))
 
 
+@pytest.mark.parametrize("name", FIG5_STARTS)
+def test_first_stick_and_release_by_a_plain_event_agree_with_the_reference(name):
+    """Compare an event on the slip of (1), followed by (7), with the reference's slip-polar coordinates."""
+    times = study.first_stick_and_release(name, 4e-13)
+    assert times == pytest.approx(study.reference_events(name)[:2], abs=1e-10)
+
+
 def test_an_animation_needs_an_engine():
     assert animate({}) == {}

@@ -1,6 +1,9 @@
-"""The study of thrown discs: missing abilities are reported."""
+"""The study of thrown discs: missing abilities are reported, and its numbers are consistent."""
 
+import pytest
 from tested_studies import THROWN_DISC
+
+from compare.studies.plane import thrown_disc as study
 
 
 def test_an_engine_without_a_full_disc_is_reported():
@@ -8,3 +11,9 @@ def test_an_engine_without_a_full_disc_is_reported():
         "exudyn-native does not simulate a disc on a continuous ring; "
         "exudyn-native is not asked for a full disc, which no engine promises"
     )
+
+
+@pytest.mark.parametrize("throw", [study.RING[-1], study.FULL[-1]], ids=["ring", "full disc"])
+def test_force_and_moment_end_sliding_and_spinning_at_the_same_time(throw):
+    spinning = throw.inertia * throw.rim / (study.DECELERATION * throw.moment)
+    assert spinning == pytest.approx(throw.time)
