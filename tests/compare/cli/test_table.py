@@ -200,7 +200,7 @@ BAD = [
     (f"{UNCERTAIN} --vary 'mass=uniform(0, 1)'", "… includes mass = 0, but it must be > 0…"),
     (
         f"{UNCERTAIN} --vary 'mass=triangular(1, 3, 2)'",
-        "mass=triangular(1, 3, 2): … with low <= mode <= high",
+        "mass=triangular(1, 3, 2): … with low <= mode <= high and low < high",
     ),
     (f"{UNCERTAIN} --vary 'mas=normal(1, 0.1)'", "… 'mas': did you mean 'mass'?"),
     (f"{UNCERTAIN} --vary 'hardening=uniform(0, 1)'", "unknown parameter or component 'hardening'…"),

@@ -57,12 +57,6 @@ def test_a_batch_equals_single_runs_to_the_last_bit(promise):
         np.testing.assert_array_equal(run.stick_times, expected.stick_times)
 
 
-def test_an_engine_without_batches_runs_one_by_one():
-    alone = OneByOne()
-    assert [len(run.times) for run in Engine("mine", alone).simulate_many(MOTIONS)] == [7, 2]
-    assert alone.alone == 2
-
-
 def test_a_study_uses_batches_and_finds_the_same():
     (block,) = studies(["block"])
     at_once, alone = AtOnce(), OneByOne()

@@ -25,18 +25,13 @@ BOTH = (fake.GOOD, fake.FAILING)
 
 @pytest.fixture(scope="module")
 def both_ways(tmp_path_factory):
-    """Runs in one process and in two, one of which dies, and the progress reported by the first run."""
-    told = []
-    one = run(
-        (fake.VERDICTS, fake.AGREEMENT),
-        BOTH,
-        folder=tmp_path_factory.mktemp("one"),
-        progress=lambda *call: told.append(call),
-    )
-    studies = (fake.VERDICTS, fake.AGREEMENT, replace(fake.DEATH, only=("good",)))
-    two = run(studies, BOTH, folder=tmp_path_factory.mktemp("two"), jobs=2)
+    """Return runs in one process and in two, one of which dies."""
+    studies = (fake.VERDICTS, fake.AGREEMENT)
+    one = run(studies, BOTH, folder=tmp_path_factory.mktemp("one"))
+    dying = (*studies, replace(fake.DEATH, only=("good",)))
+    two = run(dying, BOTH, folder=tmp_path_factory.mktemp("two"), jobs=2)
     assert multiprocessing.active_children() == []
-    return one, two, told
+    return one, two
 
 
 @pytest.mark.parametrize("way", [0, 1])
@@ -88,7 +83,7 @@ def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkey
 
 
 def test_one_and_two_processes_find_and_draw_the_same(both_ways):
-    one, two, _ = both_ways
+    one, two = both_ways
     drawing = one.drawings["verdicts"]
     assert set(drawing.figures) == {"fake-radius"}
     assert drawing.animations["fake-motion"].startswith(b"GIF89a")
@@ -129,14 +124,6 @@ def test_resume_computes_only_missing_results_of_the_same_code(tmp_path, count, 
     monkeypatch.setattr("compare.run.runner.engine_stamp", lambda engine: "of other code")
     run((fake.COUNTED,), (fake.GOOD,), folder=tmp_path, resume=True)
     assert count() == ["good", "also-good", "good", "good"]
-
-
-def test_progress_counts_to_its_end(both_ways):
-    _, _, told = both_ways
-    assert [done for done, _, _ in told] == list(
-        range(8)
-    )  # theory, two engines for each of two studies, and the figures of both
-    assert {total for _, total, _ in told} == {7}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Ctrl-C is sent as a POSIX signal")

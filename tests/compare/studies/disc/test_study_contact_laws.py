@@ -84,3 +84,10 @@ def test_an_annulus_with_a_wrong_load_distribution_differs(monkeypatch):
     monkeypatch.setattr(Annulus, "_resting_radius", lambda self, slip, spin: self.inner_radius)
     monkeypatch.setattr(Annulus, "_loads", lambda self, centre: [(self.outer_radius, 1.0)])
     assert theory_of(STUDY, "thin_annulus") == {"thin_annulus": DIFFERS}
+
+
+def test_the_top_of_a_parabola_is_found():
+    place, size, error = theory.top(lambda ratio: 2.0 - (ratio - 0.9) ** 2, 1e-12)
+    assert place == pytest.approx(0.9, abs=error)
+    assert size == pytest.approx(2.0)
+    assert error == pytest.approx(2e-6, rel=0.01)

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from studies_under_test import engine_named
 from tested_studies import FROZEN
 
+from compare.claims.claim import Verdict
+from compare.studies.drivetrain.frozen import STUDY
 from compare.studies.drivetrain.frozen.theory import (
     of_modulation,
     state_matrix_of,
@@ -17,6 +20,13 @@ from reference_model import DiscOnDisc
 from reference_model.steady.stability import whirl_eigenvalues
 
 CAR = centred_car()
+
+
+def test_the_border_is_nan_if_stability_does_not_change():
+    few = {"border": {"between": (4300.0, 4500.0)}}
+    (claim,) = STUDY.measure(engine_named("exudyn"), few, only=("border",)).claims
+    assert np.all(np.isnan(claim.measured))
+    assert claim.verdict is Verdict.DIFFERS
 
 
 def test_whirls_on_the_stop_are_stable_and_fast_whirls_in_the_play_are_not():

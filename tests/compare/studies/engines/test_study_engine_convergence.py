@@ -2,17 +2,8 @@
 
 import numpy as np
 import pytest
-from tested_studies import ENGINE_CONVERGENCE
 
 from compare.claims.error_estimates import extrapolated_order, observed_exponent
-from compare.studies.engines.engine_convergence.study import STUDY
-
-
-@pytest.mark.parametrize("names", [("exudyn", "reference"), ("reference",), ("exudyn",), ()])
-def test_figures_are_drawn_for_any_finished_engines(names):
-    figures = STUDY.draw({name: ENGINE_CONVERGENCE.found(name).data for name in names})
-    assert set(figures) <= set(STUDY.figures)
-    assert ("engine-convergence-orders" in figures) == ("exudyn" in names)
 
 
 def test_the_exponent_of_a_power_law_with_a_next_term():

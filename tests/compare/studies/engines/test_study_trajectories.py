@@ -8,7 +8,6 @@ from faults.reference import simulate
 from studies_under_test import engine_named
 
 from compare.claims.claim import Verdict
-from compare.engines import Engine
 from compare.studies.engines.trajectories.drawn import DRAWN
 from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
 from compare.studies.engines.trajectories.study import STUDY, measure, moves, pooled
@@ -33,9 +32,8 @@ def test_no_two_parameters_are_equal():
         assert 1.0 not in values
 
 
-@pytest.mark.parametrize("name", ["exudyn", "intact"])
-def test_sound_engines_agree_on_motions_and_forces(name):
-    found = measure(engine_named(name), MOTIONS).claims
+def test_exudyn_agrees_on_motions_and_forces():
+    found = measure(engine_named("exudyn"), MOTIONS).claims
     assert len(found) == 3 * len(MOTIONS)
     assert {claim.verdict for claim in found} == {Verdict.AGREES}
 
@@ -125,9 +123,3 @@ def test_forces_change_the_momentum_of_the_reference(name):
     inertia = [motion.system.mass] * 2 + ([motion.system.polar_inertia] if half == 3 else [])
     change = np.array(inertia) * (states[2] - states[0])[half:] / (2.0 * h)
     assert forces(motion.system, states[1]) == pytest.approx(change, abs=1e-6)
-
-
-def test_an_engine_is_measured_on_its_declared_kinds():
-    findings = measure(Engine("pins that slip", simulate, ("pin",), sticks=False), MOTIONS)
-    assert len(findings.claims) == 9
-    assert "disc" in findings.not_simulated

@@ -128,12 +128,3 @@ def test_a_worker_with_a_different_store_at_that_path_is_rejected(store, tmp_pat
     with pytest.raises(StoreError, match="--output must be a shared folder or an object store"):
         run(store, other, lambda what, done, total: None)
     assert marks(tmp_path) == set()
-
-
-def test_the_second_process_does_not_create_the_store_again(store):
-    before = store.files.read(DESCRIPTION)
-    with pytest.raises(FileExistsError):
-        SweepStore.create(store.path, store.plan, 2)
-    with pytest.raises(FileExistsError):  # also if both failed
-        store.files.claim(DESCRIPTION, b"other")
-    assert store.files.read(DESCRIPTION) == before
