@@ -39,6 +39,13 @@ def test_a_failed_new_file_is_removed(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_the_older_file_stays_if_writing_fails(file):
+    with pytest.raises(KeyboardInterrupt):
+        begin_to_write(file)
+    assert file.read_text() == OLD
+    assert alone(file)
+
+
 def test_link_and_permissions_of_a_replaced_file_are_kept(file, tmp_path):
     file.chmod(0o640)
     link = tmp_path / "link.csv"
