@@ -96,12 +96,14 @@ class Support:
         return self.stiffness + self.hardening * d * d + self.stop_stiffness * stop
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force by the deflection; at the stop, the derivative from outside."""
+        """Return the derivative of the force with respect to the deflection; at the stop, from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 
     def stiffness_matrix(self, z: complex) -> FloatArray:
-        """Return minus the derivative of the force by x and y, shape (2, 2): the tangent along w, the secant across.
+        """Return the negative derivative of the force with respect to (x, y), shape (2, 2).
+
+        It is the tangent stiffness in the direction of the deflection and the secant stiffness across it.
 
         Raises ``ValueError`` exactly at the stop, where the derivative does not exist.
         """

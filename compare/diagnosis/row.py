@@ -205,7 +205,9 @@ def _of_motions(motions: dict[str, Motion], refined: str) -> str:
     if open_:
         said.append(f"too coarse to tell: {', '.join(open_)}")
     if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
-        said.append(f"results do not change with the {refined}, so an error cannot be told from another law")
+        said.append(
+            f"results do not change with the {refined}, so an error cannot be distinguished from another law"
+        )
     elif others:
         off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
         said.append(f"converges to a motion that deviates from the exact one: {off}")

@@ -184,7 +184,7 @@ class Engine:
     ) -> list[Trajectory]:
         """Return the motion of each system from its initial state at its times.
 
-        If ``function`` has an attribute ``simulate_many``, see ``SimulateMany``, one call computes all of them.
+        If ``function`` has an attribute ``simulate_many`` (see ``SimulateMany``), one call computes all motions.
 
         Raises
         ------

@@ -62,7 +62,7 @@ GROWS = 1.2
 """Ratio of the third to the first quartile of creep above which creep counts as growing up to release."""
 
 BELOW_REST = 16.0
-"""``REST`` over the largest growing creep; above that, the end of creep cannot be told from the begin of slip."""
+"""``REST`` over the largest growing creep; above that, the end of creep looks like the start of slip."""
 
 FLANK = 16.0
 """Ratio of the largest to the least slip for extrapolation."""

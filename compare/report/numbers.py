@@ -167,7 +167,7 @@ def account(claim: Claim) -> str:
     """Return the numbers of the deciding element in one line."""
     element = worst(claim)
     if claim.answers:
-        return f"{in_short(claim)} hold, {answers_text(element.numerical)} too close to decide"
+        return f"{in_short(claim)} hold, {answers_text(element.numerical)} inconclusive"
     unit = f" {element.unit}" if element.unit else ""
     largest = ", ".join(f"{error_text(one.difference)} {one.unit}".rstrip() for one in element.largest)
     return (

@@ -104,7 +104,7 @@ class SweepStore:
         """Open a store; raise ``ValueError`` if it is not the store of a sweep, or its description is damaged."""
         files, folder = Files.at(path), None
         archive, place = archive_of(files.url), files.url
-        try:  # without Zarr, which would read all groups, and any of them may be damaged
+        try:  # not with Zarr, which fails if any group is damaged
             if archive is not None and archive.exists():
                 folder = unpacked(archive)
                 files = Files.at(folder.name)

@@ -43,8 +43,8 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
-    both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
+    They are weighted sums of the derivatives with respect to coordinates and velocities. Also returns the generalised
+    forces on both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
     to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)

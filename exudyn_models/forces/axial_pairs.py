@@ -183,7 +183,7 @@ class AxialStick:
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the derivatives of S by the velocities of the nodes, at coordinates without reference values."""
+        """Return S's derivatives with respect to the nodes' velocities, at coordinates without reference values."""
         if self._rotors is not None:
             return self._rotors
         return self._gradient_at(self.reference + q)

@@ -224,7 +224,7 @@ def ring_friction_derivatives(
     disc_spin: float,
     contact: Contact,
 ) -> FloatArray:
-    """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
+    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
 
     For points that creep as a whole they contain a ``SECANT`` share, which makes Newton's method converge.
     """
@@ -253,7 +253,7 @@ def ring_friction_derivatives(
 def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) with respect to (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
     if contact[1] <= CONTINUOUS:
         return _derivatives_of_circles(ux, uy, spin, contact)
     return _derivatives_of_points(ux, uy, spin, angle, contact)
@@ -317,7 +317,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
+    """Return P, its derivatives with respect to u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
     radius, points, _, _, held, _ = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)
@@ -336,7 +336,7 @@ def _potential_of_points(
 def _slip_of_point(
     ux: float, uy: float, spin: float, alpha: float, radius: float
 ) -> tuple[complex, complex, tuple[complex, complex, complex, complex]]:
-    """Return arm and slip of the point at ``alpha``, and the derivatives of the slip by u_x, u_y, φ̇ − ω and φ."""
+    """Return arm and slip of the point at ``alpha``, and the slip's gradient with respect to (u_x, u_y, φ̇ − ω, φ)."""
     arm = radius * complex(math.cos(alpha), math.sin(alpha))
     return arm, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
 

@@ -23,7 +23,7 @@ Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArr
 """A coefficient, which may also be a table for ``curve_of_table``."""
 
 DIFFERENCE = 1e-5
-"""Relative step of the central differences for the derivatives of μN by the motion."""
+"""Relative step of the central differences for the derivatives of μN with respect to the motion."""
 
 SLOWEST = 1e-9
 """Slip speed in m/s below which this step stays constant."""
@@ -109,7 +109,7 @@ class LoadAndCoefficient:
     def friction_force_slopes(
         self, t: float, radius: float, slip_speed: float, relative_spin: float
     ) -> FloatArray:
-        """Return the derivatives of μN by radius (N/m), slip speed (N s/m) and relative spin (N s), shape (3,)."""
+        """Return ∂(μN)/∂(radius, slip speed, relative spin) in N/m, N s/m and N s, shape (3,)."""
         rim, epsilon = self.contact_radius, max(self.geometry[3], SLOWEST)
         motion = {"radius": radius, "slip_speed": slip_speed, "relative_spin": relative_spin}
         scales = (

@@ -152,7 +152,7 @@ def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
 
 @compiled
 def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_factor: float) -> FloatArray:
-    """Return minus the derivatives of the forces on two planar nodes by their coordinates, shape (6, 6).
+    """Return minus the derivatives of the forces on two planar nodes with respect to their coordinates, shape (6, 6).
 
     ``derivatives`` are those of (F_x, F_y, M, M_master) by ``Relative``, shape (4, 7).
     """

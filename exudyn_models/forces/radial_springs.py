@@ -108,7 +108,7 @@ def secant_stiffness(square: float, law: Law) -> float:
 
 @compiled
 def secant_slope(square: float, law: Law) -> float:
-    """Return twice the derivative of ``secant_stiffness`` by d², in N/m³."""
+    """Return twice the derivative of ``secant_stiffness`` with respect to d², in N/m³."""
     _, hardening, gap, stop, _ = law
     result = 2.0 * hardening
     if square > gap * gap:
@@ -198,7 +198,7 @@ def support_derivatives_on_nodes(
     offset: Offset,
     law: Law,
 ) -> FloatArray:
-    """Return the weighted sum of the derivatives of the generalised forces by coordinates and velocities, (n, n)."""
+    """Return the weighted sum of ∂(generalised forces)/∂(coordinates, velocities), shape (n, n)."""
     to_slip, _, _, place = slip_and_place(kinds, coordinates)
     w = np.array(place) - np.array(offset)
     rate = to_slip @ velocities

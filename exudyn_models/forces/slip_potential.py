@@ -149,7 +149,7 @@ def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, f
 
 @compiled
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
-    """Return the derivatives of P by its larger and by its smaller argument."""
+    """Return the derivatives of P with respect to its larger and its smaller argument."""
     ratio = smaller / larger
     complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without cancellation
     if complement == 0.0:

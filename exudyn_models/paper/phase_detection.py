@@ -111,7 +111,7 @@ def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.boo
 
 
 def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArray, NDArray[np.int_]]:
-    """Return the slip ratios at all steps and the creeping part, as their column or ``NOTHING``."""
+    """Return the slip ratios, and for each step the column of the part that creeps, or ``NOTHING``."""
     ratios = contact.slip_ratios(steps.states)
     below = ratios < 1.0
     return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)

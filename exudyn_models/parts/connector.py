@@ -21,8 +21,8 @@ items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction) -> Any:
     """Add a connector over ``nodes``; return its ``ObjectIndex``.
 
-    ``force`` returns the forces on all their coordinates. ``jacobian`` returns the sum of the derivatives of the
-    *negative* forces by coordinates and by velocities, each multiplied by the factor passed to it.
+    ``force`` returns the forces on all coordinates of the nodes. ``jacobian`` returns the sum of the derivatives of
+    the *negative* forces with respect to coordinates and velocities, each multiplied by the factor passed to it.
     """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(

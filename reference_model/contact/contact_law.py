@@ -56,7 +56,7 @@ class Contact(Protocol):
         ...
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """Return the derivatives of (F_x, F_y, M) by (u_x, u_y, S, φ), shape (3, 4).
+        """Return the derivatives of (F_x, F_y, M) with respect to (u_x, u_y, S, φ), shape (3, 4).
 
         Raises ``ValueError`` if a point of the contact is at rest, where friction is not differentiable.
         """

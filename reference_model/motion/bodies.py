@@ -56,7 +56,7 @@ class Creep:
 
     @property
     def way_left(self) -> float:
-        """Distance that remains until slip has decayed."""
+        """Distance that the contact still slides until its slip has decayed."""
         return sum(size / rate for size, rate in (self.slow, self.fast))
 
     def slip(self, delays: FloatArray) -> FloatArray:

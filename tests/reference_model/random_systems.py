@@ -105,7 +105,7 @@ def friction_of_points(load, R, n, epsilon):
 
 
 def friction_of_ring(disc, epsilon):
-    """Return the mean of this law over the ring, the derivatives of the mean of √(A − B·cos χ) by U and W.
+    """Return the mean of this law over the ring: the gradient of the mean of √(A − B·cos χ) with respect to U and W.
 
     A = U² + W² + ε² and B = 2UW.
     """

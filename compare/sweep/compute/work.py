@@ -236,7 +236,7 @@ def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatAr
 def _cubic(
     values: FloatArray, slopes: FloatArray, at: Any, step: FloatArray, share: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the Hermite cubic between samples ``at`` and ``at`` + 1, and its derivative by ``share``."""
+    """Return the Hermite cubic between samples ``at`` and ``at`` + 1, and its slope with respect to ``share``."""
     low, high = values[at], values[at + 1]
     left, right = slopes[at] * step, slopes[at + 1] * step
     second, third = 3.0 * (high - low) - 2.0 * left - right, 2.0 * (low - high) + left + right

@@ -54,7 +54,7 @@ def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> fl
     ``pieces`` is the size of the ``curve_of_table`` at ``address``.
     """
     first, last = 0, int(pieces) - 1
-    while first < last:  # the piece is between them
+    while first < last:  # invariant: first <= piece <= last
         middle = (first + last + 1) // 2
         if number_at(address, middle * COLUMNS) <= slip_speed:
             first = middle

@@ -225,7 +225,7 @@ class PlanarStick(AxialStick):
     def constraint_jacobian(
         self, lock: int, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], level: bool
     ) -> FloatArray:
-        """Return the derivatives of that slip by the velocities, shape (1, n), as the constraint's user function."""
+        """Return the slip's derivatives with respect to the velocities, (1, n): the constraint's user function."""
         return self._row(lock, q)[None]
 
     def _row(self, lock: int, q: Sequence[float]) -> FloatArray:

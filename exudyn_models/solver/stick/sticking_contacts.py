@@ -20,7 +20,7 @@ from reference_model.systems import FloatArray
 CURRENT = exu.ConfigurationType.Current
 
 SOON = 1e-9
-"""Short time in s; after it, the slip of a contact at rest has the sign of its acceleration."""
+"""Short time in s, long enough for the slip of a contact at rest to take the sign of its acceleration."""
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ class StickingContact:
         return int(self.mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the load of a locked contact over the largest one it can hold, 0 for any other."""
+        """Return the share of its capacity that a locked contact holds, or 0 if the contact is not locked."""
         return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
 
     def reverses(self, mbs: Any, time: float) -> bool:
@@ -325,8 +325,8 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
     """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
 
-    The gradients, shape (m, n), are derivatives by the n velocities of an assembled model at its initial values and
-    the time t (s), up to factors.
+    The gradients, shape (m, n), are derivatives with respect to the n velocities, up to factors, of an assembled
+    model at its initial values and the time t (s).
     """
     data = mbs.systemData
     with initialised_solver(mbs, t) as solver:

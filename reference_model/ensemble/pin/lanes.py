@@ -66,10 +66,10 @@ STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 """Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
-"""Duration, in units of time, of a short step, and number of successive ones that indicates a limit by stability.
+"""Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
 
-Coming to rest or release takes fewer. One implicit step costs as much as some 50 steps of a single trajectory, or a
-thousand of one among others in lanes.
+Rest and release take fewer short steps. One implicit step costs as much as about 50 explicit steps of a single
+trajectory, or a thousand steps of a trajectory that shares its lanes with others.
 """
 
 SMALLEST_STEP = 1e-13

@@ -47,7 +47,7 @@ SUDDEN = 0.05
 """Smallest excess of the pull over friction, as a share of friction, for slip that grows like time."""
 
 STIFF = 10.0
-"""Stiffness of a step (rate times length) below which an explicit method is as good."""
+"""Stiffness of a step (rate times length) below which an explicit method is as efficient as this one."""
 
 FASTER = 0.01
 """Relative change of the slip speed for the derivative along the slip."""

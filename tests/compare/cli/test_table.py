@@ -252,7 +252,7 @@ FAILED = [
 ]
 
 STUDIES = (fake_studies.VERDICTS, fake_studies.AGREEMENT)
-"""Harmless fake studies only, so a bug that starts a report does not end this process."""
+"""Fake studies, so a bug that starts a report by mistake cannot end this process."""
 
 TABLE = [
     ("", 0, "Usage: friction-discs…"),

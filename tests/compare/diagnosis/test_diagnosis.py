@@ -156,7 +156,7 @@ def test_the_estimate_covers_errors_of_order_one_half_and_higher(order):
 def test_an_engine_that_ignores_the_tolerance_is_reported():
     deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
     row = Row("deaf", motions={"slip": deaf})
-    told = "Results do not change with the tolerance, so an error cannot be told from another law."
+    told = "Results do not change with the tolerance, so an error cannot be distinguished from another law."
     assert row.sentences == (told,)
     assert row.wrong
 

@@ -52,7 +52,7 @@ MOTIONS = {
     "slip that passes by rest": (PASSES_BY, (-0.04926085, -0.06287503, -0.1125771, -0.05500665)),
     "a block that is thrown": (replace(BLOCK, stiffness=0.0), (0.0, 0.0, 2.0, 1.0)),
     "a block that is held": (BLOCK, (9.0, 3.0, 0.0, 0.0)),
-    "a block that is let go": (BLOCK, (9.0, 5.0, 0.0, 0.0)),
+    "a block that is released": (BLOCK, (9.0, 5.0, 0.0, 0.0)),
     "a block that swings to rest": (replace(BLOCK, stiffness=1.0), (6.0, 6.0, 0.0, 0.0)),
 } | {f"drawn {seed}": drawn(seed) for seed in range(6)}
 

@@ -87,7 +87,7 @@ def test_each_claim_fails_for_a_fault_of_one_per_cent(tested):
     }
     left = unbroken(tested, tested.small)
     fine = {part for part, claim in left.items() if claim is None or not too_coarse_for_a_per_cent(claim)}
-    fine -= orders  # deviations of an order are not relative
+    fine -= orders  # an order deviates by an absolute amount, not by a percentage
     assert {part.partition("/")[0] for part in fine} == set(tested.blind)
 
 

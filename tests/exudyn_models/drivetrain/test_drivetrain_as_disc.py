@@ -83,7 +83,7 @@ def test_the_clutch_disc_moves_as_the_reference_does(change, inner_radius):
     _, coarse = drivetrain_states(disc, 10.0, inner_radius=inner_radius, tolerance=8e-12)
     contact = None if inner_radius == disc.contact_radius else Annulus(inner_radius, disc.contact_radius)
     exact = simulate(disc, START, times, tolerance=1e-13, contact=contact).states
-    # The coarse run is off by no more than eight times the change, even if the finer one errs almost as much.
+    # The error of the coarse run is at most eight times the change, even if the finer run is almost as wrong.
     error = 8.0 * np.max(np.abs(coarse[-1] - states[-1]))
     assert error < 1e-7  # a parameter that is off by 1e-5 changes more
     np.testing.assert_allclose(coarse[-1], exact[-1], rtol=0.0, atol=error)

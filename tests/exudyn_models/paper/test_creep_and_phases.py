@@ -108,7 +108,7 @@ def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_
 NEAR_ITS_LIMIT = PinOnDisc(
     mass=1.88, stiffness=1.3, damping=0.13, friction_force=0.175, disc_speed=0.143, offset=-0.1
 )
-"""It starts stuck where friction holds nearly all that it can, and is let go after 0.6 s."""
+"""It starts stuck with friction close to its limit, and is released after 0.6 s."""
 
 
 def test_stick_up_to_a_release_has_an_error_of_first_order_in_the_tolerance_and_no_other():

@@ -46,13 +46,13 @@ CARRIED_ALONG = [
     0.03087753517369676, -0.12311233141527689, 5.686215448933846,
     0.18466849712291533, 0.04631630276054514, 1.5,
 ]  # fmt: skip
-"""Where it is at 3.8 s, shortly before it is let go: rest is dear to simulate."""
+"""State of the caught disc at 3.8 s, shortly before its release, because simulating rest is slow."""
 RESTING = {
     "thrown": (TABLE_DISC, THROWN, 5.0),
     "caught": (CAUGHT_DISC, CAUGHT, 3.1),
-    "let go": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
+    "released": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
 }
-"""System, start and span in s of motions in which points of a disc come to rest, or do so no more."""
+"""System, start and span in s of motions in which points of a disc come to rest, or are released."""
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 
@@ -128,7 +128,7 @@ def coming_to_rest(name, tolerance):
         ("thrown", ["slip", "pivot", "stick"], 0.9, 1.1),
         ("caught", ["slip", "pivot", "slip", "stick"], 0.9, math.inf),
         # Single points hold on to Coulomb friction to the last: the slip after it grows like t² up to ε.
-        ("let go", ["stick", "slip"], 0.35, 0.55),
+        ("released", ["stick", "slip"], 0.35, 0.55),
     ],
 )
 def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_the_time_of_its_release(

@@ -88,11 +88,11 @@ def rise(width):
         (lambda time: 3e3 * time, 2.5e-3),
         (lambda time: 3e3 * np.sin(20.0 * time) ** 2, 2.5e-3),
         (rise(0.7), STEP),  # changes by 3.4 times what it does in the steps beside
-        # Changes in every other step: it swings up and down in four.
+        # The period is four steps, so the load changes in every other step.
         (lambda time: 800.0 + 300.0 * np.sin(np.pi / 2.0 * time / STEP + np.pi / 4.0), STEP),
     ],
 )
-def test_no_jump_is_told_of_a_load_that_the_steps_resolve_nor_of_the_end_of_slip(solver, load, step):
+def test_no_jump_is_reported_for_a_load_that_the_steps_resolve_or_for_the_end_of_slip(solver, load, step):
     assert run(load, solver, step=step)[0] == []
 
 

@@ -1,4 +1,4 @@
-"""Explicit steps while contacts stick: the limit that is told is the one at which energy is lost."""
+"""Explicit steps while contacts stick: models lose energy above the reported limit, but not below it."""
 
 import itertools
 import math

@@ -288,7 +288,7 @@ def rest_offset() -> float:
 
 
 def extents(run: Trajectory, last: int = 0) -> list[float]:
-    """Return smallest and largest radius in m and spin in rad/s of the ``last`` samples, or of all."""
+    """Return the smallest and largest radius (m) and spin (rad/s) of the ``last`` samples, or of all samples."""
     radius, spin = run.radius[-last:], run.states[-last:, 5]
     return [radius.min(), radius.max(), spin.min(), spin.max()]
 

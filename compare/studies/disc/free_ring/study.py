@@ -181,7 +181,7 @@ def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLik
     swept=("polar_inertia",),
 )
 def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
-    """Compare the ratio for other moments of inertia, extrapolated to the end, with the balance."""
+    """Compare the ratio at the end of slip for other moments of inertia with the balance."""
 
     def ratios(tolerance: float) -> FloatArray:
         found = []

@@ -22,7 +22,7 @@ from reference_model.systems import FloatArray
 # --- Starts, tolerances, steps and slip speeds of the measurements
 
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
-"""Near the whirl and a third farther out, where the pin always slides (our choice)."""
+"""One start near the whirl and one a third farther out, because the pin slides all the time in both (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
 """In s, multiples of every step, so the samples are a solver's own states and not interpolated."""

@@ -154,7 +154,10 @@ def release_by(law: Law) -> tuple[float, float]:
 
 
 def release_where(held: Callable[[complex], float]) -> float:
-    """Return the time in s when ``held`` of the force (6) over μN on a stuck pin exceeds 1, in closed form."""
+    """Return the time in s when a stuck pin is released, in closed form.
+
+    ``held`` maps the force (6) over μN to the used share of the friction law's limit. The pin is released above 1.
+    """
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])
     carried = pin.stiffness - pin.mass * pin.disc_speed**2 + 1j * pin.damping * pin.disc_speed

@@ -138,7 +138,7 @@ def _turns(disc_speed: float, step: float) -> ComplexArray:
 
 @scalar
 def _reach(step: float, by_place: complex, turns: ComplexArray) -> ComplexArray:
-    """Return the derivative of step times the pull at a node by slip at another, through the position."""
+    """Return d(step times the pull at a node)/d(slip at another node), through the position."""
     reach = complex_zeros(NODES * NODES).reshape(NODES, NODES)
     for i in range(NODES):
         for k in range(NODES):
@@ -156,7 +156,7 @@ def _linearise(
 ) -> None:  # fmt: skip
     """Write the residual of the slip equations at the nodes to ``rest`` (NODES, d).
 
-    Its derivative by all slip goes to ``linear`` (NODES, d, NODES, d).
+    Its derivative with respect to all slip goes to ``linear`` (NODES, d, NODES, d).
     """
     d = len(start)
     for i in range(NODES):
