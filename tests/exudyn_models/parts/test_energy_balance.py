@@ -17,6 +17,7 @@ from free_bodies import (
 )
 
 from exudyn_models import add_energy_balance, add_ring_friction, spring_energy
+from exudyn_models.parts.energy_balance import EnergyBalance
 
 INERTIA, STIFFNESS, DAMPING, TORQUE, SPEED, UNTIL = 2.0, 18.0, 0.4, 3.0, 1.5, 2.0
 
@@ -102,3 +103,11 @@ def test_kinetic_energy_of_every_kind_of_body_is_counted_and_friction_takes_it(k
     assert balance.stored[0] == pytest.approx(kinetic, rel=1e-14)
     assert balance.stored[0] - balance.stored[-1] > 0.1
     np.testing.assert_allclose(balance.residual, 0.0, atol=1e-10 * balance.turnover)
+
+
+def test_rounding_of_a_heavy_flywheel_is_not_an_imbalance():
+    stored = np.array([1e18, 1e18 + 128.0])
+    heavy = EnergyBalance(np.array([0.0, 1.0]), {"drive": np.array([0.0, 1.0])}, {}, stored)
+    assert heavy.imbalance == ""
+    light = EnergyBalance(heavy.times, heavy.gains, {}, stored - 1e18)
+    assert "off by 1.3e+02 J at t = 1 s" in light.imbalance
