@@ -11,12 +11,12 @@ from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import (
     Pin,
-    PointsOnRing,
     Ring,
     ThreeTermRing,
     contact_of,
     isotropic_contact_of,
 )
+from reference_model.contact.points import PointsOnRing
 from reference_model.systems import PinOnDisc
 
 R = 0.12

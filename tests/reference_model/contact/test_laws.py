@@ -9,7 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Pin, PointsOnRing, Ring, ThreeTermRing
+from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
+from reference_model.contact.points import PointsOnRing
 
 R = 0.12
 RING = Ring(R)

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from reference_model.contact.contact_law import PointsOnRing
 from reference_model.contact.limit_surface import PointsLimit
+from reference_model.contact.points import PointsOnRing
 
 RADIUS = 0.3
 
 
 def limit_of(points):
-    return PointsLimit(np.array(PointsOnRing(RADIUS, points).arms(0.0)))
+    return PointsLimit(np.array(PointsOnRing(RADIUS, points).arms(0.0)), np.full(points, 1.0 / points))
 
 
 @pytest.mark.parametrize("points", [3, 4, 5, 6, 24])
