@@ -39,7 +39,7 @@ class PointsBody(DiscBody):
         super().__init__(run, motion)
         self.contact = contact
         self.limit = PointsLimit(
-            np.array(contact.arms(0.0), complex) / motion.length, np.array(contact.shares)
+            np.array(contact.arms(0.0), dtype=np.complex128) / motion.length, np.array(contact.shares)
         )
         self.points = [OnePoint(motion, contact, i) for i in range(len(contact.shares))]
         self.slipping = [point.slipping(run.thresholds) for point in self.points]
