@@ -38,9 +38,7 @@ class PointsBody(DiscBody):
     def __init__(self, run: Run, motion: DiscMotion, contact: Points) -> None:
         super().__init__(run, motion)
         self.contact = contact
-        self.limit = PointsLimit(
-            np.array(contact.arms(0.0), dtype=np.complex128) / motion.length, np.array(contact.shares)
-        )
+        self.limit = PointsLimit.of(contact, motion.length)
         self.points = [OnePoint(motion, contact, i) for i in range(len(contact.shares))]
         self.slipping = [point.slipping(run.thresholds) for point in self.points]
         self.pivoting = [point.pivoting(run.thresholds) for point in self.points]
