@@ -76,7 +76,8 @@ def _triangles(around: Sequence[complex]) -> list[tuple[complex, complex, comple
                 del left[i]
                 break
         else:
-            raise ValueError(f"corners = {list(around)}: the polygon has no area or intersects itself")
+            corners = [(corner.real, corner.imag) for corner in around]
+            raise ValueError(f"corners = {corners}: the polygon has no area or intersects itself")
     return result
 
 

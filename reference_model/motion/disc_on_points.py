@@ -133,7 +133,7 @@ class PointsBody(DiscBody):
         slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
         end = (slide_slowly if slowly else slide)(self.run, motion, t, own, self.leaving(motion))
         y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
-        if end.let_go:
+        if end.let_go and motion.speed(end.y) > 0.0:
             self.pivot = None
             self.run.enter("slip", end.t, y)
             return self._slip_from(i, end.t, y)
