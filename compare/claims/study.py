@@ -16,6 +16,7 @@ from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Prose, Table
+from compare.claims.validation import Validation
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Figure
 from reference_model.systems import FloatArray, System
@@ -79,7 +80,7 @@ class Recorded:
     cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
-PROVIDED = ("figures", "animations", "curves", "tables", "recorded")
+PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validations")
 """Functions that a study may provide in addition to its claims."""
 
 
@@ -142,6 +143,7 @@ class Study:
         ``tables``      ``tables() -> (Table, ...)``: additional tables for the report, not measured
         ``recorded``    ``recorded() -> (Recorded, ...)``: a separate matrix in the report, counted separately; all
                         make the same claims in the same order
+        ``validations`` ``validations() -> (Validation, ...)``: comparisons with measurements
         ==============  ==========================================================================================
 
         Raises ``TypeError`` for another name.
@@ -177,6 +179,10 @@ class Study:
     def recorded(self) -> tuple[Recorded, ...]:
         """Return recorded results of engines, which are not part of a run."""
         return self._provided("recorded", ())
+
+    def validations(self) -> tuple[Validation, ...]:
+        """Return comparisons with measurements, which have no verdict."""
+        return self._provided("validations", ())
 
     def _provided(self, name: str, otherwise: Value, *arguments: Any) -> Value:
         found: Value = self.provided[name](*arguments) if name in self.provided else otherwise

@@ -100,6 +100,16 @@ OneClaim = Annotated[
 ]
 
 
+Logs = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FOLDER",
+        help="Logs of measured pushes: reduce them again and compare them with the table of the study pushes.",
+        show_default=False,
+    ),
+]
+
+
 def report(
     context: typer.Context,
     names: Names = None,
@@ -111,6 +121,7 @@ def report(
     output: Folder = Path("report"),
     jobs: Jobs = None,
     resume: Resume = False,
+    data: Logs = None,
 ) -> int:
     """Measure the claims of studies and write a report.
 
@@ -134,6 +145,7 @@ def report(
     from compare.run.runner import loaded, run
     from compare.run.workers import Workers
 
+    _check_logs(data)
     studies = _requested_studies(context, names or [], claim, level, resume)
     output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
     with refused(), Workers() as workers:
@@ -161,6 +173,21 @@ def report(
     if not result.interrupted:
         _print_diagnoses(chosen, matrix)
     return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
+
+
+def _check_logs(folder: Path | None) -> None:
+    """Compare the table of the study pushes with the logs in a folder, and print the errors of other series."""
+    if folder is None:
+        return
+    from compare.studies.plane.pushes.reduction import check_table
+    from compare.studies.plane.pushes.study import account
+
+    with refused():
+        agreeing, new = check_table(folder)
+    with printing():
+        print(f"The table agrees with the logs of {len(agreeing)} series: {', '.join(agreeing) or 'none'}")
+        for line in account(new):
+            print(line)
 
 
 def store_of(output: Path) -> Path:

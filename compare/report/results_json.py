@@ -12,6 +12,7 @@ import json
 import lzma
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from importlib.resources import files
 from itertools import count, cycle, repeat
 from pathlib import Path
@@ -221,6 +222,11 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
             }
             for recorded in matrix.recorded
             for setting in recorded.settings
+        ],
+        "validations": [
+            {"study": study.name} | asdict(validation)
+            for study in matrix.studies
+            for validation in study.validations()
         ],
         "errata": [
             {

@@ -1,0 +1,288 @@
+"""Measured pushes of a triangle on three feet, or on its whole face, against Coulomb's law: a validation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from compare.claims import Measured, Study
+from compare.claims.prose import Table
+from compare.claims.validation import Validation
+from compare.engines import Engine, UnsupportedSystemError
+from compare.studies.plane.pushes import forward, theory
+from compare.studies.plane.pushes.pictures import draw
+from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from compare.studies.plane.pushes.theory import (
+    Motion,
+    contact_of,
+    coulomb,
+    errors,
+    force_error,
+    median_with_error,
+    uncertainties,
+    work_ratio,
+    wrench_error,
+)
+from reference_model.contact.limit_surface import largest_wrench
+from reference_model.systems import FloatArray
+
+SOURCE = "measurements of J. Zhou (2015), see reduced.csv in the folder of this study"
+
+STUDY = Study.beside(__file__, "pushes", source=SOURCE, seconds=5.0)
+
+GROUPS = {
+    "three feet on the board": ("10_130_10_10_10_130", "10_90_10_10_30_130", "30_90_30_30_30_90"),
+    "three feet on wood": ("wood_10_130_10_10_10_130", "wood_30_90_30_30_30_90"),
+    "the whole face on the board": ("patch",),
+    "the whole face on wood": ("wood_patch",),
+}
+"""Series by contact and surface."""
+
+HYPOTHESES = {
+    "Coulomb's law, the authors' parameters": coulomb,
+    "pusher 10 mm above the surface": theory.pushed_above(10.0),
+    "pusher 20 mm above the surface": theory.pushed_above(20.0),
+    "sliding force 10 % larger": theory.other_force(1.1),
+    "centre of mass 2 mm further along x": theory.pressure_moved_by(2.0),
+    "centre of mass 2 mm further along y": theory.pressure_moved_by(2.0j),
+    "a third of the pressure at the edges": theory.pressed_at_edges(1.0 / 3.0),
+    "friction rises with the slip speed to the power 0.1": theory.rate_dependent(0.1),
+    "friction falls with the slip speed to the power 0.1": theory.rate_dependent(-0.1),
+}
+"""Other explanations of the comparison error; sizes are assumptions, and nothing is fitted."""
+
+ROUNDING = 1e-12
+"""Rounding error of a wrench over the sliding force and the radius of the pusher."""
+
+LIMIT = 1e-9
+"""Relative error of a point on the limit surface, whose slip minimises a convex function."""
+
+
+def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
+    return np.array([law(push, Motion.of(push)).components for push in pushes])
+
+
+@STUDY.claim(
+    "The wrench of friction during each measured displacement is the sum over the contact points",
+    unit="N",
+    resolution=1e-9,
+    note="The reference's contact against a sum of this study. Moments are divided by 50 mm.",
+)
+def sums() -> Measured:
+    """Compare the wrench of the reference's contact with the sum over the points."""
+    pushes = reduced_pushes()
+    return Measured(
+        predicted=_wrenches(pushes, theory.rate_dependent(0.0)),
+        value=_wrenches(pushes, coulomb),
+        error=ROUNDING * max(theory.SLIDING_FORCES.values()),
+    )
+
+
+@STUDY.claim(
+    "The wrench of friction during each measured displacement lies on the limit surface",
+    resolution=1e-6,
+    note="Largest multiple of the wrench that friction can hold at rest, by minimising over all slips.",
+)
+def on_limit_surface() -> Measured:
+    """Compare the wrench of each displacement with the largest one in its direction."""
+    found = []
+    for push in reduced_pushes():
+        contact = contact_of(push.series)
+        wrench = theory.predicted(Motion.of(push), contact, 1.0)
+        largest, _ = largest_wrench(contact, wrench.force, wrench.moment)
+        found.append(abs(largest) / abs(wrench.force))
+    return Measured(predicted=np.ones(len(found)), value=found, error=LIMIT)
+
+
+# --- Pushes simulated forward.
+
+SIMULATED = slice(None, None, 10)
+"""Pushes of each series that are simulated forward."""
+
+EPSILON = 2e-5
+"""Regularisation in m/s of the Exudyn model; the speed of the hand is 2.45 mm/s."""
+
+
+def simulated() -> list[Push]:
+    """Return the pushes that are simulated forward."""
+    return [push for pushes in theory.by_series().values() for push in pushes[SIMULATED]]
+
+
+@cache
+def quasi_static(steps: int = 5, hand: float = forward.HAND) -> FloatArray:
+    """Return displacements x, y and turns times ``theory.PUSHER``, all in m, without inertia; shape (n, 3)."""
+    return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated()])
+
+
+def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
+    return np.array([(position.real, position.imag, theory.PUSHER * angle) for position, angle in motions])
+
+
+@STUDY.claim(
+    "A body that is pushed along the measured path ends where the motion of least friction power ends",
+    kind="trajectory",
+    unit="m",
+    resolution=3e-4,
+    note="Every tenth push. The predicted motion has exact friction and no inertia. The Exudyn model has a stiff "
+    "edge and regularised friction; its poses are extrapolated from two regularisations.",
+)
+def final_poses(engine: Engine) -> Measured:
+    """Compare the last poses of an engine with those of least friction power."""
+    predicted = quasi_static()
+    error = 2.0 * np.abs(quasi_static(10) - predicted)
+    value, deformed = quasi_static(10), 0.0
+    if engine.name == "exudyn":
+        fine, coarse = (
+            _components([forward.by_exudyn(push, epsilon) for push in simulated()])
+            for epsilon in (EPSILON, 2.0 * EPSILON)
+        )
+        value = 2.0 * fine - coarse  # the error is of first order
+        error = error + np.abs(fine - coarse)
+        deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
+    elif engine.name != "reference":
+        raise UnsupportedSystemError(f"{engine.name} has no model of a pushed body")
+    return Measured(
+        predicted=predicted,
+        value=value,
+        error=error + deformed,
+        at={"push": [f"{push.series} {push.number}" for push in simulated()]},
+        components=("x in m", "y in m", "turn times 50 mm in m"),
+    )
+
+
+# --- The validation.
+
+
+def validations() -> tuple[Validation, ...]:
+    """Return the errors of the force's direction for each surface and contact, and of the final position."""
+    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions()
+
+
+def _of_directions(name: str, series: Sequence[str]) -> Validation:
+    groups = [theory.by_series()[one] for one in series]
+    found = np.concatenate([errors(pushes, force_error) for pushes in groups])
+    sources = [uncertainties(pushes) for pushes in groups]
+    median, uncertainty = median_with_error(found)
+    total = np.concatenate([one.total for one in sources])
+
+    def middle(kind: str) -> float:
+        return float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
+
+    return Validation(
+        sentence="Coulomb's law with the authors' parameters predicts the direction of the force with a median error "
+        f"of {median:.1f} ± {uncertainty:.1f} degrees for {name}.",
+        quantity="direction of the force",
+        unit="degrees",
+        error=median,
+        error_uncertainty=uncertainty,
+        data=middle("data"),
+        input=middle("input"),
+        numerical=middle("numerical"),
+        explained=float(np.mean(found <= 2.0 * total)),
+        count=len(found),
+    )
+
+
+def _of_final_positions() -> Validation:
+    """Return the distance of the final centre of mass, in mm, from the measured one."""
+    found = (
+        quasi_static()[:, :2] - _components([forward.measured_motion(push) for push in simulated()])[:, :2]
+    )
+    sizes = np.linalg.norm(found, axis=1) / theory.MM
+    median, uncertainty = median_with_error(sizes)
+    slippery, rough = (quasi_static(hand=forward.HAND + change)[:, :2] for change in (-0.1, 0.1))
+    inputs = 0.5 * np.linalg.norm(rough - slippery, axis=1) / theory.MM
+    data = np.array(
+        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[SIMULATED]]
+    )
+    numerical = np.linalg.norm((quasi_static(10) - quasi_static())[:, :2], axis=1) / theory.MM
+    return Validation(
+        sentence="Coulomb's law predicts the final position of the pushed body with a median error of "
+        f"{median:.1f} ± {uncertainty:.1f} mm.",
+        quantity="final position",
+        unit="mm",
+        error=median,
+        error_uncertainty=uncertainty,
+        data=float(np.median(data)),
+        input=float(np.median(inputs)),
+        numerical=float(np.median(numerical)),
+        explained=float(np.mean(sizes <= 2.0 * np.sqrt(data**2 + inputs**2 + numerical**2))),
+        count=len(sizes),
+    )
+
+
+def tables() -> tuple[Table, ...]:
+    """Return the errors of all series, and the effects of the hypotheses."""
+    return _by_series(), _of_hypotheses()
+
+
+def _by_series() -> Table:
+    rows = tuple((name, *_errors_of(pushes)) for name, pushes in theory.by_series().items())
+    return Table(
+        "Coulomb's law against the measurements. Each series has 50 pushes; ± is the standard error of a median.",
+        ("series", *COLUMNS),
+        rows,
+    )
+
+
+COLUMNS = (
+    "direction of the force: median error in degrees",
+    "90 % below",
+    "data uncertainty",
+    "input uncertainty",
+    "explained in %",
+    "direction of the wrench: median error in degrees",
+    "measured over predicted work",
+)
+
+
+def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
+    """Return the cells of ``COLUMNS`` for the pushes of one series."""
+    force, uncertain = errors(pushes, force_error), uncertainties(pushes)
+    return (
+        _text(force),
+        f"{np.percentile(force, 90):.1f}",
+        f"{np.median(uncertain.data):.1f}",
+        f"{np.median(uncertain.input):.1f}",
+        f"{100.0 * np.mean(force <= 2.0 * uncertain.total):.0f}",
+        _text(errors(pushes, wrench_error)),
+        _text(errors(pushes, work_ratio), digits=3),
+    )
+
+
+def account(pushes: Sequence[Push]) -> list[str]:
+    """Return a line of text with the errors of each series."""
+    series = dict.fromkeys(push.series for push in pushes)
+    return [
+        f"{name}: "
+        + "; ".join(
+            f"{column} {cell}"
+            for column, cell in zip(
+                COLUMNS, _errors_of(tuple(push for push in pushes if push.series == name)), strict=True
+            )
+        )
+        for name in series
+    ]
+
+
+def _of_hypotheses() -> Table:
+    def cell(law: theory.Law, series: Sequence[str]) -> str:
+        pushes = [push for one in series for push in theory.by_series()[one]]
+        angle, work = np.median(errors(pushes, force_error, law)), np.median(errors(pushes, work_ratio, law))
+        return f"{angle:.1f}; {work:.3f}"
+
+    return Table(
+        "Effects of other explanations: median error of the direction in degrees; measured over predicted work.",
+        ("hypothesis", *GROUPS),
+        tuple((name, *(cell(law, series) for series in GROUPS.values())) for name, law in HYPOTHESES.items()),
+    )
+
+
+def _text(values: FloatArray, digits: int = 1) -> str:
+    median, error = median_with_error(values)
+    return f"{median:.{digits}f} ± {error:.{digits}f}"
+
+
+STUDY.provides(figures=draw, tables=tables, validations=validations)

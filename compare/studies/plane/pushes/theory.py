@@ -1,0 +1,312 @@
+"""Coulomb friction in measured pushes: predicted forces, their errors, and other explanations of the rest.
+
+A push is quasi-static, so the pusher balances friction. Friction follows from the measured displacement of the
+body: a foot that moves by d carries its share of the sliding force against d. Mass, centre of mass, feet and
+sliding force are those of the authors, and nothing is fitted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from reference_model.contact.limit_surface import wrench_of_slip
+from reference_model.contact.patch import polygon_patch
+from reference_model.contact.points import Points
+from reference_model.systems import FloatArray
+
+MM = 1e-3
+
+MASS, GRAVITY = 1.518, 9.81
+"""Mass of the body in kg, and g in m/s²."""
+
+CENTRE = 50.0 + 50.0j
+"""Centre of mass in mm in the frame of the body."""
+
+LEGS = 150.0
+"""Length of both legs of the triangle in mm; the origin is the corner between them."""
+
+PUSHER = 0.05
+"""Unit of length in m for moments in the direction of a wrench, that of the authors."""
+
+SLIDING_FORCES = {"board": 4.2, "wood": 5.0}
+"""Sliding force in N by surface."""
+
+DIVISIONS = 8
+"""Divisions of a side of the patch for its quadrature."""
+
+
+def surface(series: str) -> str:
+    """Return the surface of a series, "wood" or "board"."""
+    return "wood" if series.startswith("wood") else "board"
+
+
+def feet(series: str) -> list[complex]:
+    """Return the places of the feet in mm in the frame of the body, or none for the patch."""
+    numbers = [float(number) for number in series.removeprefix("wood_").split("_") if number != "patch"]
+    return [complex(x, y) for x, y in zip(numbers[:3], numbers[3:], strict=True)]
+
+
+@cache
+def contact_of(series: str, centre: complex = CENTRE, divisions: int = DIVISIONS) -> Points:
+    """Return the contact of a series about the centre of mass.
+
+    ``centre`` is the centre of pressure in mm. Three shares follow from it. A patch is under uniform pressure.
+    """
+    places = feet(series)
+    if not places:
+        corners = [
+            ((x - CENTRE.real) * MM, (y - CENTRE.imag) * MM) for x, y in ((0, 0), (LEGS, 0), (0, LEGS))
+        ]
+        return polygon_patch(corners, divisions)
+    rows = np.array([[1.0, place.real, place.imag] for place in places]).T
+    shares = np.linalg.solve(rows, [1.0, centre.real, centre.imag])
+    arms = [(place - CENTRE) * MM for place in places]
+    return Points(
+        [(arm.real, arm.imag, float(share)) for arm, share in zip(arms, shares / shares.sum(), strict=True)]
+    )
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """Force (N, complex) and moment (N m) on the body about its centre of mass, in its axes halfway."""
+
+    force: complex
+    moment: float
+
+    @property
+    def components(self) -> FloatArray:
+        """Both force components, and the moment over ``PUSHER``, all in N."""
+        return np.array([self.force.real, self.force.imag, self.moment / PUSHER])
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Displacement (m, complex) of the centre of mass in the axes halfway, and twice the sine of half the turn."""
+
+    shift: complex
+    spin: float
+
+    @classmethod
+    def of(cls, push: Push) -> Motion:
+        """Return the measured motion."""
+        spin = 2.0 * np.sin(0.5 * push.turn)
+        return cls(complex(push.x, push.y) * MM + 1j * spin * CENTRE * MM, spin)
+
+
+def measured(push: Push) -> Wrench:
+    """Return the measured wrench of the pusher; its force acts where the hand is at the end of the push."""
+    force, arm = complex(push.force_x, push.force_y), (complex(push.end_x, push.end_y) - CENTRE) * MM
+    return Wrench(force, (arm.conjugate() * force).imag)
+
+
+def predicted(motion: Motion, contact: Points, sliding_force: float) -> Wrench:
+    """Return the wrench against which the friction of a contact acts during a motion."""
+    force, moment = wrench_of_slip(contact, motion.shift, motion.spin)
+    return Wrench(sliding_force * force, sliding_force * moment)
+
+
+Law = Callable[[Push, Motion], Wrench]
+
+
+def coulomb(push: Push, motion: Motion) -> Wrench:
+    """Return the wrench of Coulomb friction with the authors' parameters."""
+    return predicted(motion, contact_of(push.series), SLIDING_FORCES[surface(push.series)])
+
+
+def force_error(push: Push, motion: Motion, law: Law) -> float:
+    """Return the angle in degrees from the measured to the predicted force."""
+    force, theory = measured(push).force, law(push, motion).force
+    return float(np.degrees(np.angle(theory * force.conjugate())))
+
+
+def wrench_error(push: Push, motion: Motion, law: Law) -> float:
+    """Return the angle in degrees between the measured and the predicted wrench, moments over ``PUSHER``."""
+    found, theory = measured(push).components, law(push, motion).components
+    cosine = found @ theory / np.linalg.norm(found) / np.linalg.norm(theory)
+    return float(np.degrees(np.arccos(min(1.0, cosine))))
+
+
+def work_ratio(push: Push, motion: Motion, law: Law) -> float:
+    """Return the work of the measured wrench over that of the predicted one."""
+    along = np.array([motion.shift.real, motion.shift.imag, motion.spin * PUSHER])
+    return float((measured(push).components @ along) / (law(push, motion).components @ along))
+
+
+# --- Uncertainties of the direction of the force, as in ASME V&V 20: of the data, of the input, and numerical ones.
+
+GIVEN_TO = 1.0
+"""Last digit of the centre of mass and the feet in mm; the authors state no uncertainty."""
+
+NORMAL = 1.4826
+"""Standard deviation over the median deviation of a normal distribution."""
+
+
+@dataclass(frozen=True)
+class Uncertainties:
+    """Standard uncertainties in degrees of the direction of the force, one for each push, shape (n,)."""
+
+    data: FloatArray
+    input: FloatArray
+    numerical: FloatArray
+
+    @property
+    def total(self) -> FloatArray:
+        """Root of the sum of squares."""
+        return np.sqrt(self.data**2 + self.input**2 + self.numerical**2)
+
+
+def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
+    """Return the standard uncertainties of a displacement (mm) and of a turn (rad) from the height and the tilt.
+
+    A body on a flat surface keeps its height and its tilt, so their changes show the errors of the poses. Errors in
+    the plane are assumed to be as large.
+    """
+    lift = NORMAL * float(np.median([abs(push.lift) for push in pushes]))
+    tilts = [abs(tilt) for push in pushes for tilt in (push.tilt_x, push.tilt_y)]
+    return lift, NORMAL * float(np.median(tilts))
+
+
+@cache
+def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
+    """Return the uncertainties of the pushes of one series."""
+    shift, turn = pose_errors(pushes)
+    data, inputs, numerical = [], [], []
+    for push in pushes:
+        moved = [
+            replace(push, x=push.x + shift),
+            replace(push, y=push.y + shift),
+            replace(push, turn=push.turn + turn),
+        ]
+        base = force_error(push, Motion.of(push), coulomb)
+        effects = [_change(force_error(push, Motion.of(other), coulomb), base) for other in moved]
+        offset = np.degrees(push.noise / abs(measured(push).force))  # of the first sample
+        data.append(np.hypot(np.linalg.norm(effects), offset))
+        rounding = GIVEN_TO / np.sqrt(12.0)
+        laws = [pressed_at(push, step * rounding) for step in (1.0, 1.0j)] if feet(push.series) else []
+        inputs.append(
+            float(np.linalg.norm([_change(force_error(push, Motion.of(push), law), base) for law in laws]))
+        )
+        finer = 0.0 if feet(push.series) else force_error(push, Motion.of(push), _refined) - base
+        numerical.append(abs(finer))
+    return Uncertainties(np.array(data), np.array(inputs), np.array(numerical))
+
+
+def _change(angle: float, base: float) -> float:
+    return (angle - base + 180.0) % 360.0 - 180.0
+
+
+def _refined(push: Push, motion: Motion) -> Wrench:
+    contact = contact_of(push.series, divisions=2 * DIVISIONS)
+    return predicted(motion, contact, SLIDING_FORCES[surface(push.series)])
+
+
+# --- Other explanations of the rest: hypotheses, not fits.
+
+Places = tuple[NDArray[np.complex128], FloatArray]
+"""Places (m) of contact points about the centre of mass, and their shares of the load."""
+
+
+def pressed_at(push: Push, offset: complex) -> Law:
+    """Return Coulomb's law with the centre of pressure away from the centre of mass by ``offset`` (mm)."""
+    contact = contact_of(push.series, CENTRE + offset)
+    return lambda push, motion: predicted(motion, contact, SLIDING_FORCES[surface(push.series)])
+
+
+def pushed_above(height: float) -> Law:
+    """Return Coulomb's law with a pusher ``height`` mm above the surface, which moves the centre of pressure."""
+
+    def law(push: Push, motion: Motion) -> Wrench:
+        shift = measured(push).force * height / (MASS * GRAVITY)
+        return pressed_at(push, shift)(push, motion)
+
+    return law
+
+
+def other_force(factor: float) -> Law:
+    """Return Coulomb's law with another sliding force."""
+
+    def law(push: Push, motion: Motion) -> Wrench:
+        return predicted(motion, contact_of(push.series), factor * SLIDING_FORCES[surface(push.series)])
+
+    return law
+
+
+def pressure_moved_by(offset: complex) -> Law:
+    """Return Coulomb's law with the centre of pressure of three feet moved by ``offset`` (mm)."""
+    return lambda push, motion: pressed_at(push, offset)(push, motion)
+
+
+def rate_dependent(exponent: float) -> Law:
+    """Return a law with μ ∝ speed to the power ``exponent``, and the mean μ of Coulomb's law."""
+
+    def law(push: Push, motion: Motion) -> Wrench:
+        arms, shares = _places(contact_of(push.series))
+        return _sum_over(arms, shares, motion, SLIDING_FORCES[surface(push.series)], exponent)
+
+    return law
+
+
+def pressed_at_edges(share: float) -> Law:
+    """Return Coulomb's law with a ``share`` of the load on the edges of a patch; feet stay as they are."""
+
+    def law(push: Push, motion: Motion) -> Wrench:
+        arms, shares = _places(contact_of(push.series))
+        if not feet(push.series):
+            edges = _edges()
+            arms = np.concatenate([arms, edges])
+            shares = np.concatenate([(1.0 - share) * shares, np.full(len(edges), share / len(edges))])
+        return _sum_over(arms, shares, motion, SLIDING_FORCES[surface(push.series)], 0.0)
+
+    return law
+
+
+def _places(contact: Points) -> Places:
+    return np.array(contact.arms(0.0)), np.array(contact.shares)
+
+
+def _edges(count: int = 60) -> NDArray[np.complex128]:
+    """Return points on the edges of the triangle at equal distances, in m about the centre of mass."""
+    corners = np.array([0.0, LEGS, 1j * LEGS, 0.0])
+    lengths = abs(np.diff(corners))
+    along = (np.arange(count) + 0.5) / count * lengths.sum()
+    reached = np.concatenate([[0.0], np.cumsum(lengths)])
+    return np.asarray((np.interp(along, reached, corners) - CENTRE) * MM)
+
+
+def _sum_over(
+    arms: NDArray[np.complex128], shares: FloatArray, motion: Motion, sliding_force: float, exponent: float
+) -> Wrench:
+    ways = motion.shift + 1j * motion.spin * arms
+    lengths = np.maximum(abs(ways), 1e-12)
+    strengths = shares * (lengths / (shares @ lengths)) ** exponent
+    forces = sliding_force * strengths * ways / lengths
+    return Wrench(complex(forces.sum()), float((arms.conjugate() * forces).imag.sum()))
+
+
+@cache
+def by_series() -> dict[str, tuple[Push, ...]]:
+    """Return the pushes of the table by the name of their series."""
+    found: dict[str, tuple[Push, ...]] = {}
+    for push in reduced_pushes():
+        found[push.series] = (*found.get(push.series, ()), push)
+    return found
+
+
+def errors(
+    pushes: Sequence[Push], of: Callable[[Push, Motion, Law], float], law: Law = coulomb
+) -> FloatArray:
+    """Return the sizes of the errors of ``of`` with a law, shape (n,)."""
+    return np.abs([of(push, Motion.of(push), law) for push in pushes])
+
+
+def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:
+    """Return the median, and its standard error by the bootstrap."""
+    generator = np.random.default_rng(1)
+    medians = np.median(generator.choice(values, (draws, len(values))), axis=1)
+    return float(np.median(values)), float(medians.std())
