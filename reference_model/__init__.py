@@ -17,7 +17,8 @@ Modules and packages:
 """
 
 from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import PointsOnRing, Ring, ThreeTermRing
+from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.contact.points import Points, PointsOnRing
 from reference_model.formulas.pin import sticking_radius
 from reference_model.formulas.power_balance import PowerBalance, power_balance
 from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
@@ -49,6 +50,7 @@ __all__ = [
     "Orbit",
     "Phase",
     "PinOnDisc",
+    "Points",
     "PointsOnRing",
     "PowerBalance",
     "Ring",

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
+from numbers import Integral
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -268,6 +271,57 @@ def finite_number(name: str, value: Any) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{name} = {number}: it must be finite")
     return number
+
+
+def positive_number(name: str, value: Any, unit: str) -> float:
+    """Return ``value`` as a float; raise ``ValueError`` if it is not a finite number > 0."""
+    number = finite_number(name, value)
+    if number <= 0.0:
+        raise ValueError(f"{name} = {number:g} {unit}: it must be > 0")
+    return number
+
+
+def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
+    """Raise ``ValueError`` with the name and value unless ``value`` is an integer from ``least`` to ``most``."""
+    whole = isinstance(value, Integral) and not isinstance(value, bool)
+    if not (whole and least <= value <= most):
+        allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
+        raise ValueError(f"{name} = {value!r}: it must be a whole number {allowed}")
+
+
+Place: TypeAlias = tuple[float, float, float]
+"""Place x, y of a contact point in m in the frame of the disc, and its share of the load."""
+
+SHARES = 1e-12
+"""Largest deviation from 1 of a sum of shares: rounding errors of a thousand shares."""
+
+
+def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place, ...]:
+    """Return x, y and share of contact points; raise ``ValueError`` if invalid.
+
+    There are at least two points, at different places. Their shares are positive and sum to 1, to rounding error.
+    """
+    try:
+        given = [tuple(place) for place in places]
+    except TypeError:
+        raise ValueError(f"{name} = {places!r}: it must be a list of (x, y, share)") from None
+    result: list[Place] = []
+    for i, place in enumerate(given):
+        if len(place) != 3:
+            raise ValueError(f"{name}[{i}] = {place}: it must be (x, y, share), with x and y in m")
+        x, y, share = (finite_number(f"{name}[{i}]", value) for value in place)
+        if share <= 0.0:
+            raise ValueError(f"{name}[{i}] = {place}: the share must be > 0")
+        result.append((x, y, share))
+    if len(result) < 2:
+        raise ValueError(f"{name} = {result}: at least two points are needed; use a pin for a single one")
+    (place, number), *_ = Counter((x, y) for x, y, _ in result).most_common(1)
+    if number > 1:
+        raise ValueError(f"{name}: {number} points lie at {place}; combine their shares in one point")
+    total = math.fsum(share for _, _, share in result)
+    if abs(total - 1.0) > SHARES:
+        raise ValueError(f"{name}: the shares sum to {total:.12g}; they must sum to 1")
+    return tuple(result)
 
 
 def require_system(system: System, *allowed: type[System]) -> None:

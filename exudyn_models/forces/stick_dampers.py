@@ -2,8 +2,9 @@
 
 With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
 with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, with
-equality if the disc only translates or only rotates. So friction resists slip at most like a damper (μN/ε)·V. With x
-= J·q̇ of ``slip_jacobian`` it is the damper D = (μN/ε)·Jᵀ·V·J between two bodies.
+equality if the disc only translates or only rotates. For points xᵀ·V·x is the mean of all squares of the slip. So
+friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_jacobian`` it is the damper D =
+(μN/ε)·Jᵀ·V·J between two bodies.
 
 For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
 μN over the δ of ``friction_laws``.
@@ -21,8 +22,8 @@ from exudyn_models.forces.friction_laws import (
     NONE_HELD,
     Contact,
     mean_radius,
-    point_regularisation,
 )
+from exudyn_models.forces.laws.places import places_in, regularisation_at
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place_of_nodes
 from reference_model.systems import FloatArray
@@ -60,16 +61,17 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
 
     ``angle`` (rad) is that of the disc's first point relative to the master.
     """
-    outer, points, _, epsilon, held, _ = contact
+    _, points, _, epsilon, held, table = contact
     if points <= CONTINUOUS:
         radius = mean_radius(contact)
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
-    angles = angle + 2.0 * math.pi * np.arange(points) / points
+    x, y, loads = places_in(table).T
+    arms = np.exp(1j * angle) * (x + 1j * y)
     maps = np.zeros((points, 2, 3))  # maps (u, S) to the slip of each point
     maps[:, 0, 0] = maps[:, 1, 1] = 1.0
-    maps[:, 0, 2], maps[:, 1, 2] = -outer * np.sin(angles), outer * np.cos(angles)
-    shares = maps.transpose(0, 2, 1) @ maps / points
-    alone = shares / point_regularisation(epsilon, points)
+    maps[:, 0, 2], maps[:, 1, 2] = -arms.imag, arms.real
+    shares = maps.transpose(0, 2, 1) @ maps * loads[:, np.newaxis, np.newaxis]
+    alone = shares / regularisation_at(table, epsilon)
     if held == NONE_HELD:
         return np.concatenate((shares.sum(axis=0)[None] / epsilon, alone if points > 1 else alone[:0]))
     others = np.delete(shares, held, axis=0).sum(axis=0) / epsilon

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.friction_laws import point_regularisation
+from exudyn_models.forces.laws.places import point_regularisation, ring_places
 from exudyn_models.forces.slip_potential import ring_potential_slopes, ring_potentials
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import DiscOnDisc, FloatArray, Place, System
 
 WHOLE = 0
 """Column of the contact as a whole; columns of single points follow, if there are any."""
@@ -39,7 +39,7 @@ class RegularisedContact:
     @cached_property
     def point_epsilon(self) -> float:
         """δ, the slip speed below which the friction of one of several points is viscous."""
-        return point_regularisation(self.epsilon, len(self._angles_of_points))
+        return point_regularisation(self.epsilon, self._places)
 
     @cached_property
     def in_master_axes(self) -> RegularisedContact:
@@ -70,11 +70,15 @@ class RegularisedContact:
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
-    def _angles_of_points(self) -> FloatArray:
-        """Angles in rad of the points of a disc from its first one; empty for a pin or the continuous ring."""
+    def _places(self) -> tuple[Place, ...]:
+        """Places and shares of the points of a disc; empty for a pin or the continuous ring."""
         if not isinstance(self.system, DiscOnDisc) or self.system.contact_points is None:
-            return np.zeros(0)
-        return 2.0 * math.pi * np.arange(self.system.contact_points) / self.system.contact_points
+            return ()
+        return ring_places(self.system.contact_radius, self.system.contact_points)
+
+    @cached_property
+    def _arms(self) -> NDArray[np.complex128]:
+        return np.array([complex(x, y) for x, y, _ in self._places])
 
     def slip_ratios(self, states: FloatArray) -> FloatArray:
         """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
@@ -91,8 +95,7 @@ class RegularisedContact:
         rim = system.contact_radius * (spin - omega)
         if system.contact_points is None:
             return np.asarray(ring_potentials(np.hypot(ux, uy)[:, 0], rim[:, 0])[:, None] / epsilon)
-        alpha = angle + self._angles_of_points
-        speeds = np.hypot(ux - rim * np.sin(alpha), uy + rim * np.cos(alpha))
+        speeds = np.abs(ux + 1j * uy + 1j * (spin - omega) * np.exp(1j * angle) * self._arms)
         return np.hstack((speeds.mean(axis=1, keepdims=True) / epsilon, speeds / self.point_epsilon))
 
     def slip_ratio_rates(self, state: FloatArray, acceleration: FloatArray) -> FloatArray:
@@ -109,7 +112,7 @@ class RegularisedContact:
             by_speed, by_rim = ring_potential_slopes(abs(slip[0]), abs(rim))
             growth = by_speed * _growth(slip, rate) + by_rim * math.copysign(1.0, rim) * rim_rate
             return np.asarray(growth / epsilon)
-        across = 1j * np.exp(1j * (state[2] + self._angles_of_points))
+        across = 1j * np.exp(1j * state[2]) * self._arms / system.contact_radius
         growths = _growth(slip + rim * across, rate + (rim_rate + 1j * state[5] * rim) * across)
         return np.asarray([growths.mean() / epsilon, *(growths / self.point_epsilon)])
 

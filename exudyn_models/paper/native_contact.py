@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_models.forces.friction_laws import point_regularisation
+from exudyn_models.forces.laws.places import point_regularisation
 from exudyn_models.paper.alternating_solvers import Friction, Part
 from exudyn_models.paper.creep import WHOLE, RegularisedContact
 from exudyn_models.paper.scales import support_energy
 from exudyn_models.paper.simulate import METHODS, Run
 from exudyn_models.parts.native_contact import add_native_friction
+from exudyn_models.parts.ring_friction import checked_contact
 from reference_model.systems import (
     DiscOnDisc,
     FloatArray,
@@ -69,7 +70,10 @@ def _add_friction(
 
     ``held`` points stay viscous anyway, because Exudyn keeps to one branch of the law within a step.
     """
-    delta = point_regularisation(regularisation, contact.get("contact_points") or 1)
+    _, places, _ = checked_contact(
+        regularisation, contact["contact_radius"], contact.get("contact_points") or 1
+    )
+    delta = point_regularisation(regularisation, places or ())
     return add_native_friction(mbs, master_node, disc_node, regularisation=delta, **contact)
 
 

@@ -12,7 +12,7 @@ from exudyn_models.forces.laws.pressures import Pressure
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
-from exudyn_models.parts.ring_friction import add_ring_friction
+from exudyn_models.parts.ring_friction import ContactPoints, add_ring_friction
 from exudyn_models.parts.thermal_node import ThermalNode
 
 
@@ -27,7 +27,7 @@ def MainSystemCreateRingFriction(
     contactRadius: float | None = None,
     innerRadius: float | None = None,
     outerRadius: float | None = None,
-    contactPoints: int | None = None,
+    contactPoints: ContactPoints | None = None,
     staticRatio: float = 1.0,
     plates: int = 1,
     pressure: Pressure = "uniform",

@@ -15,12 +15,11 @@ from typing import Any
 import exudyn as exu
 import exudyn.itemInterface
 
-from exudyn_models.forces.friction_laws import CONTINUOUS
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
-from exudyn_models.parts.ring_friction import checked_contact
-from reference_model.systems import finite_number
+from exudyn_models.parts.ring_friction import ContactPoints, checked_contact
+from reference_model.systems import positive_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
@@ -37,11 +36,11 @@ def add_native_friction(
     master_node: Any,
     disc_node: Any,
     *,
-    contact_radius: float,
+    contact_radius: float | None = None,
     friction_coefficient: float,
     normal_load: float,
     regularisation: float,
-    contact_points: int | None = None,
+    contact_points: ContactPoints | None = None,
     reach: float,
 ) -> list[Any]:
     """Add friction like ``add_ring_friction``, by one built-in contact per point; return their ``ObjectIndex``.
@@ -64,8 +63,9 @@ def add_native_friction(
         N in N of all points together, >= 0.
     regularisation : float
         ε in m/s, > 0.
-    contact_points : int
-        n >= 1. A built-in contact of a whole circle does not exist.
+    contact_points : int or sequence of (float, float, float)
+        n >= 1 points on the circle, or places and shares of the load in place of ``contact_radius``. A built-in
+        contact of a whole circle does not exist.
     reach : float
         Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 
@@ -75,10 +75,15 @@ def add_native_friction(
         If a number is out of range or a node is of an unsupported kind.
 
     """
-    radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+    _, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
     coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
     friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
-    reach = _checked_extent(reach, points)
+    reach = positive_number("reach", reach, "m")
+    if places is None:
+        raise ValueError(
+            "contact_points = None: Exudyn's built-in contact supports points only; it must be a whole number, "
+            "for example 6, or places of points"
+        )
     sides = checked_sides(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
     if nodes_and_kinds(*sides)[1][2] is not None:
         raise ValueError(
@@ -89,25 +94,12 @@ def add_native_friction(
     size = 2.0 * reach  # from the triangle's centre to a corner; the inscribed circle has half of it
     master_marker = _marker(mbs, master, 0j)
     contacts = []
-    for i in range(points):
-        arm = cmath.rect(radius, math.tau * i / points)
+    for x, y, share in places:
+        arm = complex(x, y)
         data = _slip_data(mbs, size / 2.0, _initial_slip_speed(mbs, master, disc, arm))
         markers = [_marker(mbs, disc, arm), master_marker]
-        contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, points))
+        contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, share))
     return contacts
-
-
-def _checked_extent(reach: float, points: int) -> float:
-    """Return ``reach`` in m; raise ``ValueError`` if it is not > 0, or the contact is a whole circle."""
-    if points == CONTINUOUS:
-        raise ValueError(
-            "contact_points = None: Exudyn's built-in contact supports points only; it must be a whole number, "
-            "for example 6"
-        )
-    reach = finite_number("reach", reach)
-    if reach <= 0.0:
-        raise ValueError(f"reach = {reach:g} m: it must be > 0")
-    return reach
 
 
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
@@ -123,9 +115,9 @@ def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
 
 
 def _add_sphere(
-    mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, points: int
+    mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, share: float
 ) -> Any:
-    """Add the contact of one of ``points`` spheres with the triangle; return its ``ObjectIndex``.
+    """Add the contact of a sphere with its ``share`` of the load on the triangle; return its ``ObjectIndex``.
 
     The penetration is half of the sphere's radius ``size``. ``friction_force`` is that of all points together, in N.
     """
@@ -141,7 +133,7 @@ def _add_sphere(
             includeEdges=0,
             dynamicFriction=friction_force / NORMAL_FORCE,
             frictionProportionalZone=epsilon,
-            contactStiffness=NORMAL_FORCE / points / penetration,
+            contactStiffness=NORMAL_FORCE * share / penetration,
         )
     )
 

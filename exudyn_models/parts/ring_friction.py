@@ -6,7 +6,8 @@ It applies the full reaction to the master, see ``connector``. The law is in ``f
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Any, Protocol
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact
+from exudyn_models.forces.laws.places import ring_places, table_of
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Kinds
@@ -24,12 +26,16 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.mounts import check_axes, checked_sides, nodes_and_kinds
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.stick.planar_stick import PlanarStick
-from reference_model.systems import FloatArray, finite_number
+from reference_model.systems import FloatArray, Place, checked_places, finite_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 UNREGULARISED = 1e-200
 """Value of ε in m/s for exact stick, far below any slip of a sliding contact."""
+
+
+ContactPoints = int | Iterable[Place]
+"""Number of points on a circle, or x (m), y (m) and share of the load of each point."""
 
 
 class AddFriction(Protocol):
@@ -45,7 +51,7 @@ class AddFriction(Protocol):
         friction_coefficient: float,
         normal_load: float,
         regularisation: float,
-        contact_points: int | None = None,
+        contact_points: ContactPoints | None = None,
     ) -> Any:
         """Add the connector or connectors."""
         ...
@@ -62,7 +68,7 @@ def add_ring_friction(
     friction_coefficient: Coefficient,
     normal_load: NumberOrFunction,
     regularisation: float | None = None,
-    contact_points: int | None = None,
+    contact_points: ContactPoints | None = None,
     static_ratio: float = 1.0,
     plates: int = 1,
     pressure: Pressure = "uniform",
@@ -74,9 +80,10 @@ def add_ring_friction(
     """Add friction between a disc and a master disc to ``mbs``; return a handle with the connector and its sensors.
 
     The contact is a circle of ``contact_radius`` about the disc's node or marker, or ``contact_points`` points on it
-    that turn with the disc: point i at the angle φ + 2πi/n, each with an equal share of the normal load N. Or it is
-    the annulus between ``inner_radius`` and ``outer_radius`` under a ``pressure``. The law is that of
-    ``friction_laws``: Coulomb friction above the slip speed ε, viscous below.
+    that turn with the disc: point i at the angle φ + 2πi/n, each with an equal share of the normal load N. Points may
+    also lie anywhere and carry unequal shares. Or the contact is the annulus between ``inner_radius`` and
+    ``outer_radius`` under a ``pressure``. The law is that of ``friction_laws``: Coulomb friction above the slip speed
+    ε, viscous below.
 
     Either node is a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or, for
     implicit solvers, a ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. A ``Node1D`` turns about the
@@ -128,8 +135,10 @@ def add_ring_friction(
         Axial force N in N, >= 0, or a function that returns it. All ``plates`` carry it.
     regularisation : float, optional
         ε in m/s, > 0. If None, the contact sticks exactly.
-    contact_points : int or None
-        n >= 1, or None for the whole circle or annulus.
+    contact_points : int, sequence of (float, float, float) or None
+        n >= 1 points on the circle, or None for the whole circle or annulus. In place of ``contact_radius``: x and y
+        of at least two points in m, in the axes of the disc, and their shares of the load, such as a
+        ``reference_model.Points``.
     static_ratio : float
         Static over sliding friction, >= 1. Friction holds up to ``static_ratio``·μN and falls to μN between the slip
         speeds ε and 2ε; the effect of this width is of first order in ε.
@@ -232,33 +241,41 @@ def _checked_geometry(
     inner_radius: float | None,
     outer_radius: float | None,
     regularisation: float | None,
-    contact_points: int | None,
+    contact_points: ContactPoints | None,
     held: int | None,
     pressure: Pressure,
 ) -> Contact:
     """Return the contact, with 1 N in place of μN; raise ``ValueError`` if it is invalid."""
     regularisation = UNREGULARISED if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
-        radius, points, epsilon = checked_contact(regularisation, contact_radius, contact_points)
-        inner = radius
+        radius, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
+        points = CONTINUOUS if places is None else len(places)
+        last = radius if places is None else table_of(places)
         if pressure != "uniform":
             raise ValueError(
                 f"pressure = {pressure!r}: it needs an annulus, with inner_radius and outer_radius"
             )
     else:
-        inner, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
-        points, epsilon = density_of(pressure, inner, radius), checked_regularisation(regularisation)
+        last, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
+        points, epsilon = density_of(pressure, last, radius), checked_regularisation(regularisation)
     if held is not None and held not in range(1, 1 + points):  # a whole circle has none
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
-    return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, inner
+    return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, last
 
 
 def checked_contact(
-    regularisation: float, contact_radius: float | None, contact_points: int | None
-) -> tuple[float, int, float]:
-    """Return R, number of points and ε; raise ``ValueError`` if one is out of range."""
+    regularisation: float, contact_radius: float | None, contact_points: ContactPoints | None
+) -> tuple[float, tuple[Place, ...] | None, float]:
+    """Return R, places, None for the whole circle, and ε; raise ``ValueError`` if one is out of range."""
+    if isinstance(contact_points, Iterable):
+        places = checked_places("contact_points", contact_points)
+        if contact_radius is not None:
+            raise ValueError(
+                f"contact_radius = {contact_radius}: it cannot be combined with places of points"
+            )
+        return max(math.hypot(x, y) for x, y, _ in places), places, checked_regularisation(regularisation)
     radius = finite_number("contact_radius", contact_radius)
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
@@ -266,19 +283,20 @@ def checked_contact(
         isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1
     ):
         raise ValueError(
-            f"contact_points = {contact_points}: it must be a whole number >= 1, or None for the continuous ring"
+            f"contact_points = {contact_points}: it must be a whole number >= 1, places of points, or None for the "
+            "continuous ring"
         )
     epsilon = checked_regularisation(regularisation)
     if radius == 0.0:  # a pin, whatever the number of points
-        return radius, 1, epsilon
-    return radius, int(contact_points or CONTINUOUS), epsilon
+        contact_points = 1
+    return radius, None if contact_points is None else ring_places(radius, int(contact_points)), epsilon
 
 
 def _checked_annulus(
     inner_radius: float | None,
     outer_radius: float | None,
     contact_radius: float | None,
-    contact_points: int | None,
+    contact_points: ContactPoints | None,
 ) -> tuple[float, float]:
     for name, value in (("contact_radius", contact_radius), ("contact_points", contact_points)):
         if value is not None:

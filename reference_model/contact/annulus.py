@@ -9,9 +9,9 @@ from functools import cached_property
 
 import numpy as np
 
-from reference_model.contact.contact_law import IsotropicContact, Shares, Slopes, require_whole
+from reference_model.contact.contact_law import IsotropicContact, Shares, Slopes
 from reference_model.contact.elliptic import mean_curvatures, mean_directions
-from reference_model.systems import finite_number
+from reference_model.systems import finite_number, require_whole
 
 CLUSTERING = 3
 """Exponent q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.

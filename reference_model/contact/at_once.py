@@ -11,8 +11,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.contact.contact_law import NONE, Contact, PointsOnRing, Ring
+from reference_model.contact.contact_law import NONE, Contact, Ring
 from reference_model.contact.elliptic import mean_directions_at
+from reference_model.contact.points import Points
 from reference_model.systems import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -30,51 +31,50 @@ class ContactAtOnce(Protocol):
 
 @dataclass(frozen=True)
 class PointsAtOnce:
-    """Vectorised :class:`PointsOnRing`.
+    """Vectorised :class:`Points`.
 
     Parameters
     ----------
-    law : PointsOnRing
+    law : Points
         Law for a single state.
 
     """
 
-    law: PointsOnRing
+    law: Points
 
     @property
-    def points(self) -> int:
-        """Number of points."""
-        return self.law.points
+    def shares(self) -> tuple[float, ...]:
+        """Share of the load of each point."""
+        return self.law.shares
 
     def arm(self, point: int, angle: FloatArray) -> ComplexArray:
-        """Like :meth:`PointsOnRing.arm`."""
+        """Like :meth:`Points.arm`."""
         return np.asarray(self.law.arm(point, 0.0) * np.exp(1j * angle))
 
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`PointsOnRing.force_and_moment`."""
+        """Like :meth:`Points.force_and_moment`."""
         arms = self._arms(angle)
-        return _friction(arms, slip - 1j * relative_spin * arms)
+        return self._friction(arms, slip - 1j * relative_spin * arms)
 
     def friction_of_others(
         self, point: int, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`PointsOnRing.friction_of_others`."""
+        """Like :meth:`Points.friction_of_others`."""
         arms = self._arms(angle)
         velocities = slip - 1j * relative_spin * (arms - arms[point])
         velocities[point] = 0.0
-        return _friction(arms, velocities)
+        return self._friction(arms, velocities)
 
     def _arms(self, angle: FloatArray) -> ComplexArray:
         return np.asarray(np.multiply.outer(np.array(self.law.arms(0.0)), np.exp(1j * angle)))
 
-
-def _friction(arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-    """Return force and moment of points with equal loads, for arrays of shape (points, k)."""
-    friction = velocities * (-1.0 / len(arms) / (abs(velocities) + NONE))
-    moments = arms.real * friction.imag - arms.imag * friction.real
-    return friction.sum(axis=0), moments.sum(axis=0)
+    def _friction(self, arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+        """Return force and moment for arrays of shape (points, k)."""
+        friction = velocities * (-np.array(self.shares)[:, np.newaxis] / (abs(velocities) + NONE))
+        moments = arms.real * friction.imag - arms.imag * friction.real
+        return friction.sum(axis=0), moments.sum(axis=0)
 
 
 @dataclass(frozen=True)
@@ -123,6 +123,6 @@ class OneByOne:
 
 def at_once(contact: Contact) -> ContactAtOnce:
     """Return the vectorised law."""
-    if isinstance(contact, PointsOnRing):
+    if isinstance(contact, Points):
         return PointsAtOnce(contact)
     return RingAtOnce(contact) if isinstance(contact, Ring) else OneByOne(contact)

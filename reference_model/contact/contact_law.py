@@ -1,4 +1,4 @@
-"""Coulomb friction between two discs: of a pin, a ring, points on a ring, and the expansion (22).
+"""Coulomb friction between two discs: the interface of all laws, a pin, a ring, and the expansion (22).
 
 Each law returns the force and the moment on the disc while its centre slips with u over the master disc and the
 master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u −
@@ -12,24 +12,21 @@ on the angle φ.
 
 from __future__ import annotations
 
-import cmath
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from functools import cached_property
-from numbers import Integral
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from reference_model.contact.elliptic import mean_curvatures, mean_directions
+from reference_model.contact.points import Points, PointsOnRing
 from reference_model.systems import (
-    MOST_POINTS,
     DiscOnDisc,
     FloatArray,
     PinOnDisc,
     System,
-    finite_number,
+    positive_number,
     require_system,
 )
 
@@ -151,10 +148,7 @@ class _OnCircle:
     radius: float
 
     def __post_init__(self) -> None:
-        radius = finite_number("radius", self.radius)
-        if radius <= 0.0:
-            raise ValueError(f"radius = {radius:g} m: it must be > 0")
-        object.__setattr__(self, "radius", radius)
+        object.__setattr__(self, "radius", positive_number("radius", self.radius, "m"))
 
 
 @dataclass(frozen=True)
@@ -232,95 +226,7 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
         return speed, slip_speed / speed, rim / speed
 
 
-@dataclass(frozen=True)
-class PointsOnRing(_OnCircle):
-    """Contact in n points on a circle, each with 1/n of the load: the paper's discretisation, with n = 6.
-
-    Point i lies at φ + 2πi/n, so the law depends on the angle.
-
-    Parameters
-    ----------
-    radius : float
-        R in m, > 0.
-    points : int
-        n, from 3 to 1000.
-
-    """
-
-    points: int
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        require_whole("points", self.points, least=3, most=MOST_POINTS)
-
-    @cached_property
-    def _around(self) -> tuple[complex, ...]:
-        """Points on the unit circle at φ = 0."""
-        return tuple(cmath.exp(2j * math.pi * i / self.points) for i in range(self.points))
-
-    def arm(self, point: int, angle: float) -> complex:
-        """Return the position of a point relative to the centre, in m."""
-        return self.radius * cmath.exp(1j * angle) * self._around[point]
-
-    def arms(self, angle: float) -> list[complex]:
-        """Return the positions of all points relative to the centre, in m."""
-        turn = self.radius * cmath.exp(1j * angle)
-        return [turn * point for point in self._around]
-
-    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """Like :meth:`Contact.force_and_moment`; a point at rest has set-valued friction and contributes nothing."""
-        force, moment = 0j, 0.0
-        for arm in self.arms(angle):
-            velocity = slip - 1j * relative_spin * arm
-            speed = abs(velocity)
-            if speed > 0.0:
-                friction = -velocity / speed
-                force += friction
-                moment += (arm.conjugate() * friction).imag
-        return force / self.points, moment / self.points
-
-    def friction_of_others(
-        self, point: int, slip: complex, relative_spin: float, angle: float
-    ) -> tuple[complex, float]:
-        """Return force and moment of all points but ``point``, which slips with ``slip``."""
-        force, moment = 0j, 0.0
-        arms = self.arms(angle)
-        own = arms[point]
-        for j, arm in enumerate(arms):
-            if j != point:
-                velocity = slip - 1j * relative_spin * (arm - own)
-                speed = abs(velocity)
-                if speed > 0.0:
-                    friction = -velocity / speed
-                    force += friction
-                    moment += (arm.conjugate() * friction).imag
-        return force / self.points, moment / self.points
-
-    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """Like :meth:`Contact.jacobian`."""
-        result = np.zeros((3, 4))
-        for arm in self.arms(angle):
-            velocity = slip - 1j * relative_spin * arm
-            speed = abs(velocity)
-            if speed == 0.0:
-                raise ValueError(
-                    f"angle = {angle:g} rad: a point is at rest, where friction has no derivative"
-                )
-            direction = velocity / speed
-            across = 1j * direction
-            # Derivatives of the point's slip by u_x, u_y, S, φ. Friction changes only with the component across its
-            # direction.
-            by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
-            turning = -((by_unknowns * across.conjugate()).real / speed)
-            friction = turning * across
-            result[0] += friction.real
-            result[1] += friction.imag
-            result[2] += (arm.conjugate() * friction).imag
-            result[2, 3] += ((1j * arm).conjugate() * -direction).imag  # the arm turns too
-        return result / self.points
-
-
-def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | PointsOnRing:
+def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | Points:
     """Return ``contact``, or if it is None the friction law given by the parameters of ``system``.
 
     Raises ``ValueError`` if the system cannot have this law.
@@ -334,9 +240,9 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
         if system.contact_points is None:
             return Ring(system.contact_radius)
         return PointsOnRing(system.contact_radius, system.contact_points)
-    if not isinstance(contact, IsotropicContact | PointsOnRing):
+    if not isinstance(contact, IsotropicContact | Points):
         raise ValueError(
-            f"contact = {contact}: it must be an isotropic law, like Ring(radius), or PointsOnRing(radius, points)"
+            f"contact = {contact}: it must be an isotropic law, like Ring(radius), or Points([(x, y, share), ...])"
         )
     return contact
 
@@ -352,11 +258,3 @@ def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, w
             "use the continuous ring, contact_points = None"
         )
     return law
-
-
-def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
-    """Raise ``ValueError`` with the name and value unless ``value`` is an integer from ``least`` to ``most``."""
-    whole = isinstance(value, Integral) and not isinstance(value, bool)
-    if not (whole and least <= value <= most):
-        allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
-        raise ValueError(f"{name} = {value!r}: it must be a whole number {allowed}")

@@ -1,22 +1,34 @@
-"""The limit surface of a disc on points: the force and moment that friction can hold while all points rest.
+"""The limit surface of a contact: the force and moment that friction can hold while the disc rests.
 
 A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN, along the
 slip that they drive) if for every slip their power is at most the power that friction dissipates: F·u + M·w <= P(u,
-w), the mean of |v_j|. P is of degree one, so this is M <= h(F) and −M <= h(−F) with h(F) = min over u of P(u, 1) −
-F·u. P is at least |u|, so h is not negative for |F| <= 1 and only the sign of M counts. Finding u is a Fermat-Weber
-problem with a pull F. It is convex, and the solution may be a vertex, u = −i·a_j: then the disc begins to turn about
-point j, which stays at rest, and the limit surface has a flat face.
+w), the mean of |v_j| weighted by the shares of the load. P is of degree one, so this is M <= h(F) and −M <= h(−F),
+with h(F) = min over u of P(u, 1) − F·u. With u and M about the centre of the load P is at least |u|, so h is not
+negative for |F| <= 1 and only the sign of M counts. Finding u is a Fermat-Weber problem with a pull F. It is convex,
+and the solution may be a vertex, u = −i·a_j: then the disc begins to turn about point j, which stays at rest, and the
+limit surface has a flat face.
+
+All this follows from Coulomb's law at every point. Two published experiments speak against it for extended contacts.
+For a disc under a force and a torque Dahmen et al. measured a limit that depends on microscopic details and not on
+Coulomb's law alone. The experiments of Weidman and Malhotra confirmed only partially how two-tier discs come to rest.
+
+S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.
+P. D. Weidman and C. P. Malhotra, Regular and Chaotic Dynamics 12 (2007) 179.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.contact.points import Points
 from reference_model.systems import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -27,8 +39,71 @@ ROUNDING = 4e-16
 """Rounding error of a mean of unit vectors."""
 
 
+def wrench_of_slip(contact: IsotropicContact | Points, slip: complex, spin: float) -> tuple[complex, float]:
+    """Return the force (N per N of μN) and the moment (m) about the centre that drive a slip of a disc at φ = 0.
+
+    They lie on the limit surface, whose normal there is the slip: u of the centre in m/s, and w = φ̇ − ω in rad/s.
+    """
+    friction, moment = contact.force_and_moment(slip, -spin, 0.0)
+    return -friction, -moment
+
+
+def largest_wrench(
+    contact: IsotropicContact | Points, force: complex, moment: float
+) -> tuple[complex, float]:
+    """Return the largest multiple of a force and a moment that friction can hold at φ = 0.
+
+    Parameters
+    ----------
+    contact : IsotropicContact or Points
+        Friction law.
+    force, moment : complex, float
+        Direction of the load on the disc: any force, and a moment about the centre in m times its unit.
+
+    Returns
+    -------
+    (complex, float)
+        Force in N per N of μN, and moment in m.
+
+    Raises
+    ------
+    ValueError
+        If force and moment are both zero.
+
+    """
+    if force == 0.0 and moment == 0.0:
+        raise ValueError("force and moment are 0: they must have a direction")
+    if isinstance(contact, Points):
+        factor = PointsLimit.of(contact).factor(force, moment)
+    else:
+        factor = _factor_of_circles(contact, abs(force), abs(moment))
+    return factor * force, factor * moment
+
+
+def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -> float:
+    """Return the factor of :func:`largest_wrench` for an isotropic contact.
+
+    While U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    """
+    lever = contact.shares(0.0, 1.0).moment
+    if lever == 0.0:  # a pin
+        return 0.0 if moment > 0.0 else 1.0 / force
+
+    def load(alpha: float) -> tuple[float, float]:
+        return contact.shares(math.cos(alpha), math.sin(alpha) / lever)
+
+    def excess(alpha: float) -> float:
+        resistance, resisted = load(alpha)
+        return resistance * moment - resisted * force
+
+    if force == 0.0 or moment == 0.0:
+        return lever / moment if force == 0.0 else 1.0 / force
+    alpha = float(brentq(excess, 0.0, math.pi / 2.0, xtol=1e-16, rtol=1e-15))
+    return math.hypot(load(alpha)[0], load(alpha)[1] / lever) / math.hypot(force, moment / lever)
+
+
 class Limit(NamedTuple):
-    """Squares of the largest moments that can be held together with given forces, and the slips u for w = 1 there.
+    """Squares of the largest moments that can be held together with given forces, and the slips for w = 1 there.
 
     Where the force alone is too large the squares continue as (1 − |F|)·R², which is also their leading term for |F|
     < 1. So they pass through zero with a finite slope.
@@ -40,77 +115,134 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PointsLimit:
-    """The limit surface of points with the arms ``arms``, shape (n,), in the frame of the disc."""
+    """The limit surface of points with the ``arms`` (n,) in the frame of the disc and ``shares`` (n,) of the load."""
 
     arms: ComplexArray
+    shares: FloatArray
 
-    def margins(self, forces: ComplexArray, moment: float) -> FloatArray:
+    @classmethod
+    def of(cls, contact: Points, length: float = 1.0) -> PointsLimit:
+        """Return the limit surface of ``contact`` with a unit of ``length`` in m."""
+        return cls(np.array(contact.arms(0.0), dtype=np.complex128) / length, np.array(contact.shares))
+
+    @cached_property
+    def centre(self) -> complex:
+        """Mean place of the load c. Moments about it and its slip separate force and moment where |F| = 1."""
+        return complex(self.shares @ self.arms)
+
+    @cached_property
+    def radius(self) -> float:
+        """Root mean square distance R of the load from its centre."""
+        return math.sqrt(float(self.shares @ abs(self.arms - self.centre) ** 2))
+
+    @cached_property
+    def _vertices(self) -> ComplexArray:
+        """Slips of the centre for w = 1 if one of the points rests."""
+        return np.asarray(-1j * (self.arms - self.centre))
+
+    @cached_property
+    def _pulls(self) -> ComplexArray:
+        """Force of the other points while the disc turns about each of them."""
+        pulls = [self.shares @ _directions(vertex - self._vertices) for vertex in self._vertices]
+        return np.array(pulls)
+
+    def margins(self, forces: ComplexArray, moment: FloatArray | float) -> FloatArray:
         """Return (h² − M²)/R² for ``forces`` (t,); negative where friction cannot hold them."""
-        squares = self.greatest(math.copysign(1.0, moment) * forces).squares
-        return np.asarray((squares - moment**2) / abs(self.arms[0]) ** 2)
+        about_centre = self._about_centre(forces, moment)
+        squares = self.greatest(np.copysign(1.0, about_centre) * forces).squares
+        return np.asarray((squares - about_centre**2) / self.radius**2)
 
     def direction(self, force: complex, moment: float) -> tuple[complex, float]:
         """Return the slip (u, w) normal to the limit surface near ``force`` and ``moment``."""
-        sense = math.copysign(1.0, moment)
-        return sense * complex(self.greatest(np.array([sense * force])).slips[0]), sense
+        sense = math.copysign(1.0, float(self._about_centre(force, moment)))
+        slip = complex(self.greatest(np.array([sense * force])).slips[0])
+        return sense * (slip - 1j * self.centre), sense
+
+    def factor(self, force: complex, moment: float) -> float:
+        """Return the largest multiple of ``force`` and ``moment``, not both zero, that friction can hold."""
+        lever = float(self.shares @ abs(self.arms - self.centre))
+        most = 1.0 / max(abs(force), abs(float(self._about_centre(force, moment))) / lever)
+
+        def margin(factor: float) -> float:
+            return float(self.margins(np.array([factor * force]), factor * moment)[0])
+
+        return most if margin(most) >= 0.0 else float(brentq(margin, 0.0, most, xtol=1e-300, rtol=1e-15))
 
     def greatest(self, forces: ComplexArray) -> Limit:
-        """Return the limit for ``forces`` (t,)."""
-        radius, vertices = abs(self.arms[0]), -1j * self.arms
-        n = len(vertices)
-        apart = vertices[:, np.newaxis] - vertices
-        distance = abs(apart) + np.eye(n)
+        """Return the limit for ``forces`` (t,), with moments about the centre of the load and its slip."""
         # A point is the pivot if it can supply the force that friction of the other points leaves over.
-        left = forces[:, np.newaxis] - (apart / distance).sum(axis=1) / n
-        at_vertex = abs(left) <= 1.0 / n
+        at_vertex = abs(forces[:, np.newaxis] - self._pulls) <= self.shares
         pivots = at_vertex.any(axis=1)
         too_much = abs(forces) >= 1.0
-        slips = np.where(pivots, vertices[at_vertex.argmax(axis=1)], radius * forces / FLAT)
+        far = self.radius * forces / FLAT
+        slips = np.where(pivots, self._vertices[at_vertex.argmax(axis=1)], far)
         free = ~pivots & ~too_much
-        slips[free] = _fermat_weber(vertices, forces[free])
+        slips[free] = self._fermat_weber(forces[free])
         squares = np.where(
-            too_much, (1.0 - abs(forces)) * radius**2, _objective(vertices, forces, slips) ** 2
+            too_much, (1.0 - abs(forces)) * self.radius**2, self._objective(forces, slips) ** 2
         )
         return Limit(squares, slips)
 
+    def _about_centre(self, forces: ComplexArray | complex, moment: FloatArray | float) -> FloatArray:
+        return np.asarray(moment - (self.centre.conjugate() * forces).imag)
+
+    def _objective(self, forces: ComplexArray, u: ComplexArray) -> FloatArray:
+        mean = abs(u[:, np.newaxis] - self._vertices) @ self.shares
+        return np.asarray(mean - (forces.conj() * u).real)
+
+    def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
+        """Minimise the mean distance minus F·u, which is convex, where the minimum is not at a vertex.
+
+        Armijo's rule halves a step of Newton's method until it descends by a share of its slope's prediction. A
+        step of Weiszfeld's method, which always descends, replaces a halved one that descends less.
+        """
+        # This is exact in the limit of large |u| for points with the same spread in all directions.
+        u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
+        value = self._objective(forces, u)
+        for _ in range(MOST_ITERATIONS):
+            d = u[:, np.newaxis] - self._vertices
+            distance = np.maximum(abs(d), 1e-300)
+            gradient = (d / distance) @ self.shares - forces
+            xx, yy = (d.imag**2 / distance**3) @ self.shares, (d.real**2 / distance**3) @ self.shares
+            xy = -(d.real * d.imag / distance**3) @ self.shares
+            determinant = np.maximum(xx * yy - xy**2, SINGULAR * (xx + yy) ** 2)
+            step = (xy * gradient.imag - yy * gradient.real) + 1j * (xy * gradient.real - xx * gradient.imag)
+            step /= determinant
+            slope = ARMIJO * (gradient.conj() * step).real
+            after, halved = self._objective(forces, u + step), np.zeros(len(u), dtype=bool)
+            for _ in range(MOST_HALVINGS):
+                worse = after > value + slope + 1e-15 * self.radius
+                if not worse.any():
+                    break
+                step[worse] *= 0.5
+                slope[worse] *= 0.5
+                after[worse] = self._objective(forces[worse], (u + step)[worse])
+                halved |= worse
+            if halved.any():
+                weights = self.shares / distance
+                weiszfeld = (weights @ self._vertices + forces) / weights.sum(axis=1)
+                by_weiszfeld = self._objective(forces, weiszfeld)
+                better = halved & (by_weiszfeld < after)
+                step = np.where(better, weiszfeld - u, step)
+                after = np.where(better, by_weiszfeld, after)
+            u, value = u + step, after
+            if np.all((abs(step) <= 1e-12 * abs(u)) | (abs(gradient) < ROUNDING)):
+                break
+        return u
+
+
+SINGULAR = 1e-15
+"""Smallest determinant over the squared trace of a Hessian; for points on one line it can vanish."""
+
+ARMIJO = 1e-4
+"""Smallest descent of a step over that of its slope."""
+
+MOST_HALVINGS = 60
 
 FLAT = 1e-9
 """Share of rotation in the slip of a disc whose force alone is too large: almost none."""
 
 
-def _objective(vertices: ComplexArray, forces: ComplexArray, u: ComplexArray) -> FloatArray:
-    result: FloatArray = abs(u[:, np.newaxis] - vertices).mean(axis=1) - (forces.conj() * u).real
-    return result
-
-
-def _fermat_weber(vertices: ComplexArray, forces: ComplexArray) -> ComplexArray:
-    """Minimise the mean distance minus F·u where the minimum is not at a vertex.
-
-    Uses Newton's method, and a step of Weiszfeld's method, which always descends, where Newton's does not.
-    """
-    u: ComplexArray = (
-        abs(vertices[0]) * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
-    )  # exact in the limit of large |u|
-    value = _objective(vertices, forces, u)
-    for _ in range(MOST_ITERATIONS):
-        d = u[:, np.newaxis] - vertices
-        distance = np.maximum(abs(d), 1e-300)
-        gradient = (d / distance).mean(axis=1) - forces
-        xx = (d.imag**2 / distance**3).mean(axis=1)
-        yy = (d.real**2 / distance**3).mean(axis=1)
-        xy = -(d.real * d.imag / distance**3).mean(axis=1)
-        determinant = xx * yy - xy**2
-        newton = u - (
-            (yy * gradient.real - xy * gradient.imag) + 1j * (xx * gradient.imag - xy * gradient.real)
-        ) / np.where(determinant > 0.0, determinant, np.inf)
-        weights = 1.0 / distance
-        weiszfeld = ((vertices * weights).sum(axis=1) + len(vertices) * forces) / weights.sum(axis=1)
-        after = _objective(vertices, forces, newton)
-        better = after <= value + 1e-15 * abs(vertices[0])
-        new = np.where(better, newton, weiszfeld)
-        done = (abs(new - u) <= 1e-12 * abs(new)) | (abs(gradient) < ROUNDING)
-        u = new
-        value = np.where(better, after, _objective(vertices, forces, weiszfeld))
-        if done.all():
-            break
-    return u
+def _directions(slips: ComplexArray) -> ComplexArray:
+    """Return unit vectors along ``slips``, zero where they vanish."""
+    return np.asarray(slips / np.maximum(abs(slips), 1e-300))

@@ -17,8 +17,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import brentq, minimize, minimize_scalar
 
-from reference_model.contact.contact_law import PointsOnRing
 from reference_model.contact.limit_surface import ComplexArray, PointsLimit
+from reference_model.contact.points import Points
 from reference_model.motion.bodies import DiscBody
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.pivot import OnePoint
@@ -33,17 +33,18 @@ LOOKS = 360
 
 
 class PointsBody(DiscBody):
-    """A disc on points on a ring."""
+    """A disc on points."""
 
-    def __init__(self, run: Run, motion: DiscMotion, contact: PointsOnRing) -> None:
+    def __init__(self, run: Run, motion: DiscMotion, contact: Points) -> None:
         super().__init__(run, motion)
         self.contact = contact
-        self.limit = PointsLimit(np.array(contact.arms(0.0), dtype=np.complex128) / motion.length)
-        self.points = [OnePoint(motion, contact, i) for i in range(contact.points)]
+        self.limit = PointsLimit.of(contact, motion.length)
+        self.points = [OnePoint(motion, contact, i) for i in range(len(contact.shares))]
         self.slipping = [point.slipping(run.thresholds) for point in self.points]
         self.pivoting = [point.pivoting(run.thresholds) for point in self.points]
         self.pivot: int | None = None
-        self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * self.points[0].leverage)
+        leverage = max(point.leverage for point in self.points)
+        self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * leverage)
 
     def begin(self, y: list[float]) -> None:
         """Like :meth:`DiscBody.begin`."""
@@ -132,7 +133,7 @@ class PointsBody(DiscBody):
         slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
         end = (slide_slowly if slowly else slide)(self.run, motion, t, own, self.leaving(motion))
         y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
-        if end.let_go:
+        if end.let_go and motion.speed(end.y) > 0.0:
             self.pivot = None
             self.run.enter("slip", end.t, y)
             return self._slip_from(i, end.t, y)

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference_model.contact.contact_law import Contact, IsotropicContact, Pin, PointsOnRing, contact_of
+from reference_model.contact.contact_law import Contact, IsotropicContact, Pin, contact_of
+from reference_model.contact.points import Points
 from reference_model.motion.bodies import Body, PinBody, RingBody
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.disc_on_points import PointsBody
@@ -99,11 +100,11 @@ def simulate_with(
     return Trajectory(system, moments, states, phases_of(begun, float(moments[-1])), solution)
 
 
-def _body(run: Run, system: System, contact: IsotropicContact | PointsOnRing, unit: Units) -> Body:
+def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Units) -> Body:
     if isinstance(system, PinOnDisc):
         return PinBody(run, unit.of_pin(SlipMotion.of(system)))
     motion = unit.of_disc(DiscMotion.of(system, contact))
-    if isinstance(contact, PointsOnRing):
+    if isinstance(contact, Points):
         return PointsBody(run, motion, contact)
     if isinstance(contact, Pin):
         raise ValueError(

@@ -3,7 +3,7 @@
 The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. All other points follow:
 v_j = v + i(r/κ)(a_j − a_i) with the arms a. So v keeps its relative accuracy down to zero. The point accelerates by B
 + Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
-slip λ = −(g/n)·v/|v|; at rest λ = −G⁻¹B, as long as this is at most g/n.
+slip λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, as long as this is at most gq.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from typing import cast
 import numpy as np
 from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import NONE, PointsOnRing
+from reference_model.contact.contact_law import NONE
+from reference_model.contact.points import Points
 from reference_model.motion.disc_equations import DiscMotion
 from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, stop_surfaces
 from reference_model.motion.stepper import Thresholds
@@ -34,7 +35,7 @@ class OnePoint:
     ----------
     motion : DiscMotion
         Equations of motion of the disc.
-    contact : PointsOnRing
+    contact : Points
         Friction law.
     point : int
         Index of the point.
@@ -42,19 +43,19 @@ class OnePoint:
     """
 
     motion: DiscMotion
-    contact: PointsOnRing
+    contact: Points
     point: int
 
     @property
     def at_once(self) -> OnePoint:
         """The vectorised equations, for arrays of shape (k,)."""
         motion = self.motion.at_once
-        return OnePoint(motion, cast(PointsOnRing, motion.contact), self.point)
+        return OnePoint(motion, cast(Points, motion.contact), self.point)
 
     @property
     def most(self) -> float:
-        """Largest friction of the point over the mass, g/n."""
-        return self.motion.centre.friction / self.contact.points
+        """Largest friction of the point over the mass, gq."""
+        return self.motion.centre.friction * self.contact.shares[self.point]
 
     def arm(self, angle: float) -> complex:
         """Return the arm of the point at the disc's ``angle``."""
@@ -91,12 +92,13 @@ class OnePoint:
         return self._holding(arm, free)
 
     def leaving(self, unknowns: Sequence[float]) -> FloatArray:
-        """Return the direction of the incipient slip, a unit vector e with B − (g/n)·G·e = c·e, c >= 0.
+        """Return the direction of the incipient slip, a unit vector e with B − gq·G·e = c·e, c >= 0.
 
-        Its components along and across the arm are B_∥/(c + g/n) and B_⊥/(c + (g/n)·(1 + |a|²/κ²)).
+        Its components along and across the arm are B_∥/(c + gq) and B_⊥/(c + gq·(1 + |a|²/κ²)).
         """
         _, _, arm, free = self._without_friction(unknowns, 0j)
-        along = free * arm.conjugate() / abs(arm)
+        axis = arm / abs(arm) if arm != 0.0 else 1.0 + 0j
+        along = free * axis.conjugate()
         stiffer = 1.0 + (abs(arm) / self.motion.gyration) ** 2
 
         def part(c: float) -> complex:
@@ -105,7 +107,7 @@ class OnePoint:
         c = 0.0
         if abs(part(0.0)) > 1.0:
             c = float(brentq(lambda c: abs(part(c)) - 1.0, 0.0, abs(free), rtol=1e-15))
-        e = part(c) * arm
+        e = part(c) * axis
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
@@ -131,8 +133,7 @@ class OnePoint:
     def slipping(self, thresholds: Thresholds) -> Coordinates:
         """Return the coordinates for slip of the point."""
         slow = thresholds.slow_slip * self.most
-        arms = self.contact.arms(0.0)
-        passing = CLOSE * abs(arms[1] - arms[0]) / self.motion.length / self.motion.gyration
+        passing = CLOSE * self.contact.spacing(self.point) / self.motion.length / self.motion.gyration
 
         def slow_slip(y: Sequence[float]) -> float:
             return min(slow, passing * abs(y[3]))

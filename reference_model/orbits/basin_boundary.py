@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from reference_model.contact.contact_law import require_whole
 from reference_model.numerics.continuation import Curve
 from reference_model.numerics.dividing_curves import dividing_curves
 from reference_model.orbits.release_map import JUMP, ROUGH, Release, ReleaseMap, StickSlipOrbit
-from reference_model.systems import FloatArray, checked_state, finite_number
+from reference_model.systems import FloatArray, checked_state, finite_number, require_whole
 
 COMPONENTS = ("x", "y", "vx", "vy")
 

@@ -24,11 +24,10 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import newton
 
-from reference_model.contact.contact_law import require_whole
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.orbits.shooting import REFERENCE, Orbit, ShootingProblem
 from reference_model.support import require_linear_support
-from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system
+from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system, require_whole
 from reference_model.trajectory import Trajectory
 
 LOOKS = (1.5, 16.0)

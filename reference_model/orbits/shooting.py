@@ -19,7 +19,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from reference_model.contact.contact_law import isotropic_contact_of, require_whole
+from reference_model.contact.contact_law import isotropic_contact_of
 from reference_model.simulation import simulate
 from reference_model.steady.steady_states import Whirl
 from reference_model.systems import (
@@ -30,6 +30,7 @@ from reference_model.systems import (
     checked_state,
     finite_number,
     require_system,
+    require_whole,
 )
 from reference_model.trajectory import Trajectory
 

@@ -9,7 +9,7 @@ from plain_engines import in_units
 from scipy.integrate import odeint
 from scipy.special import ellipe, ellipkm1
 
-from reference_model import DiscOnDisc, PinOnDisc, simulate
+from reference_model import DiscOnDisc, PinOnDisc, Points, simulate
 
 CONTACTS = ("pin", "ring", "points")
 SUPPORTS = ("linear", "hardening", "stop", "both")
@@ -86,17 +86,24 @@ class RandomMotion:
         return run, run.states / scales
 
 
-def friction_of_points(load, R, n, epsilon):
+def random_points(seed):
+    """Return two to five points at random places, with random shares of the load."""
+    rng = np.random.default_rng((seed, 2))
+    shares = rng.uniform(0.2, 1.0, rng.integers(2, 6))
+    x, y = rng.uniform(-0.2, 0.2, (2, len(shares)))
+    return Points(np.column_stack((x, y, shares / shares.sum())).tolist())
+
+
+def friction_of_points(load, places, epsilon):
     """Return force and moment of points with the law v/√(v² + ε²), as a function of slip, spin and angle."""
-    around = [R * cmath.exp(2j * math.pi * i / n) for i in range(n)]
-    share = load / n
+    loaded = [(complex(x, y), load * share) for x, y, share in places]
 
     def friction(u, w, angle):
         turn, force, moment = cmath.exp(1j * angle), 0j, 0.0
-        for place in around:
+        for place, most in loaded:
             arm = turn * place
             slip = u + 1j * w * arm
-            own = -share * slip / math.sqrt(slip.real**2 + slip.imag**2 + epsilon**2)
+            own = -most * slip / math.sqrt(slip.real**2 + slip.imag**2 + epsilon**2)
             force += own
             moment += (arm.conjugate() * own).imag
         return force, moment
@@ -128,15 +135,20 @@ def friction_of_ring(disc, epsilon):
     return friction
 
 
-def smooth_motion(system, start, epsilon):
-    """Return states by LSODA with friction v/√(v² + ε²). Slip is an unknown to preserve the digits of creep."""
+def smooth_motion(system, start, epsilon, contact=None):
+    """Return states by LSODA with friction v/√(v² + ε²), of the system or of points ``contact``.
+
+    Slip is an unknown to preserve the digits of creep.
+    """
     omega, C, beta, m = system.disc_speed, system.stiffness, system.damping, system.mass
     disc = isinstance(system, DiscOnDisc)
-    if disc and system.contact_points is None:
+    if disc and system.contact_points is None and contact is None:
         friction = friction_of_ring(system, epsilon)
     else:
-        radius, points = (system.contact_radius, system.contact_points) if disc else (0.0, 1)
-        friction = friction_of_points(system.friction_force, radius, points, epsilon)
+        radius, points = (system.contact_radius, system.contact_points or 1) if disc else (0.0, 1)
+        around = [cmath.rect(radius, 2.0 * math.pi * i / points) for i in range(points)]
+        on_circle = [(arm.real, arm.imag, 1.0 / points) for arm in around]
+        friction = friction_of_points(system.friction_force, contact or on_circle, epsilon)
 
     def rates(_, unknowns):
         x, y, ux, uy, *turning = unknowns.tolist()

@@ -36,11 +36,13 @@ OF_EVERYTHING = {
     ),
 }
 CREEPS = {"regularisation": 10.0}
+FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
 CONTACTS = {
     "pin": {"contact_radius": 0.0},
     "ring": {},
     "creeping ring": CREEPS,
     "points": {"contact_points": 6},
+    "feet": {"contact_radius": None, "contact_points": FEET},
     "annulus": ANNULUS,
     "annulus that wears": ANNULUS | {"pressure": "wear"},
     "Stribeck's creeping annulus": ANNULUS | CREEPS | {"friction_coefficient": stribeck},
@@ -63,7 +65,7 @@ def pair_of(kinds, contact, **more):
 
 
 WITH_EULER = [(None, EULER), ("rotor", EULER), (EULER, "planar"), (EULER, EULER)]
-CONSTANT = ("pin", "ring", "points", "annulus", "annulus that wears", "plates")
+CONSTANT = ("pin", "ring", "points", "feet", "annulus", "annulus that wears", "plates")
 """Contacts whose friction between two rotors does not change while they slip."""
 CASES = [
     (kinds, contact)

@@ -10,23 +10,30 @@ import math
 import numpy as np
 import pytest
 
-from exudyn_models.forces import friction_laws
 from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
     mean_radius,
-    point_regularisation,
     ring_friction,
     ring_friction_derivatives,
     slip_potential_of_contact,
 )
+from exudyn_models.forces.laws.places import BEND, places_in, point_regularisation, ring_places, table_of
 from exudyn_models.forces.laws.pressures import density_of
 
 INNER, RADIUS, FRICTION, EPSILON, ANGLE = 0.08, 0.12, 0.5, 1e-4, 0.3
 
 
+THREE_FEET = ((0.12, 0.0, 0.2), (-0.03, 0.07, 0.5), (-0.04, -0.03, 0.3))
+ROD = ((-0.12, 0.0, 0.3), (-0.02, 0.0, 0.3), (0.05, 0.0, 0.1), (0.12, 0.0, 0.3))
+
+
 def contact_of(points=CONTINUOUS, inner=RADIUS, outer=RADIUS, held=NONE_HELD):
-    return outer, points, FRICTION, EPSILON, held, inner
+    """Contact on circles, or in a number of points on one or in points at given places."""
+    if points == CONTINUOUS or (isinstance(points, int) and points < CONTINUOUS):
+        return outer, points, FRICTION, EPSILON, held, inner
+    places = ring_places(outer, points) if isinstance(points, int) else points
+    return outer, len(places), FRICTION, EPSILON, held, table_of(places)
 
 
 def towards_the_rim(radius):
@@ -40,6 +47,8 @@ RISING = ((RADIUS**3 - INNER**3) / 3.0 + 40.0 * (RADIUS**5 - INNER**5)) / (
 CONTACTS = {
     "pin": (contact_of(1, 0.0, 0.0), 0.0),
     **{f"{n} points": (contact_of(n), RADIUS) for n in (2, 3, 6, 24)},
+    "three feet": (contact_of(THREE_FEET), 0.2 * 0.12 + 0.5 * math.sqrt(0.0058) + 0.3 * 0.05),
+    "rod": (contact_of(ROD), 0.3 * 0.12 + 0.3 * 0.02 + 0.1 * 0.05 + 0.3 * 0.12),
     "ring": (contact_of(), RADIUS),
     "annulus": (contact_of(inner=INNER), UNIFORM),
     "full disc": (contact_of(inner=0.0), 2.0 / 3.0 * RADIUS),
@@ -73,8 +82,8 @@ def of_points(contact):
 
 def slowest(contact, slip, angle=ANGLE):
     """Slip of the slowest of single points, as a complex number."""
-    arms = contact[0] * np.exp(1j * (angle + 2.0 * np.pi * np.arange(contact[1]) / contact[1]))
-    all_slips = complex(*slip[:2]) + 1j * slip[2] * arms
+    x, y, _ = places_in(contact[5]).T
+    all_slips = complex(*slip[:2]) + 1j * slip[2] * np.exp(1j * angle) * (x + 1j * y)
     return all_slips[np.abs(all_slips).argmin()]
 
 
@@ -84,9 +93,9 @@ def test_friction_takes_the_power_of_the_mean_slip_and_never_more(contact):
         mean = mean_slip(contact, slip)
         most = FRICTION * mean * min(1.0, mean / EPSILON)
         power = -friction(contact, slip) @ slip
-        yields = of_points(contact) and abs(
-            slowest(contact, slip)
-        ) < friction_laws.BEND * point_regularisation(EPSILON, contact[1]) * min(1.0, mean / EPSILON)
+        yields = of_points(contact) and abs(slowest(contact, slip)) < BEND * point_regularisation(
+            EPSILON, places_in(contact[5])
+        ) * min(1.0, mean / EPSILON)
         assert 0.0 < power <= most * (1.0 + 1e-9)
         assert yields or power == pytest.approx(most, rel=1e-9)
 
@@ -103,6 +112,12 @@ def test_no_other_slip_would_meet_more_friction_than_coulomb_s(contact):
         assert abs(load[2]) <= FRICTION * contact[0] * (1.0 + 1e-12)
 
 
+def mirror_image(contact):
+    if not of_points(contact):
+        return contact
+    return (*contact[:5], table_of(tuple((x, -y, share) for x, y, share in places_in(contact[5]).tolist())))
+
+
 @EVERY
 def test_a_turned_mirrored_or_reversed_slip_meets_friction_of_the_same_kind(contact):
     turn, mirror = 0.9, np.array([1.0, -1.0, -1.0])
@@ -112,17 +127,22 @@ def test_a_turned_mirrored_or_reversed_slip_meets_friction_of_the_same_kind(cont
         z, force = complex(*slip[:2]) * np.exp(1j * turn), complex(x, y) * np.exp(1j * turn)
         turned = friction(contact, [z.real, z.imag, slip[2]], ANGLE + turn)
         assert np.all(abs(turned - [force.real, force.imag, moment]) <= size)
-        mirrored = friction(contact, mirror * slip, -ANGLE)
+        mirrored = friction(mirror_image(contact), mirror * slip, -ANGLE)
         assert np.all(abs(mirrored - mirror * [x, y, moment]) <= size)
         assert np.all(abs(np.add(friction(contact, -slip), [x, y, moment])) <= size)
 
 
 @pytest.mark.parametrize(("contact", "lever"), CONTACTS.values(), ids=CONTACTS)
 def test_pure_slip_meets_the_whole_force_and_pure_spin_the_whole_moment(contact, lever):
-    np.testing.assert_allclose(friction(contact, [3.0, -4.0, 0.0]), [-0.3, 0.4, 0.0], atol=1e-14)
+    """Only a contact with its load about the centre has no moment in the first motion, no force in the second."""
+    x, y, shares = places_in(contact[5]).T if of_points(contact) else np.zeros((3, 1))
+    arms = np.exp(1j * ANGLE) * (x + 1j * y)
+    moment = np.sum(shares * arms.conjugate() * (-0.3 + 0.4j)).imag
+    np.testing.assert_allclose(friction(contact, [3.0, -4.0, 0.0]), [-0.3, 0.4, moment], atol=1e-14)
     assert mean_radius(contact) == pytest.approx(lever, rel=1e-13)
+    force = -1j * FRICTION * np.sum(shares * arms / np.maximum(abs(arms), 1e-300))
     for spin in (7.0, -7.0):
-        expected = [0.0, 0.0, -math.copysign(FRICTION * lever, spin)]
+        expected = np.sign(spin) * np.array([force.real, force.imag, -FRICTION * lever])
         np.testing.assert_allclose(friction(contact, [0.0, 0.0, spin]), expected, atol=1e-14)
     np.testing.assert_array_equal(friction(contact, [0.0] * 3), [0.0] * 3)
 
@@ -197,16 +217,21 @@ def test_friction_is_what_its_points_add_up_to(name, slip, accuracy):
     if name == "full disc":
         accuracy = 2e-4  # a point of it is always at rest or near to that
     (outer, points, _, _, _, inner), _ = CONTACTS[name]
-    radii, weights = rings_of(inner, outer, SHARES[name]) if name in SHARES else ([outer], [1.0])
-    number = 4000 if points <= CONTINUOUS else points
-    arms = np.outer(radii, np.exp(1j * (ANGLE + 2.0 * np.pi * np.arange(number) / number)))
+    if points > CONTINUOUS:
+        x, y, weights = places_in(inner).T
+        arms = np.exp(1j * ANGLE) * (x + 1j * y)
+    else:
+        radii, weights = rings_of(inner, outer, SHARES[name]) if name in SHARES else ([outer], [1.0])
+        arms = np.outer(radii, np.exp(1j * (ANGLE + 2.0 * np.pi * np.arange(4000) / 4000)))
+        weights = np.array(weights)[:, None] / 4000
     each = complex(*slip[:2]) + 1j * slip[2] * arms
-    pushes = -FRICTION * np.array(weights)[:, None] / number * each / np.abs(each)
+    pushes = -FRICTION * weights * each / np.abs(each)
     expected = [pushes.sum().real, pushes.sum().imag, np.sum((arms.conjugate() * pushes).imag)]
     np.testing.assert_allclose(friction(CONTACTS[name][0], slip), expected, rtol=0.0, atol=accuracy)
 
 
 HELD = {f"{n} points, one held": contact_of(n, held=0) for n in (3, 6)}
+HELD["three feet, one held"] = contact_of(THREE_FEET, held=0)
 
 
 @pytest.mark.parametrize(
@@ -218,7 +243,7 @@ def test_derivatives_are_those_of_friction(contact, size):
     rng = np.random.default_rng(5)
     blended = size < 1.0 and of_points(contact)
     # Twelve rings leave 5e-7 of the largest curvature of an annulus, and a derivative adds several of them.
-    accuracy = 1e-6 if contact[5] == contact[0] else 1e-5
+    accuracy = 1e-6 if contact[1] > CONTINUOUS or contact[5] == contact[0] else 1e-5
     for _ in range(20):
         slip = rng.normal(size=3) * [1.0, 1.0, 8.0] * size
         arguments = np.array([0.0, 0.0, rng.uniform(-3.0, 3.0), slip[0], slip[1], 0.0, slip[2]])
@@ -232,14 +257,17 @@ def test_derivatives_are_those_of_friction(contact, size):
             np.testing.assert_allclose(derivatives[:, j], expected, rtol=0.0, atol=accuracy * size_of_column)
 
 
-@pytest.mark.parametrize("points", [CONTINUOUS, 3, 6, 12])
-def test_newtons_iteration_finds_the_creep_of_every_load_from_far_away(points):
-    endless = RADIUS, points, FRICTION * 2.0**40, EPSILON * 2.0**40, NONE_HELD, RADIUS
+@pytest.mark.parametrize(
+    ("points", "most"), [(CONTINUOUS, 25), (3, 25), (6, 25), (12, 25), (THREE_FEET, 100)]
+)
+def test_newtons_iteration_finds_the_creep_of_every_load_from_far_away(points, most):
+    _, number, *_, last = contact_of(points)
+    endless = RADIUS, number, FRICTION * 2.0**40, EPSILON * 2.0**40, NONE_HELD, last
     rng = np.random.default_rng(6)
     for _ in range(100):
         load = friction(endless, rng.normal(size=3) * SCALE * EPSILON)
         slip = rng.normal(size=3) * SCALE * EPSILON * 1000.0
-        for _ in range(25):
+        for _ in range(most):
             derivatives = ring_friction_derivatives(0.0, 0.0, ANGLE, slip[0], slip[1], 0.0, slip[2], endless)
             slip = slip + np.linalg.solve(derivatives[:3][:, [3, 4, 6]], load - friction(endless, slip))
             if np.abs(friction(endless, slip) - load).max() < 1e-6 * np.abs(load).max():
@@ -248,10 +276,11 @@ def test_newtons_iteration_finds_the_creep_of_every_load_from_far_away(points):
             pytest.fail(f"no creep found for the load {load}")
 
 
-@pytest.mark.parametrize("points", [3, 6, 24])
+@pytest.mark.parametrize("points", [3, 6, 24, THREE_FEET])
 def test_creep_ends_on_the_limit_surface_also_where_a_point_carries_less_than_its_share(points):
     """A load is just held if its power is μN·P for one slip: the contact's own without that of a slow point."""
-    contact, delta, seen = contact_of(points), point_regularisation(EPSILON, points), set()
+    contact, seen = contact_of(points), set()
+    delta = point_regularisation(EPSILON, places_in(contact[5]))
     rng = np.random.default_rng(8)
     for _ in range(300):
         pole = RADIUS * (np.exp(1j * ANGLE) + 0.3 * complex(*rng.normal(size=2)))
@@ -266,13 +295,18 @@ def test_creep_ends_on_the_limit_surface_also_where_a_point_carries_less_than_it
     assert seen == {"pivot", "between", "slip"}
 
 
-@pytest.mark.parametrize("points", [3, 4, 6, 7, 24])
+@pytest.mark.parametrize("points", [3, 4, 6, 7, 24, THREE_FEET, ROD])
 def test_no_two_points_are_slower_than_a_point_at_its_bend_while_the_contact_slips(points):
-    rng = np.random.default_rng(4)
-    around = np.exp(2j * np.pi * np.arange(points) / points)
-    # Slip about a pole: the worst ones lie near the middle between two points next to each other.
-    poles = (around[0] + around[1]) / 2.0 + 0.1 * (rng.normal(size=500) + 1j * rng.normal(size=500))
-    speeds = np.sort(np.abs(around - np.append(poles, (around[0] + around[1]) / 2.0)[:, None]), axis=1)
-    bend = friction_laws.BEND * point_regularisation(1.0, points) * speeds.mean(axis=1)
-    assert np.all(speeds[:, 1] > bend)
-    assert bend.max() > 0.4 * speeds[-1, 1]  # and δ is not needlessly small
+    places = ring_places(1.0, points) if isinstance(points, int) else points
+    x, y, shares = np.array(places).T
+    arms, rng = x + 1j * y, np.random.default_rng(4)
+    # Slip about a pole: the worst ones lie near the middle between the two points next to each other.
+    apart = abs(np.subtract.outer(arms, arms)) + 1e3 * np.eye(len(arms))
+    i, j = np.unravel_index(apart.argmin(), apart.shape)
+    middle, noise = (arms[i] + arms[j]) / 2.0, 0.1 * abs(arms).max()
+    poles = np.append(middle, middle + noise * (rng.normal(size=500) + 1j * rng.normal(size=500)))
+    speeds = np.abs(arms - poles[:, None])
+    bend = BEND * point_regularisation(1.0, places) * (speeds @ shares)
+    second = np.sort(speeds, axis=1)[:, 1]
+    assert np.all(second > bend)
+    assert (bend / second).max() > 0.4  # and δ is not needlessly small

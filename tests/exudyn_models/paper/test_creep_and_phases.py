@@ -9,7 +9,7 @@ from compare.claims.parameters import FIG5, FIG11
 from compare.studies.pin.sticking_domain.theory import pin_at
 from compare.studies.toolkit.pins import safest_angle, stuck
 from exudyn_models import simulate
-from exudyn_models.forces.friction_laws import point_regularisation
+from exudyn_models.forces.laws.places import point_regularisation, ring_places
 from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.phase_detection import detected_phases
 from exudyn_models.solver.solver_run import Steps
@@ -45,9 +45,10 @@ def test_a_point_about_which_the_disc_turns_creeps_alone():
     for i in range(6):
         arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
         spin = 0.7
-        v = -1j * spin * arm + 0.99 * point_regularisation(EPSILON, 6)
+        delta = point_regularisation(EPSILON, ring_places(disc.contact_radius, 6))
+        v = -1j * spin * arm + 0.99 * delta
         assert RegularisedContact(disc, EPSILON).creeping([0.3, -0.2, 0.4, v.real, v.imag, spin]) == 1 + i
-        v += 0.02 * point_regularisation(EPSILON, 6)
+        v += 0.02 * delta
         assert RegularisedContact(disc, EPSILON).creeping([0.3, -0.2, 0.4, v.real, v.imag, spin]) is None
 
 

@@ -23,6 +23,7 @@ from free_bodies import (
 import reference_model
 from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import add_native_friction, add_ring_friction, simulate_with_native_contact
+from exudyn_models.forces.laws.places import ring_places
 from exudyn_models.paper.models import build as models
 from reference_model.systems import DiscOnDisc
 
@@ -53,6 +54,7 @@ RESTING = {
     "released": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
 }
 """System, start and span in s of motions in which points of a disc come to rest, or are released."""
+FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 
@@ -64,7 +66,7 @@ def observed_order(errors):
 
 
 @pytest.mark.parametrize("planar_master", [False, True])
-@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (0.3, 3)])
+@pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (0.3, 3), (None, FEET)])
 @pytest.mark.parametrize("epsilon", [1e-4, 1.5, 1e3])  # Coulomb friction, some of each, viscous friction
 def test_forces_and_moments_of_both_bodies_are_those_of_the_law(planar_master, radius, points, epsilon):
     rng = np.random.default_rng(1)
@@ -78,11 +80,11 @@ def test_forces_and_moments_of_both_bodies_are_those_of_the_law(planar_master, r
         law = {"regularisation": epsilon, "contact_radius": radius, "contact_points": points}
         add_native_friction(mbs, master, disc, **CONTACT, **law)
         force, moment, master_moment = 0j, 0.0, 0.0
-        for i in range(points):
-            arm = radius * cmath.exp(1j * (z[2] + 2.0 * math.pi * i / points))
+        for x, y, share in points if radius is None else ring_places(radius, points):
+            arm = complex(x, y) * cmath.exp(1j * z[2])
             point = complex(*(z - place)[:2]) + arm
             slip = complex(*(v - velocity)[:2]) + 1j * v[2] * arm - 1j * velocity[2] * point
-            friction = -0.5 / points * slip / max(abs(slip), epsilon)
+            friction = -0.5 * share * slip / max(abs(slip), epsilon)
             force += friction
             moment += (arm.conjugate() * friction).imag
             master_moment -= (point.conjugate() * friction).imag

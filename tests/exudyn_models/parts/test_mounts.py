@@ -20,6 +20,7 @@ from test_orientations import AXES
 
 from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
 from exudyn_models.forces.friction_laws import NONE_HELD, friction_of_slip
+from exudyn_models.forces.laws.places import ring_places, table_of
 
 OUT = exu.OutputVariableType
 NONE = [0.0, 0.0, 0.0]
@@ -150,7 +151,7 @@ def forces_by_exudyn(mbs, bodies, places, mounts, velocities):
         slips.append([x @ velocity, y @ velocity, z @ spin])
     data.SetODE2Coordinates_t(velocities)
     angle = np.arctan2(turned[:, 0] @ y, turned[:, 0] @ x)
-    contact = (0.12, 3, 1.0, 0.01, NONE_HELD, 0.12)
+    contact = (0.12, 3, 1.0, 0.01, NONE_HELD, table_of(ring_places(0.12, 3)))
     load = 1.0 + np.hypot(x @ (centre - origin), y @ (centre - origin))
     return load * np.array(slips) @ friction_of_slip(*(velocities @ slips), angle, contact)
 

@@ -19,6 +19,7 @@ from exudyn_models import (
 LAW = {"friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 1e-3}
 POINTS = LAW | {"contact_radius": 0.12, "contact_points": 3}
 RING = add_ring_friction, POINTS
+FEET = [(0.1, 0.0, 0.4), (-0.1, 0.05, 0.6)]
 ANNULUS = add_ring_friction, LAW | {"inner_radius": 0.08, "outer_radius": 0.12}
 NATIVE = add_native_friction, POINTS | {"reach": 1.0}
 SUPPORT = add_radial_support, {"stiffness": 1.0}
@@ -35,6 +36,9 @@ WRONG = [
     (RING, {"contact_radius": None}, "contact_radius = None: it must be a number"),
     (RING, {"contact_points": 0}, "contact_points = 0"),
     (RING, {"contact_points": 2.5}, "contact_points = 2.5"),
+    (RING, {"contact_points": FEET}, "contact_radius = 0.12: it cannot be combined with places of points"),
+    (RING, {"contact_radius": None, "contact_points": FEET[:1]}, "contact_points = .*: at least two points"),
+    (RING, {"contact_radius": None, "contact_points": FEET, "held": 3}, "held = 3: it must be from 1 to"),
     (RING, {"regularisation": 0.0}, "regularisation = 0 m/s"),
     (RING, {"held": 4}, "held = 4: it must be from 1 to the number of points, 3"),
     (RING, {"held": 0}, "held = 0: it must be from 1 to the number of points, 3"),

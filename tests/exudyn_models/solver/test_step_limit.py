@@ -31,9 +31,9 @@ from exudyn_models.forces.friction_laws import (
     CONTINUOUS,
     NONE_HELD,
     friction_of_slip,
-    point_regularisation,
     slip_potential_of_contact,
 )
+from exudyn_models.forces.laws.places import point_regularisation, ring_places, table_of
 from exudyn_models.forces.stick_dampers import slip_dampers
 from exudyn_models.solver.step_limit import INTERVALS
 
@@ -175,7 +175,7 @@ def test_a_shaft_with_its_damper_adds_to_the_contact():
 def test_a_disc_that_pivots_about_a_point_has_the_limit_of_that_point(points):
     """The point rests, loaded by less than its share, while the others slip with 100·ε."""
     inertia = MASS * RADIUS**2
-    delta = point_regularisation(EPSILON, points)
+    delta = point_regularisation(EPSILON, ring_places(RADIUS, points))
     stuck = FRICTION / points / delta * (1.0 / MASS + RADIUS**2 / inertia)
     for factor, rests in ((0.9, True), (1.2, False)):
         mbs = new_model()
@@ -274,7 +274,8 @@ def test_the_look_at_a_model_leaves_its_run_and_its_sensors_as_they_are():
 )
 def test_a_damper_of_the_limit_takes_no_less_power_than_friction_and_as_much_in_pure_motions(points, inner):
     """Friction that sticks takes (μN/ε)·P², the damper (μN/ε)·xᵀ·V·x."""
-    contact, angle = (1.0, points, 1.0, 1.0, NONE_HELD, inner), 0.4
+    last = table_of(ring_places(1.0, points)) if points > CONTINUOUS else inner
+    contact, angle = (1.0, points, 1.0, 1.0, NONE_HELD, last), 0.4
     damper = slip_dampers(contact, angle)[0]
     rng = np.random.default_rng(1)
     for ratio in 10.0 ** rng.uniform(-2.0, 2.0, 1000):
@@ -288,7 +289,7 @@ def test_a_damper_of_the_limit_takes_no_less_power_than_friction_and_as_much_in_
 
 @pytest.mark.parametrize("points", [3, 6])
 def test_the_damper_with_one_point_held_takes_no_less_power_than_friction_and_hardly_more(points):
-    contact, angle = (1.0, points, 1.0, 1.0, 1, 0.0), 0.4
+    contact, angle = (1.0, points, 1.0, 1.0, 1, table_of(ring_places(1.0, points))), 0.4
     (damper,) = slip_dampers(contact, angle)
     shares, rng = [], np.random.default_rng(1)
     for size in 10.0 ** rng.uniform(-6.0, 0.0, 400):

@@ -11,12 +11,13 @@ from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import (
     Pin,
-    PointsOnRing,
     Ring,
     ThreeTermRing,
     contact_of,
     isotropic_contact_of,
 )
+from reference_model.contact.patch import polygon_patch
+from reference_model.contact.points import Points, PointsOnRing
 from reference_model.systems import PinOnDisc
 
 R = 0.12
@@ -90,6 +91,27 @@ def test_parameters_of_a_system_select_its_contact_law():
     assert isotropic_contact_of(six, EXPANSION, "whirls") == EXPANSION
 
 
+BAD_PLACES = {
+    7: r"places = 7: it must be a list of \(x, y, share\)",
+    ((0.1, 0.2), (0.3, 0.4)): r"places\[0\] = \(0\.1, 0\.2\): it must be \(x, y, share\)",
+    ((0.1, 0.2, 0.5), (0.3, math.inf, 0.5)): r"places\[1\] = inf: it must be finite",
+    ((0.1, 0.2, 0.5), (0.3, "b", 0.5)): r"places\[1\] = 'b': it must be a number",
+    ((0.1, 0.2, 1.5), (0.3, 0.4, -0.5)): r"places\[1\] = .*: the share must be > 0",
+    ((0.1, 0.2, 1.0),): "at least two points are needed; use a pin for a single one",
+    ((0.1, 0.2, 0.5), (0.1, 0.2, 0.5)): r"2 points lie at \(0\.1, 0\.2\); combine their shares",
+    ((0.1, 0.2, 0.5), (0.1, 0.3, 0.4)): "the shares sum to 0.9; they must sum to 1",
+}
+SQUARE = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+BAD_POLYGONS = {
+    (SQUARE, 0): "divisions = 0: it must be a whole number >= 1",
+    (SQUARE[:2], 1): "a polygon has at least three corners",
+    (3.0, 1): r"corners = 3\.0: it must be a list of \(x, y\) in m",
+    (((0.0, 0.0), (1.0, math.nan), (1.0, 1.0)), 1): "corners = nan: it must be finite",
+    (((0.0, 0.0), (1.0, 1.0), (2.0, 2.0)), 1): "the polygon has no area or intersects itself",
+    (((0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)), 1): "the polygon has no area or intersects itself",
+}
+
+
 @pytest.mark.parametrize(
     ("make", "arguments", "message"),
     [
@@ -101,6 +123,8 @@ def test_parameters_of_a_system_select_its_contact_law():
             (PointsOnRing, (R, points), "points = .*: it must be a whole number from 3 to 1000")
             for points in (2, 6.0, True, math.nan, "six", None, 1001)
         ),
+        *((Points, (places,), message) for places, message in BAD_PLACES.items()),
+        *((polygon_patch, arguments, message) for arguments, message in BAD_POLYGONS.items()),
         (Annulus, (0.12, 0.12), r"outer_radius = 0\.12 m: it must be > inner_radius = 0\.12 m"),
         (Annulus, (-0.1, 0.12), r"inner_radius = -0\.1 m: it must be >= 0"),
         (Annulus, (math.nan, 0.12), "inner_radius = nan: it must be finite"),

@@ -1,22 +1,33 @@
-"""Static friction of points, against their friction in slip and against sampled slips."""
+"""The limit surface, against friction in slip, sampled slips and closed forms."""
+
+import math
 
 import numpy as np
 import pytest
 
-from reference_model.contact.contact_law import PointsOnRing
+from reference_model.contact import (
+    Annulus,
+    Pin,
+    Points,
+    PointsOnRing,
+    Ring,
+    ThreeTermRing,
+    largest_wrench,
+    wrench_of_slip,
+)
 from reference_model.contact.limit_surface import PointsLimit
 
 RADIUS = 0.3
+FEET = Points([(0.3, 0.0, 0.5), (-0.2, 0.1, 0.2), (-0.1, -0.2, 0.3)])
+ROD = Points([(-0.3, 0.0, 0.2), (-0.1, 0.0, 0.3), (0.0, 0.0, 0.1), (0.3, 0.0, 0.4)])
+TWO = Points([(-0.1, 0.0, 0.3), (0.3, 0.0, 0.7)])
+CONTACTS = {f"{n} points": PointsOnRing(RADIUS, n) for n in (3, 4, 5, 6, 24)}
+CONTACTS |= {"three feet": FEET, "rod": ROD, "two points": TWO}
 
 
-def limit_of(points):
-    return PointsLimit(np.array(PointsOnRing(RADIUS, points).arms(0.0)))
-
-
-@pytest.mark.parametrize("points", [3, 4, 5, 6, 24])
-def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(points):
-    law, limit = PointsOnRing(RADIUS, points), limit_of(points)
-    rng = np.random.default_rng(points)
+@pytest.mark.parametrize("law", CONTACTS.values(), ids=CONTACTS)
+def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(law):
+    limit, rng = PointsLimit.of(law), np.random.default_rng(6)
     for _ in range(40):
         u, w = complex(*rng.normal(size=2)) * RADIUS, rng.normal()
         force, moment = law.force_and_moment(u, -w, 0.0)
@@ -28,16 +39,19 @@ def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(points):
         assert limit.margins(np.array([-1.001 * force]), -1.001 * moment)[0] < 0.0
 
 
-@pytest.mark.parametrize("points", [3, 5, 6])
-def test_friction_holds_a_load_if_no_slip_gains_power(points):
-    law, limit = PointsOnRing(RADIUS, points), limit_of(points)
+SOME = pytest.mark.parametrize("law", [CONTACTS["3 points"], CONTACTS["6 points"], FEET, ROD])
+
+
+@SOME
+def test_friction_holds_a_load_if_no_slip_gains_power(law):
+    limit = PointsLimit.of(law)
     rng = np.random.default_rng(7)
     slips = rng.normal(size=(4000, 3)) * [RADIUS, RADIUS, 1.0]
     # Slips with one point at rest are kinks of the mean slip speed, where breakaway is most likely.
     pivots = [(-1j * w * arm, w) for arm in law.arms(0.0) for w in (1.0, -1.0)]
     u = np.concatenate((slips[:, 0] + 1j * slips[:, 1], [slip for slip, _ in pivots]))
     w = np.concatenate((slips[:, 2], [turn for _, turn in pivots]))
-    taken = np.mean(abs(u[:, None] + 1j * w[:, None] * np.array(law.arms(0.0))), axis=1)
+    taken = abs(u[:, None] + 1j * w[:, None] * np.array(law.arms(0.0))) @ law.shares
     decided = 0
     for _ in range(300):
         force, moment = complex(*rng.uniform(-0.8, 0.8, 2)), RADIUS * rng.uniform(-1.0, 1.0)
@@ -48,13 +62,13 @@ def test_friction_holds_a_load_if_no_slip_gains_power(points):
     assert decided > 200
 
 
-@pytest.mark.parametrize("points", [3, 6])
-def test_breakaway_on_a_flat_face_is_a_rotation_about_one_point(points):
-    law, limit = PointsOnRing(RADIUS, points), limit_of(points)
-    for arm in law.arms(0.0):
+@SOME
+def test_breakaway_on_a_flat_face_is_a_rotation_about_one_point(law):
+    limit = PointsLimit.of(law)
+    for arm, share in zip(law.arms(0.0), law.shares, strict=True):
         force, moment = law.force_and_moment(-1j * arm, -1.0, 0.0)  # friction of the other points
-        for share in (0.0, 0.5 + 0.3j, -0.9j):
-            own = share / points  # the resting point holds any force up to its share
+        for part in (0.5 + 0.3j, 0.3 - 0.8j, -0.9j):
+            own = part * share  # the resting point holds any force up to its share
             total = -force + own
             torque = -moment + (arm.conjugate() * own).imag
             assert limit.margins(np.array([total]), torque)[0] == pytest.approx(0.0, abs=1e-12)
@@ -62,9 +76,60 @@ def test_breakaway_on_a_flat_face_is_a_rotation_about_one_point(points):
 
 
 def test_force_without_moment_is_held_up_to_full_friction():
-    limit = limit_of(5)
+    limit = PointsLimit.of(CONTACTS["5 points"])
     forces = np.array([0.0, 0.5, 0.999999, 1.000001, 1.5]) * np.exp(0.4j)
     assert np.array_equal(limit.margins(forces, 0.0) > 0.0, [True, True, True, False, False])
     # The margin continues smoothly beyond, because the squared moment has the slope −R².
     near = limit.margins(np.array([1.0 - 1e-6, 1.0 + 1e-6]), 0.0)
     assert near == pytest.approx([1e-6, -1e-6], rel=1e-2)
+
+
+ALL = CONTACTS | {
+    "ring": Ring(RADIUS),
+    "three terms": ThreeTermRing(RADIUS),
+    "annulus": Annulus(0.1, RADIUS),
+}
+
+
+@pytest.mark.parametrize("law", ALL.values(), ids=ALL)
+def test_largest_load_in_the_direction_of_a_load_that_drives_slip_is_this_load(law):
+    rng = np.random.default_rng(3)
+    for _ in range(30):
+        force, moment = wrench_of_slip(law, complex(*rng.normal(size=2)) * RADIUS, rng.normal())
+        found, about = largest_wrench(law, 3.7 * force, 3.7 * moment)
+        assert abs(found - force) < 1e-14
+        assert abs(about - moment) < 1e-14
+
+
+@pytest.mark.parametrize("law", ALL.values(), ids=ALL)
+def test_a_force_through_the_centre_of_the_load_is_held_up_to_full_friction_and_a_couple_up_to_its_lever(law):
+    arms = np.array(law.arms(0.0)) if isinstance(law, Points) else np.zeros(1)
+    shares = np.array(law.shares) if isinstance(law, Points) else np.ones(1)
+    for direction in np.exp(1j * np.array([0.0, 0.7, math.pi / 2.0])):
+        moment = float(((shares @ arms).conjugate() * direction).imag)
+        assert largest_wrench(law, direction, moment)[0] == pytest.approx(direction, abs=1e-12)
+    if not isinstance(law, Points):
+        assert largest_wrench(law, 0j, -2.0)[1] == pytest.approx(-law.shares(0.0, 1.0).moment, abs=1e-14)
+
+
+def test_two_points_hold_what_a_lever_on_two_supports_can():
+    """A load across the line acts on each point by the rule of levers, and the more loaded one gives way first.
+
+    Friction of the other point is then less than its share, and the disc turns about it.
+    """
+    (left, _, light), (right, _, heavy) = TWO
+    apart = right - left
+    for at in (-0.5, -0.2, 0.0, 0.1, 0.25, 0.6):  # place of the force on the line
+        on_right, on_left = abs(at - left) / apart, abs(right - at) / apart
+        most = min(heavy / on_right, light / on_left if on_left > 0.0 else math.inf)
+        force, moment = largest_wrench(TWO, 1j, at)
+        assert force == pytest.approx(1j * most, rel=1e-12)
+        assert moment == pytest.approx(at * most, rel=1e-12)
+
+
+def test_a_pin_holds_no_moment_and_a_load_needs_a_direction():
+    assert largest_wrench(Pin(), 2j, 0.0) == (1j, 0.0)
+    assert largest_wrench(Pin(), 2j, 0.1) == (0j, 0.0)
+    for law in (Pin(), FEET):
+        with pytest.raises(ValueError, match="force and moment are 0: they must have a direction"):
+            largest_wrench(law, 0j, 0.0)

@@ -7,7 +7,7 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.contact.contact_law import PointsOnRing
+from reference_model.contact.points import PointsOnRing
 from reference_model.ensemble.core.contact_shares import points_shares, ring_shares, turned
 
 EPS = np.finfo(float).eps

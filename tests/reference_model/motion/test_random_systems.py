@@ -12,7 +12,7 @@ from disc_equations import mirrored
 from random_systems import SYSTEMS, TIMES, RandomMotion, smooth_motion
 
 from reference_model import DiscOnDisc, power_balance, simulate
-from reference_model.contact.contact_law import PointsOnRing
+from reference_model.contact.points import PointsOnRing
 
 seeds = pytest.mark.parametrize("seed", range(SYSTEMS))
 each_combination = pytest.mark.parametrize("seed", range(SYSTEMS // 2))

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from compare.claims import ROUNDING, Data
 from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
-from reference_model.contact.contact_law import Contact, PointsOnRing, Ring, ThreeTermRing
+from reference_model.contact.contact_law import Contact, Ring, ThreeTermRing
+from reference_model.contact.points import PointsOnRing
 from reference_model.systems import FloatArray
 
 # --- Parameters of the discs, their motions and the contact laws.

@@ -11,6 +11,7 @@ from compare.studies.disc.contact_laws.study import STUDY
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Shares
 from reference_model.contact.elliptic import mean_directions
+from reference_model.contact.points import Points
 
 
 def naive_directions(slip, rim):
@@ -61,13 +62,11 @@ def test_a_wrong_expansion_differs(monkeypatch, fresh):
 
 
 def test_contact_points_at_wrong_angles_differ(monkeypatch, fresh):
-    def uneven(self, angle):
-        return [
-            self.radius * np.exp(1j * (angle + 2.0 * np.pi * i / (self.points + 1)))
-            for i in range(self.points)
-        ]
+    def uneven(radius, points):
+        arms = radius * np.exp(2j * np.pi * np.arange(points) / (points + 1))
+        return Points([(arm.real, arm.imag, 1.0 / points) for arm in arms])
 
-    monkeypatch.setattr("reference_model.contact.contact_law.PointsOnRing.arms", uneven)
+    monkeypatch.setattr(theory, "PointsOnRing", uneven)
     functions = ("error_of_points", "place_of_points_error")
     found = theory_of(STUDY, *functions, few={name: {"numbers": (6,)} for name in functions})
     assert DIFFERS in found.values()

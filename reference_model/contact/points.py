@@ -1,0 +1,177 @@
+"""Friction of a contact in single points, each with a share of the load.
+
+The points turn with the disc, so the law depends on the angle φ.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from reference_model.systems import (
+    MOST_POINTS,
+    FloatArray,
+    Place,
+    checked_places,
+    positive_number,
+    require_whole,
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Points:
+    """Contact in points at any places, each with its share of the load.
+
+    Parameters
+    ----------
+    places : sequence of (float, float, float)
+        (x, y, share) of each point: its place in m relative to the disc's centre at φ = 0, and its share of the load.
+        At least two points at different places; shares are positive and sum to 1.
+
+    Raises
+    ------
+    ValueError
+        If a place or a share is invalid.
+
+    """
+
+    places: Sequence[Place]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "places", checked_places("places", self.places))
+
+    def __repr__(self) -> str:
+        """Return a short description, because a patch may have thousands of points."""
+        return f"{type(self).__name__}({len(self.places)} places)"
+
+    def __iter__(self) -> Iterator[Place]:
+        """Iterate over x (m), y (m) and share of all points."""
+        return iter(self.places)
+
+    @cached_property
+    def shares(self) -> tuple[float, ...]:
+        """Share of the load of each point."""
+        return tuple(share for _, _, share in self.places)
+
+    @cached_property
+    def _arms(self) -> tuple[complex, ...]:
+        """Places at φ = 0 as complex numbers, in m."""
+        return tuple(complex(x, y) for x, y, _ in self.places)
+
+    @cached_property
+    def _seen_from(self) -> dict[int | None, tuple[_Friction, ...]]:
+        """For the points that were asked for, all others; for None, all points seen from the centre."""
+        return {None: tuple((arm, arm.conjugate(), share) for arm, share in self._loaded)}
+
+    @property
+    def _loaded(self) -> Iterator[tuple[complex, float]]:
+        return zip(self._arms, self.shares, strict=True)
+
+    def arm(self, point: int, angle: float) -> complex:
+        """Return the position of a point relative to the centre, in m."""
+        return cmath.exp(1j * angle) * self._arms[point]
+
+    def arms(self, angle: float) -> list[complex]:
+        """Return the positions of all points relative to the centre, in m."""
+        turn = cmath.exp(1j * angle)
+        return [turn * arm for arm in self._arms]
+
+    def spacing(self, point: int) -> float:
+        """Return the distance in m from a point to the nearest other point."""
+        distances = abs(np.array(self._arms) - self._arms[point])
+        return float(np.delete(distances, point).min())
+
+    def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
+        """Like :meth:`Contact.force_and_moment`; a point at rest has set-valued friction and contributes nothing."""
+        return _friction_of(self._seen_from[None], slip, relative_spin, angle)
+
+    def friction_of_others(
+        self, point: int, slip: complex, relative_spin: float, angle: float
+    ) -> tuple[complex, float]:
+        """Return force and moment of all points but ``point``, which slips with ``slip``."""
+        if point not in self._seen_from:
+            own = self._arms[point]
+            self._seen_from[point] = tuple(
+                (arm - own, arm.conjugate(), share)
+                for i, (arm, share) in enumerate(self._loaded)
+                if i != point
+            )
+        return _friction_of(self._seen_from[point], slip, relative_spin, angle)
+
+    def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
+        """Like :meth:`Contact.jacobian`."""
+        result = np.zeros((3, 4))
+        for arm, share in zip(self.arms(angle), self.shares, strict=True):
+            velocity = slip - 1j * relative_spin * arm
+            speed = abs(velocity)
+            if speed == 0.0:
+                raise ValueError(
+                    f"angle = {angle:g} rad: a point is at rest, where friction has no derivative"
+                )
+            direction = velocity / speed
+            across = 1j * direction
+            # Derivatives of the point's slip by u_x, u_y, S, φ. Friction changes only with the component across its
+            # direction.
+            by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
+            turning = -share * ((by_unknowns * across.conjugate()).real / speed)
+            friction = turning * across
+            result[0] += friction.real
+            result[1] += friction.imag
+            result[2] += (arm.conjugate() * friction).imag
+            result[2, 3] += share * ((1j * arm).conjugate() * -direction).imag  # the arm turns too
+        return result
+
+
+@dataclass(frozen=True, init=False)
+class PointsOnRing(Points):
+    """Contact in n points on a circle, each with 1/n of the load: the paper's discretisation, with n = 6.
+
+    Point i lies at φ + 2πi/n.
+
+    Parameters
+    ----------
+    radius : float
+        R in m, > 0.
+    points : int
+        n, from 3 to 1000.
+
+    """
+
+    radius: float
+    points: int
+
+    def __init__(self, radius: float, points: int) -> None:
+        object.__setattr__(self, "radius", positive_number("radius", radius, "m"))
+        require_whole("points", points, least=3, most=MOST_POINTS)
+        object.__setattr__(self, "points", points)
+        around = (cmath.rect(self.radius, 2.0 * math.pi * i / points) for i in range(points))
+        super().__init__([(arm.real, arm.imag, 1.0 / points) for arm in around])
+
+    def __repr__(self) -> str:
+        """Return radius and number of points."""
+        return f"PointsOnRing(radius={self.radius!r}, points={self.points!r})"
+
+
+_Friction = tuple[complex, complex, float]
+"""Place of a point relative to the one that slips with a given velocity, conjugate of its arm, and its share."""
+
+
+def _friction_of(
+    points: Iterable[_Friction], slip: complex, relative_spin: float, angle: float
+) -> tuple[complex, float]:
+    turn = cmath.exp(1j * angle)
+    turning = 1j * relative_spin * turn
+    force = moment = 0j
+    for place, conjugate_arm, share in points:
+        velocity = slip - turning * place
+        speed = abs(velocity)
+        if speed > 0.0:
+            friction = velocity * (-share / speed)
+            force += friction
+            moment += conjugate_arm * friction
+    return force, (turn.conjugate() * moment).imag

@@ -1,0 +1,50 @@
+"""A body on three feet with unequal shares: Exudyn against the reference, which locates every rest and release."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from free_bodies import new_model, planar_body
+
+from exudyn_models import add_ring_friction, solve_dynamic
+from reference_model import DiscOnDisc, Points, simulate
+
+FEET = Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)])
+BODY = DiscOnDisc(
+    mass=1.0, polar_inertia=2e-3, stiffness=0.0, damping=0.0, friction_force=2.0, disc_speed=0.0,
+    contact_radius=0.05, shaft_damping=0.0, shaft_speed=0.0,
+)  # fmt: skip
+LAW = {"friction_coefficient": 1.0, "normal_load": BODY.friction_force, "contact_points": FEET}
+
+
+def end_in_exudyn(start, end, epsilon, steps):
+    """Return x, y and the angle of the body on the ground after the time ``end``."""
+    mbs = new_model()
+    node = planar_body(mbs, BODY.mass, BODY.polar_inertia, start[:3], start[3:])
+    add_ring_friction(mbs, None, node, regularisation=epsilon, **LAW)
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = end, steps
+    settings.solution.file.write = False
+    solve_dynamic(mbs, settings)
+    return mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates) + mbs.GetNodeParameter(
+        node, "referenceCoordinates"
+    )
+
+
+@pytest.mark.parametrize(
+    ("start", "kinds"),
+    [
+        ([0.0, 0.0, 0.3, 0.4, 0.2, 6.0], ["slip", "pivot", "stick"]),
+        ([0.0, 0.0, 0.0, 0.2, 0.3, -4.0], ["slip", "pivot", "stick"]),
+        ([0.0, 0.0, 0.0, 0.0, -0.06, 1.2], ["pivot", "stick"]),
+    ],
+    ids=["thrown", "thrown the other way", "about a foot"],
+)
+def test_body_that_slides_and_pivots_rests_where_it_does_in_the_reference(start, kinds):
+    """The error is of first order in ε, so the smaller ε leaves a ninth of the change, or a quarter as a bound."""
+    exact = simulate(BODY, start, [0.0, 0.4], contact=FEET, tolerance=1e-11)
+    assert [phase.kind for phase in exact.phases] == kinds
+    coarse, fine = (end_in_exudyn(start, 0.4, epsilon, 8_000) for epsilon in (1e-4, 1e-5))
+    error = np.abs(fine - exact.states[-1, :3])
+    assert np.all(error <= 0.25 * np.abs(coarse - fine))
+    assert error.max() < 1e-6

@@ -1,0 +1,117 @@
+"""Points and patches against integrals in closed form: two points, a rod, a square and other polygons."""
+
+import math
+
+import numpy as np
+import pytest
+
+from reference_model.contact import Points, polygon_patch
+
+SQUARE = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+TRIANGLE = [(0.3, 0.8), (1.0, 0.0), (0.0, 0.0)]  # clockwise
+ANGLE = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.4), (0.4, 0.4), (0.4, 1.0), (0.0, 1.0)]
+POLYGONS = pytest.mark.parametrize("corners", [SQUARE, TRIANGLE, ANGLE], ids=["square", "triangle", "L"])
+
+
+def friction_about(contact, pole):
+    """Return force, and moment about ``pole``, of a disc at φ = 0 that turns about it with φ̇ − ω = 1 rad/s."""
+    force, moment = contact.force_and_moment(-1j * pole, -1.0, 0.0)
+    return force, moment - (pole.conjugate() * force).imag
+
+
+def friction_of_polygon(corners, pole):
+    """Return the same for uniform pressure, as a sum over the triangles between the pole and each side.
+
+    The means of r/|r| and |r| over a triangle with a side at the distance d from the pole are integrals along that
+    side of (s² + d²)^(1/2) and s·(s² + d²)^(-1/2).
+    """
+    around = np.array([complex(*corner) for corner in corners]) - pole
+    area = distance = 0.0
+    direction = 0j
+    for a, b in zip(around, np.roll(around, -1), strict=True):
+        along = (b - a) / abs(b - a)
+        d = (a.conjugate() * along).imag
+        start, end = (along.conjugate() * a).real, (along.conjugate() * b).real
+        farther = math.hypot(end, d) - math.hypot(start, d)
+        turn = math.asinh(end / abs(d)) - math.asinh(start / abs(d))
+        area += d / 2.0 * (end - start)
+        distance += d / 6.0 * (end * math.hypot(end, d) - start * math.hypot(start, d) + d * d * turn)
+        direction += d / 2.0 * (farther - 1j * d * turn) * along
+    return -1j * direction / area, -distance / area
+
+
+def test_two_points_resist_their_own_slip_with_their_own_shares():
+    two = Points([(-0.1, 0.0, 0.3), (0.3, 0.0, 0.7)])
+    force, moment = two.force_and_moment(0j, -2.0, 0.0)  # a turn about a point between them
+    assert force == pytest.approx(0.3j - 0.7j, abs=1e-15)
+    assert moment == pytest.approx(-0.1 * 0.3 - 0.3 * 0.7, abs=1e-15)
+    # After a quarter turn they lie at −0.1i and 0.3i, and slip with 4 + 3i and with 3i.
+    force, moment = two.force_and_moment(3.0 + 3.0j, -10.0, math.pi / 2.0)
+    assert force == pytest.approx(-0.3 * (0.8 + 0.6j) - 0.7j, abs=1e-14)
+    assert moment == pytest.approx(-0.1 * 0.3 * 0.8, abs=1e-14)
+
+
+def test_rod_under_uniform_pressure_resists_with_its_integral():
+    """A rod of the length 2l along x slips with u + i·w·x, whose unit vectors have elementary integrals."""
+    length, u, w = 0.4, 0.2 - 0.1j, 1.5
+    ends = np.array([-1.0, 1.0]) * length * w + u.imag
+    straight, turn = np.hypot(ends, u.real), np.arcsinh(ends / u.real)
+    force = -complex(u.real * np.diff(turn)[0], np.diff(straight)[0]) / (2.0 * length * w)
+    squares = 0.5 * np.diff(ends * straight - u.real**2 * turn)[0]
+    moment = -(squares - u.imag * np.diff(straight)[0]) / (2.0 * length * w**2)
+    errors = []
+    for points in (20, 40, 80):
+        places = length * ((2.0 * np.arange(points) + 1.0) / points - 1.0)
+        rod = Points([(x, 0.0, 1.0 / points) for x in places])
+        found = rod.force_and_moment(u, -w, 0.0)
+        errors.append((abs(found[0] - force), abs(found[1] - moment)))
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.02)
+
+
+def test_square_that_turns_about_its_centre_meets_the_moment_of_its_mean_distance():
+    """The mean distance from the centre of a square with the side a is a·(√2 + asinh 1)/6."""
+    exact = (math.sqrt(2.0) + math.asinh(1.0)) / 6.0
+    assert friction_of_polygon(SQUARE, 0j) == (pytest.approx(0j, abs=1e-15), pytest.approx(-exact, rel=1e-15))
+    errors = []
+    for divisions in (4, 8, 16):
+        force, moment = polygon_patch(SQUARE, divisions).force_and_moment(0j, -1.0, 0.0)
+        assert abs(force) < 1e-14  # for symmetry
+        errors.append(abs(moment + exact))
+    assert errors[-1] < 2e-6
+    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 3.0, atol=0.2)
+
+
+@POLYGONS
+def test_patch_has_the_area_and_the_centre_of_its_polygon(corners):
+    patch = polygon_patch(corners, 3)
+    around = np.array([complex(*corner) for corner in corners])
+    cross = (around.conjugate() * np.roll(around, -1)).imag
+    centre = np.sum((around + np.roll(around, -1)) * cross) / (3.0 * cross.sum())
+    assert np.dot(patch.arms(0.0), patch.shares) == pytest.approx(centre, abs=1e-14)
+    assert math.fsum(patch.shares) == pytest.approx(1.0, abs=1e-14)
+
+
+@POLYGONS
+def test_patch_converges_with_order_4_to_a_turn_about_a_point_outside(corners):
+    for pole in (1.2 + 1.5j, -0.9 + 0.3j, 0.45 - 1.6j):
+        exact, errors = friction_of_polygon(corners, pole), []
+        for divisions in (16, 32, 64):
+            found = friction_about(polygon_patch(corners, divisions), pole)
+            errors.append((abs(found[0] - exact[0]), abs(found[1] - exact[1])))
+        np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 4.0, atol=0.05)
+
+
+@POLYGONS
+def test_patch_converges_with_order_2_in_force_and_3_in_moment_to_a_turn_about_a_point_inside(corners):
+    """The errors depend on where the pole lies in its small triangle, so they are averaged over 200 poles."""
+    phases = np.arange(200.0)
+    inside = np.mean([complex(*corner) for corner in corners[:3]]) * 0.9
+    poles = inside + 0.15 * (np.cos(phases) + 1j * np.sin(1.3 * phases))
+    exact = [friction_of_polygon(corners, pole) for pole in poles]
+    errors = []
+    for divisions in (8, 32):
+        patch = polygon_patch(corners, divisions)
+        differences = np.subtract([friction_about(patch, pole) for pole in poles], exact)
+        errors.append(np.sqrt(np.mean(abs(differences) ** 2, axis=0)))
+    orders = np.log2(errors[0] / errors[1]) / 2.0
+    np.testing.assert_allclose(orders, [2.0, 3.0], atol=0.2)

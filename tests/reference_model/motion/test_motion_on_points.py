@@ -1,0 +1,112 @@
+"""A body on points with unequal shares slides, pivots about a point at rest, and sticks."""
+
+import cmath
+import functools
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from random_systems import TIMES, RandomMotion, random_points, smooth_motion
+
+from reference_model import DiscOnDisc, Points, simulate
+
+SEEDS = (*range(2, 62, 3), 188)  # in the last motion the disc comes to rest just when its pivot gives way
+seeds = pytest.mark.parametrize("seed", SEEDS)
+FEET = Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)])
+BODY = DiscOnDisc(
+    mass=1.5, polar_inertia=2e-3, stiffness=0.0, damping=0.0, friction_force=2.0, disc_speed=0.0,
+    contact_radius=0.05, shaft_damping=0.0, shaft_speed=0.0,
+)  # fmt: skip
+
+
+@functools.cache
+def states(seed, tolerance=1e-9):
+    run = RandomMotion.of(seed)
+    return simulate(run.system, run.start, TIMES, contact=random_points(seed), tolerance=tolerance)
+
+
+def test_motions_on_random_points_include_all_transitions_between_phases():
+    kinds = [[phase.kind for phase in states(seed).phases] for seed in SEEDS]
+    seen = Counter(pair for each in kinds for pair in set(pairwise(each)))
+    assert {
+        ("slip", "pivot"),
+        ("pivot", "slip"),
+        ("pivot", "stick"),
+        ("stick", "slip"),
+        ("slip", "stick"),
+    } <= set(seen)
+    assert {len(random_points(seed).shares) for seed in SEEDS} == {2, 3, 4, 5}
+
+
+@seeds
+def test_error_on_random_points_is_at_most_a_few_tolerances(seed):
+    assert np.abs(states(seed).states - states(seed, 1e-12).states).max() < 3e-8
+
+
+@seeds
+def test_motions_with_smooth_friction_converge_to_that_on_random_points(seed):
+    run = RandomMotion.of(seed)
+    coarse, fine = (
+        np.abs(smooth_motion(run.system, run.start, epsilon, random_points(seed)) - states(seed).states).max()
+        for epsilon in (1e-6, 1e-8)
+    )
+    # The error of the smooth motion is of order ε, of order ε^0.8 after a release, and always below √ε.
+    assert fine < max(0.1 * coarse, 3e-8)
+    assert fine < 3e-5
+
+
+def test_body_that_turns_about_a_resting_foot_is_braked_by_the_others_at_their_distances():
+    foot, spin = 0.05, 1.2
+    lever = 0.2 * abs(-0.08 + 0.04j) + 0.3 * abs(-0.07 - 0.05j)
+    rate = BODY.friction_force * lever / (BODY.polar_inertia + BODY.mass * foot**2)
+    times = np.linspace(0.0, 1.2 * spin / rate, 61)
+    run = simulate(BODY, [0.0, 0.0, 0.0, 0.0, -spin * foot, spin], times, contact=FEET)
+    assert [phase.kind for phase in run.phases] == ["pivot", "stick"]
+    assert run.phases[1].start == pytest.approx(spin / rate, rel=1e-9)
+    turning = np.minimum(times, spin / rate)
+    angle = spin * turning - 0.5 * rate * turning**2
+    np.testing.assert_allclose(run.states[:, 2], angle, atol=1e-10)
+    place = foot - foot * np.exp(1j * angle)
+    np.testing.assert_allclose(run.states[:, :2], np.column_stack((place.real, place.imag)), atol=1e-10)
+
+
+def test_friction_takes_the_kinetic_energy_of_a_thrown_body():
+    start, times = [0.0, 0.0, 0.3, 0.4, 0.2, 6.0], np.linspace(0.0, 0.4, 8001)
+    run = simulate(BODY, start, times, contact=FEET, tolerance=1e-10)
+    assert [phase.kind for phase in run.phases] == ["slip", "pivot", "stick"]
+    _, _, angle, vx, vy, spin = run.states.T
+    energy = 0.5 * BODY.mass * (vx**2 + vy**2) + 0.5 * BODY.polar_inertia * spin**2
+    arms = np.exp(1j * angle)[:, np.newaxis] * np.array(FEET.arms(0.0))
+    slips = abs((vx + 1j * vy)[:, np.newaxis] + 1j * spin[:, np.newaxis] * arms)
+    heat = np.trapezoid(BODY.friction_force * slips @ FEET.shares, times)
+    assert energy[-1] == 0.0
+    assert heat == pytest.approx(energy[0], rel=1e-6)
+
+
+def test_motion_depends_on_neither_the_order_of_the_points_nor_the_axes_of_the_disc():
+    start, times = np.array([0.0, 0.0, 0.3, 0.4, 0.2, 6.0]), np.linspace(0.0, 0.4, 41)
+    run = simulate(BODY, start, times, contact=FEET).states
+    reordered = Points([FEET.places[i] for i in (2, 0, 1)])
+    np.testing.assert_allclose(simulate(BODY, start, times, contact=reordered).states, run, atol=1e-11)
+    turn = 0.9
+    arms = [cmath.exp(-1j * turn) * arm for arm in FEET.arms(0.0)]
+    turned = Points([(arm.real, arm.imag, share) for arm, share in zip(arms, FEET.shares, strict=True)])
+    shift = np.array([0.0, 0.0, turn, 0.0, 0.0, 0.0])
+    other = simulate(BODY, start + shift, times, contact=turned).states
+    np.testing.assert_allclose(other - shift, run, atol=1e-10)
+
+
+def test_foot_at_the_centre_of_mass_can_be_the_pivot():
+    """The arm of this foot vanishes, so its friction turns nothing and needs no leverage."""
+    centred = Points([(0.0, 0.0, 0.6), (0.05, 0.0, 0.2), (-0.03, 0.04, 0.2)])
+    run = simulate(BODY, [0.0, 0.0, 0.0, 0.02, 0.01, 8.0], np.linspace(0.0, 0.6, 61), contact=centred)
+    kinds = [phase.kind for phase in run.phases]
+    assert "pivot" in kinds
+    assert kinds[-1] == "stick"
+    stuck = replace(BODY, stiffness=30.0, disc_speed=1.5, offset=0.05)
+    released = simulate(stuck, [0.05, 0.0, 0.0, 0.0, 0.075, 1.5], np.linspace(0.0, 6.0, 61), contact=centred)
+    fine = simulate(stuck, released.states[0], released.times, contact=centred, tolerance=1e-12)
+    assert np.abs(fine.states - released.states).max() < 3e-8
+    assert [phase.kind for phase in released.phases][:2] == ["stick", "slip"]
