@@ -1,0 +1,1 @@
+"""Measured pushes of a body on a plane."""
