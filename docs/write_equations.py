@@ -8,7 +8,7 @@ import ast
 import re
 from pathlib import Path
 
-from compare.claims.errata import ERRATA
+from compare.claims.errata import ERRATA, TEXT
 from compare.studies import STUDIES
 
 ROOT = Path(__file__).parents[1]
@@ -151,7 +151,7 @@ def text():
         "",
         "## Corrected",
         "",
-        "`friction-discs errata` proves each correction with numbers.",
+        f"{TEXT} `friction-discs errata` proves each correction with numbers.",
     ]
     for erratum in ERRATA:
         lines += ["", f"**{erratum.heading}.** {erratum.explanation}", "", f"- as printed: {erratum.printed}"]

@@ -1,4 +1,7 @@
-"""Errors in the printed formulas of the paper, with numerical evidence."""
+"""Errors in the formulas of the paper, with numerical evidence.
+
+"Printed" refers to the text we worked from, see ``TEXT``.
+"""
 
 from __future__ import annotations
 
@@ -28,6 +31,13 @@ from reference_model.formulas.pin import (
 )
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.steady.steady_states import self_centred_equilibria
+
+TEXT = (
+    "The formulas are those of the text we worked from, which names no journal or year. It was probably published as "
+    "A. Fidlin and W. Stamm, On the radial dynamics of friction disks, European Journal of Mechanics – A/Solids 28 "
+    "(2009), pp. 526–534. Printed versions may differ."
+)
+"""Origin of the formulas."""
 
 
 @dataclass(frozen=True)

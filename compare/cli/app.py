@@ -71,9 +71,10 @@ def errata() -> None:
     Example:
       friction-discs errata
     """
-    from compare.claims.errata import ERRATA
+    from compare.claims.errata import ERRATA, TEXT
     from compare.report.numbers import error_text, value_text
 
+    print(f"{TEXT}\n")
     for erratum in ERRATA:
         evidence = erratum.evidence()
         nearest = abs(evidence.corrected_value - evidence.exact)

@@ -14,6 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
+from compare.claims.errata import TEXT
 from compare.claims.study import Study
 from compare.report import quotes
 from compare.report.at_a_glance import cases, glances
@@ -66,6 +67,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             stamp=stamp,
             State=State,
             EVIDENCE=EVIDENCE,
+            TEXT=TEXT,
             GRADES=GRADES,
             GRADE_SYMBOLS=GRADE_SYMBOLS,
             kinds=[evidence for evidence in EVIDENCE if matrix.of_evidence(evidence)],

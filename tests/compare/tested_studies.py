@@ -216,6 +216,14 @@ THROWN_DISC = Tested(
     },
 )
 
+PUSHES = Tested(
+    STUDY["pushes"],
+    few={"final_poses": {"every": 25}},
+    sound=("exudyn",),
+    gross={"a hand without friction": Patched(wrong.hand_with_friction(0.0), name="exudyn")},
+    small={"the hand's friction 2 % too small": Patched(wrong.hand_with_friction(0.49), name="exudyn")},
+)
+
 # ---------------------------------------------------------------- the drivetrain
 
 RUN_UP = Tested(

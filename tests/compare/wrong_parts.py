@@ -20,6 +20,7 @@ import exudyn_models
 from compare.studies.drivetrain.frozen import whirls
 from compare.studies.drivetrain.run_up import study as run_up
 from compare.studies.plane import thrown_disc as thrown_disc
+from compare.studies.plane.pushes import forward as pushed_forward
 from compare.studies.toolkit.drivetrain_bench import (
     RPM,
     Operation,
@@ -328,3 +329,8 @@ def full_disc_as_a_ring(patch):
 def full_disc_with_a_small_hole(patch):
     """Give a full disc a hole of 2 % of its radius."""
     patch.setattr(thrown_disc, "Annulus", lambda inner, outer: Annulus(0.02 * outer, outer))
+
+
+def hand_with_friction(coefficient):
+    """Return a fault that changes the friction of the hand in the Exudyn model of a pushed body."""
+    return lambda patch: patch.setattr(pushed_forward, "HAND", coefficient)

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from processes import PATIENCE, REAL, environment
 
-from compare.claims.errata import ERRATA
+from compare.claims.errata import ERRATA, TEXT
 from compare.claims.parameters import FIG5, FIG11
 from compare.claims.study import Findings
 from compare.cli import app as cli
@@ -40,9 +40,10 @@ def test_list_names_studies_and_engines(capsys):
     assert "; on request: compiled, plain\n" in out
 
 
-def test_errata_prints_both_forms_and_both_errors(capsys):
+def test_errata_prints_their_source_both_forms_and_both_errors(capsys):
     assert cli.status(["errata"]) == 0
     out = capsys.readouterr().out
+    assert out.startswith(f"{TEXT}\n")
     for erratum in ERRATA:
         assert f"{erratum.heading}\n  printed    {erratum.printed}\n" in out
     assert out.count(", error ") == 2 * len(ERRATA)

@@ -60,7 +60,10 @@ BAD = [
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
     ("report --study-limit soon", "study-limit = 'soon': it must be a number"),
-    ("report pushes --data .", "no logs like 10_90_10_10_30_130-exp_08_15_50.txt.xz are in this folder"),
+    (
+        "report pushes --data .",
+        "--data .: no logs like 10_90_10_10_30_130-exp_08_15_50.txt.xz are in this folder",
+    ),
     ("report --min-conclusive -1", "min-conclusive = -1: it must lie between 0 and 1000000"),
     ("report --level quick verdicts", "--level quick cannot be combined with named studies (verdicts)"),
     ("report --output a --output b", "--output is given 2 times; give it once"),

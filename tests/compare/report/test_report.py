@@ -12,7 +12,7 @@ from fake_studies import AGREEMENT, PARTLY, PIN, POINTS, RING, RING_ONLY, VERDIC
 from fake_studies import claim as made
 from processes import ROOT
 
-from compare.claims.errata import Erratum, Evidence
+from compare.claims.errata import TEXT, Erratum, Evidence
 from compare.claims.study import Findings
 from compare.cli.app import status
 from compare.engines import EVERY_KIND, Engine
@@ -430,6 +430,7 @@ def test_errata_show_both_forms_and_the_numbers(tmp_path):
     write_report(run((), (), folder=tmp_path / "data", errata=errata), tmp_path)
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert "β·(1 + &lt;m&gt;)" in page
+    assert TEXT in page
     numbers = [cell[4] for cell in Cells(page).cells if cell[0] == "evidence" and cell[4]]
     assert numbers == [[1.25], [1.5], [1.25 + 1e-12], [0.25], [1.25 + 1e-12 - 1.25]]
     assert "The evidence could not be computed: no root was found" in page

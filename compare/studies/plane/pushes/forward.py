@@ -24,8 +24,9 @@ from reference_model.systems import FloatArray
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.
 
-Estimated from the measured forces alone: three quarters lean less than 26 degrees from the normal of the edge,
-and nine tenths less than 30. A hand that slides would lean by one angle, here by 26.6 degrees.
+Estimated from the measured forces alone: three quarters lean less than 26 degrees from the normal of the edge. A
+hand that slides would lean by one angle, here by 26.6 degrees. The median error of the final position is
+0.9 to 1.3 mm for coefficients from 0.2 to 0.6, and 2 mm for 0.1 and 0.8.
 """
 
 SPEED = 2.45e-3

@@ -98,22 +98,22 @@ def on_limit_surface() -> Measured:
 
 # --- Pushes simulated forward.
 
-SIMULATED = slice(None, None, 10)
-"""Pushes of each series that are simulated forward."""
+EVERY = 10
+"""One of so many pushes of each series is simulated forward."""
 
 EPSILON = 2e-5
 """Regularisation in m/s of the Exudyn model; the speed of the hand is 2.45 mm/s."""
 
 
-def simulated() -> list[Push]:
-    """Return the pushes that are simulated forward."""
-    return [push for pushes in theory.by_series().values() for push in pushes[SIMULATED]]
+def simulated(every: int = EVERY) -> list[Push]:
+    """Return one of ``every`` pushes of each series."""
+    return [push for pushes in theory.by_series().values() for push in pushes[::every]]
 
 
 @cache
-def quasi_static(steps: int = 5, hand: float = forward.HAND) -> FloatArray:
+def quasi_static(steps: int = 5, hand: float = forward.HAND, every: int = EVERY) -> FloatArray:
     """Return displacements x, y and turns times ``theory.PUSHER``, all in m, without inertia; shape (n, 3)."""
-    return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated()])
+    return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated(every)])
 
 
 def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
@@ -128,26 +128,21 @@ def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
     note="Every tenth push. The predicted motion has exact friction and no inertia. The Exudyn model has a stiff "
     "edge and regularised friction; its poses are extrapolated from two regularisations.",
 )
-def final_poses(engine: Engine) -> Measured:
+def final_poses(engine: Engine, every: int = EVERY) -> Measured:
     """Compare the last poses of an engine with those of least friction power."""
-    predicted = quasi_static()
-    error = 2.0 * np.abs(quasi_static(10) - predicted)
-    value, deformed = quasi_static(10), 0.0
-    if engine.name == "exudyn":
-        fine, coarse = (
-            _components([forward.by_exudyn(push, epsilon) for push in simulated()])
-            for epsilon in (EPSILON, 2.0 * EPSILON)
-        )
-        value = 2.0 * fine - coarse  # the error is of first order
-        error = error + np.abs(fine - coarse)
-        deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
-    elif engine.name != "reference":
+    if engine.name != "exudyn":
         raise UnsupportedSystemError(f"{engine.name} has no model of a pushed body")
+    predicted = quasi_static(10, every=every)
+    fine, coarse = (
+        _components([forward.by_exudyn(push, epsilon) for push in simulated(every)])
+        for epsilon in (EPSILON, 2.0 * EPSILON)
+    )
+    deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
     return Measured(
         predicted=predicted,
-        value=value,
-        error=error + deformed,
-        at={"push": [f"{push.series} {push.number}" for push in simulated()]},
+        value=2.0 * fine - coarse,  # the error of the regularisation is of first order
+        error=np.abs(fine - coarse) + np.abs(predicted - quasi_static(every=every)) + deformed,
+        at={"push": [f"{push.series} {push.number}" for push in simulated(every)]},
         components=("x in m", "y in m", "turn times 50 mm in m"),
     )
 
@@ -195,7 +190,7 @@ def _of_final_positions() -> Validation:
     slippery, rough = (quasi_static(hand=forward.HAND + change)[:, :2] for change in (-0.1, 0.1))
     inputs = 0.5 * np.linalg.norm(rough - slippery, axis=1) / theory.MM
     data = np.array(
-        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[SIMULATED]]
+        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::EVERY]]
     )
     numerical = np.linalg.norm((quasi_static(10) - quasi_static())[:, :2], axis=1) / theory.MM
     return Validation(

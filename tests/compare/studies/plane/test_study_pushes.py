@@ -1,80 +1,17 @@
-"""The reduction, the theory and the simulations of measured pushes."""
+"""The theory and the simulations of measured pushes."""
 
 import cmath
-import lzma
 import math
 
 import numpy as np
 import pytest
+from studies_under_test import AGREES, DIFFERS, theory_of
 
 from compare.studies.plane.pushes import forward, theory
-from compare.studies.plane.pushes.reduction import Push, check_table, reduce_log, reduced_pushes
-from compare.studies.plane.pushes.study import GROUPS, SIMULATED, validations
+from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from compare.studies.plane.pushes.study import GROUPS, STUDY, simulated, validations
 
 SERIES = "10_90_10_10_30_130"
-LOG = f"{SERIES}-exp_08_15_50.txt.xz"
-TURN, SHIFT, FORCE = 0.2, 8.0 - 3.0j, 3.0 + 1.0j  # in the axes of the body halfway
-
-
-def written(folder, name=LOG, spoil=lambda lines: lines):
-    """Write a log of one push whose reduced values are known; return its path."""
-    first, place = 2.5, 300.0 + 40.0j
-    half = first + 0.5 * TURN
-    last_place = place + SHIFT * cmath.exp(1j * half)
-    hand, hand_angle = place + cmath.exp(1j * first) * (-2.0 + 30.0j), -0.7
-    last_hand = last_place + cmath.exp(1j * (first + TURN)) * 31.0j
-
-    def pose(at, angle, height=9.0):
-        return f"{at.real} {at.imag} {height} {math.cos(angle / 2)} 0 0 {math.sin(angle / 2)}"
-
-    in_hand = FORCE * cmath.exp(1j * (half - hand_angle))
-    sensor = np.array([[1.0, 1.0], [1.0, -1.0]]) @ [in_hand.real, in_hand.imag] / -math.sqrt(2.0)
-    samples = [[0.5, -0.25]] * 30 + [[0.5 + sensor[0], -0.25 + sensor[1]]] * 70
-    lines = ["1", pose(place, first), pose(last_place, first + TURN, 9.5), "100"]
-    lines += [f"{0.01 * i} {x} {y}" for i, (x, y) in enumerate(samples)]
-    lines += ["2", f"0 {pose(hand, hand_angle)}", f"1 {pose(last_hand, hand_angle)}"]
-    path = folder / name
-    path.write_bytes(lzma.compress("\n".join(spoil(lines)).encode()))
-    return path
-
-
-def test_a_log_is_reduced_to_the_motion_and_the_force_in_the_axes_halfway(tmp_path):
-    (push,) = reduce_log(written(tmp_path))
-    assert (push.series, push.number, push.samples) == (SERIES, 1, 100)
-    found = [complex(push.x, push.y), push.turn, complex(push.force_x, push.force_y), push.lift, push.tilt_x]
-    assert found == pytest.approx([SHIFT, TURN, FORCE, 0.5, 0.0], abs=1e-9)
-    assert [push.start_x, push.start_y, push.end_x, push.end_y] == pytest.approx([-2.0, 30.0, 0.0, 31.0])
-
-
-@pytest.mark.parametrize(
-    ("spoil", "message"),
-    [
-        (lambda lines: lines[:50], r"line 51: '' is not a sample of the force, 3 numbers"),
-        (
-            lambda lines: [*lines[:2], "1 2 3", *lines[3:]],
-            r"line 3: '1 2 3' is not a pose of the body, 7 numbers",
-        ),
-        (
-            lambda lines: [*lines[:-1], lines[-1].replace("1 ", "x ", 1)],
-            r"is not a pose of the hand, 8 numbers",
-        ),
-        (lambda lines: ["1", *lines[1:3], "1", "0 0 0", *lines[-3:]], r"has 1 samples of the force"),
-    ],
-)
-def test_a_log_with_another_format_is_refused_with_its_line(tmp_path, spoil, message):
-    with pytest.raises(ValueError, match=message):
-        reduce_log(written(tmp_path, spoil=spoil))
-
-
-def test_logs_are_compared_with_the_table(tmp_path):
-    with pytest.raises(ValueError, match="no logs like"):
-        check_table(tmp_path)
-    written(tmp_path, name="wood_" + LOG)
-    agreeing, new = check_table(tmp_path)
-    assert (agreeing, [push.series for push in new]) == ([], [f"wood_{SERIES}"])
-    written(tmp_path)
-    with pytest.raises(ValueError, match="the log has 1 pushes, the table 50"):
-        check_table(tmp_path)
 
 
 def obeying(push, load):
@@ -121,11 +58,19 @@ def test_each_push_is_validated_once():
     *directions, position = validations()
     assert sum(one.count for one in directions) == len(reduced_pushes()) == 350
     assert sorted(series for group in GROUPS.values() for series in group) == sorted(theory.by_series())
-    assert position.count == sum(len(pushes[SIMULATED]) for pushes in theory.by_series().values())
+    assert position.count == len(simulated()) == 35
     for one in (*directions, position):
         assert 0.0 < one.error_uncertainty < one.error
         assert f"{one.error:.1f} ± {one.error_uncertainty:.1f}" in one.sentence
         assert 0.0 < one.explained < 1.0
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.001])
+def test_the_theory_claims_feel_a_wrong_moment(monkeypatch, factor):
+    right = theory.wrench_of_slip
+    monkeypatch.setattr(theory, "wrench_of_slip", lambda *of: (right(*of)[0], factor * right(*of)[1]))
+    expected = AGREES if factor == 1.0 else DIFFERS
+    assert set(theory_of(STUDY, "sums", "on_limit_surface").values()) == {expected}
 
 
 def straight(x):
