@@ -16,6 +16,7 @@ from compare.claims.error_estimates import ROUNDING, TRUTH
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
+from compare.diagnosis.scaling import Scales
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
 from compare.foreign import CASES, Quantity
 from reference_model import simulate
@@ -31,6 +32,19 @@ HALVED = 2.0
 
 SAFETY = 3.0
 """Ratio of the error estimate to the last change: three times the error for first order and halved steps."""
+
+
+PER_STEP = 0.2
+"""Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
+
+SAME = 0.5
+"""Least ratio of the creep at any rung to the largest, for creep that is the same at all rungs."""
+
+HELD = 0.05
+"""Mean speed over a Coulomb block's, below which a block is held."""
+
+MOST_HELD, BISECTIONS = 32.0, 20
+"""Largest load over μN that is tried on blocks at rest, and the number of bisections."""
 
 
 def tolerances(engine: Engine) -> FloatArray:
@@ -102,6 +116,10 @@ class Creep:
         Regularised friction law that explains the creep; "" if none does.
     epsilon : float
         Regularisation of that law in m/s, at the finest rung.
+    chatter : float
+        Largest deviation in m/s of the velocity from the creep, at the finest rung.
+    chatter_order : float
+        Order of ``chatter``.
 
     """
 
@@ -109,6 +127,63 @@ class Creep:
     order: float
     smoothing: str
     epsilon: float
+    chatter: float = 0.0
+    chatter_order: float = math.nan
+
+
+@dataclass(frozen=True)
+class History:
+    """Dependence of friction on the motion before.
+
+    Parameters
+    ----------
+    static : float
+        Largest load that friction holds from rest, over μN; 1 if it holds no load above μN.
+    second, second_error : float
+        Distance of a second release over the exact one, and its error.
+    delay, delay_error, second_delay, second_delay_error : float
+        Delay in s of the release from rest, and of the motion after two releases.
+    rest : float
+        Creep in m/s of a block close to release, or of one at rest after a slide; 0 if it depends on the rung.
+
+    """
+
+    static: float
+    second: float
+    second_error: float
+    delay: float
+    delay_error: float
+    second_delay: float
+    second_delay_error: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Support:
+    """Forces of ``probes.SUPPORTS`` over the exact ones, and their errors, shape (3,)."""
+
+    shares: FloatArray
+    errors: FloatArray
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Force and moment on a disc over the exact ones, and their errors, shape (n, 2); NaN where there is none."""
+
+    shares: FloatArray
+    errors: FloatArray
+
+
+@dataclass(frozen=True)
+class Repeat:
+    """Difference between two equal calls, over the size of the states, and the precision that the engine declares.
+
+    ``deaf`` is True if a motion does not change with the tolerance or the step.
+    """
+
+    difference: float
+    declared: float
+    deaf: bool = False
 
 
 @dataclass(frozen=True)
@@ -161,22 +236,158 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Creep | Lag | Motion
+Part = Friction | Scales | Creep | History | Support | Lag | Moments | Repeat | Motion
 
 
 def friction(engine: Engine) -> Friction:
     """Return the friction law that decelerates blocks on a plane at rest."""
-    ladder = Ladder.of(engine, functools.partial(probes.forces, engine))
-    noise = engine.precision * probes.SPEED * probes.SLIDE.mass / (probes.FRICTION * probes.SLIDES_FOR)
-    return fitted(ladder.finest, float(np.max(ladder.error[:, :2])) + noise)
+    pushes = probes.unsaturated(engine, probes.headings(), float(tolerances(engine)[0]))
+    values = _slides(engine, pushes).values.copy()
+    sizes = np.max(np.hypot(values[..., 0], values[..., 1]), axis=1)
+    per_step = math.nan
+    if engine.step is not None and abs(falling(sizes[[0, -1]], HALVED ** (RUNGS - 1)) + 1.0) < PER_STEP:
+        per_step = float(sizes[-1]) * engine.step_at(float(tolerances(engine)[-1]))
+        values[..., probes.FORCE] *= (sizes[-1] / sizes)[:, None, None]
+    error = float(np.max(Ladder(values).error[:, probes.FORCE]))
+    found = fitted(values[-1, :, :4], error + float(np.max(_noise(engine, pushes))))
+    return replace(found, per_step=per_step)
+
+
+def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
+    """Return the slides at each rung, with twice as many intervals from rung to rung."""
+    rungs = enumerate(tolerances(engine).tolist())
+    return Ladder(np.array([probes.slides(engine, pushes, it, probes.FEWEST_PANELS << i) for i, it in rungs]))
+
+
+def _noise(engine: Engine, pushes: Sequence[probes.Push]) -> FloatArray:
+    """Return the error of the forces over μN from the precision that the engine declares, shape (n,)."""
+    return np.array(
+        [
+            3.0
+            * engine.precision
+            * push.system.mass
+            * abs(push.velocity)
+            / (push.system.friction_force * push.lasts)
+            for push in pushes
+        ]
+    )
+
+
+def scales(engine: Engine) -> Scales:
+    """Return friction forces over wide ranges of mass, load, speed and place."""
+    pushes = probes.draws(turning=False)
+    if engine.simulates(probes.TURN):
+        pushes += probes.draws(turning=True)
+    pushes = probes.unsaturated(engine, pushes, float(tolerances(engine)[0]))
+    ladder = _slides(engine, pushes)
+    finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
+    error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)
+    error += SAFETY * np.max(np.hypot(changes[..., 2], changes[..., 3]), axis=0)
+    systems = [push.system for push in pushes]
+    return Scales(
+        np.array(
+            [
+                (one.mass, one.friction_force, speed, one.disc_speed, abs(push.place))
+                for one, speed, push in zip(systems, finest[:, probes.SLIP_SPEED], pushes, strict=True)
+            ]
+        ),
+        finest[:, probes.FORCE],
+        ladder.values[-2, :, probes.FORCE],
+        finest[:, probes.SLIP],
+        finest[:, probes.RADIAL],
+        error + _noise(engine, pushes) + ROUNDING,
+        np.array(
+            [
+                (abs(push.velocity), kept * abs(push.velocity))
+                for push, kept in zip(pushes, finest[:, probes.KEPT], strict=True)
+            ]
+        ),
+    )
 
 
 def creep(engine: Engine) -> Creep:
     """Return the creep of blocks under loads that friction can hold."""
-    ladder = Ladder.of(engine, functools.partial(probes.creep, engine))
-    half = ladder.values[:, probes.PULLS.index(0.5)]
-    order = falling(np.abs(half), step_ratio(engine))
-    return Creep(float(half[-1]), order, *smoothing_of(ladder.finest))
+    ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.PULLS))
+    half, ratio = np.abs(ladder.values[:, probes.PULLS.index(0.5)]), step_ratio(engine)
+    shaking = np.max(ladder.values[:, :, 1], axis=1)
+    return Creep(
+        float(ladder.finest[probes.PULLS.index(0.5), 0]),
+        falling(half[:, 0], ratio),
+        *smoothing_of(ladder.finest[:, 0]),
+        float(shaking[-1]),
+        falling(shaking, ratio),
+    )
+
+
+def history(engine: Engine) -> History:
+    """Return the largest load held from rest, and how friction acts after a slide."""
+    pulls, gravity = np.array(probes.BEYOND), probes.FRICTION / probes.SLIDE.mass
+    ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.BEYOND))
+    moves = ladder.finest[:, 0] > HELD * (pulls - 1.0) * gravity * probes.PULLED_FOR
+    _, _, gained, speed = ladder.values[:, -1].T
+    rate = probes.SLIDE.natural_frequency
+    exact = (pulls[-1] - 1.0) * gravity * math.sin(0.5 * rate * probes.PULLED_FOR) / rate
+    delay = Ladder((exact - speed) / np.where(gained == 0.0, np.inf, gained))
+    second = Ladder.of(engine, functools.partial(probes.second_release, engine))
+    rest = Ladder.of(engine, functools.partial(probes.at_rest, engine))
+    return History(
+        1.0 if moves[0] else _held(engine, probes.BEYOND),
+        float(second.finest[0]),
+        float(second.error[0]),
+        float(delay.finest),
+        float(delay.error),
+        float(second.finest[1]),
+        float(second.error[1]),
+        float(rest.finest) if np.min(rest.values) > SAME * np.max(rest.values) else 0.0,
+    )
+
+
+def _held(engine: Engine, pulls: Sequence[float]) -> float:
+    """Return the largest load over μN that a block at rest withstands, at most ``MOST_HELD``, by bisection."""
+    least, most = pulls[0], MOST_HELD
+    for number in range(BISECTIONS):
+        middle = (
+            pulls[number]
+            if 0 < number < len(pulls) and least < pulls[number] < most
+            else math.sqrt(least * most)
+        )
+        ((speed, *_),) = probes.pulled(engine, (middle,), float(tolerances(engine)[-1]))
+        if speed > HELD * (middle - 1.0) * probes.FRICTION / probes.SLIDE.mass * probes.PULLED_FOR:
+            most = middle
+        else:
+            least = middle
+    return least
+
+
+def support(engine: Engine) -> Support:
+    """Return the forces of spring, damper and offset without friction."""
+    ladder = Ladder.of(engine, functools.partial(probes.supports, engine))
+    noise = SAFETY * engine.precision / (probes.SLIDES_FOR - probes.SETTLES_FOR)
+    return Support(ladder.finest, ladder.error + noise)
+
+
+def moments(engine: Engine) -> Moments:
+    """Return force and moment on the discs that the engine simulates, on a ring and on points."""
+    kinds = [points for points in (None, 6) if engine.simulates(probes.discs(points)[0][0])]
+    ladder = Ladder.of(
+        engine, lambda tolerance: np.vstack([probes.moments(engine, points, tolerance) for points in kinds])
+    )
+    changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)
+    noise = SAFETY * engine.precision * probes.SPEED / (probes.FRICTION * probes.SLIDES_FOR)
+    return Moments(ladder.finest, SAFETY * changes + noise)
+
+
+def repeat(engine: Engine) -> Repeat:
+    """Return the difference between two equal calls."""
+    motion = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
+    if not engine.simulates(probes.TURN):
+        motion = (probes.SWING, (1.0, 0.0, 0.0, 0.0), (0.0, 0.5))
+    usual, again, coarse = (
+        engine.simulate(*motion, tolerance=tolerance).states
+        for tolerance in (USUAL_TOLERANCE, USUAL_TOLERANCE, float(tolerances(engine)[0]))
+    )
+    difference = float(np.max(np.abs(again - usual)) / np.max(np.abs(usual)))
+    return Repeat(difference, engine.precision, bool(np.array_equal(usual, coarse)))
 
 
 def lag(engine: Engine) -> Lag:
@@ -219,7 +430,16 @@ def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
     return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
 
 
-PROBES: dict[str, type[Any]] = {"law": Friction, "creep": Creep, "lag": Lag}
+PROBES: dict[str, type[Any]] = {
+    "law": Friction,
+    "scales": Scales,
+    "creep": Creep,
+    "history": History,
+    "support": Support,
+    "repeat": Repeat,
+    "lag": Lag,
+    "moments": Moments,
+}
 """Parts that identify the friction law, and their results."""
 
 
@@ -230,9 +450,12 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     """
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
-        parts |= {"law": friction, "creep": creep}
+        parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
+        parts |= {"support": support, "repeat": repeat}
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
+    if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
+        parts["moments"] = moments
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

@@ -24,7 +24,10 @@ boxed.kinds, boxed.step = ("block",), 1e-2
 
 @pytest.mark.parametrize(
     ("name", "status", "said"),
-    [("simulate", 0, "Friction is Coulomb's cone, accurate to"), ("boxed", 1, "Friction is a box")],
+    [
+        ("simulate", 0, "Coulomb friction, accurate to"),
+        ("boxed", 1, "Not Coulomb friction: friction is a box"),
+    ],
 )
 def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, monkeypatch, capsys):
     (tmp_path / f"of_{name}.py").write_text(BLOCKS)
