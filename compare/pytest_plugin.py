@@ -2,8 +2,8 @@
 
 Each study is a file and each of its claim sentences a test, collected without measuring. The first test of a study
 measures the whole study in a separate process with a time limit. A test fails if the claim differs or the engine has
-no answer. Claims that the engine does not support are "not attempted", and claims that its errors leave open are
-"inconclusive"; neither is a pass.
+no answer. Claims that the engine does not support are "not attempted", claims that its errors leave open are
+"inconclusive", and claims that exceed the time limit are "not finished"; none of these is a pass.
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
 """
@@ -28,15 +28,15 @@ STUDIES = Path(__file__).with_name("studies")
 
 STUDY_MODULES = "compare.studies"
 
-INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
+INCONCLUSIVE, NOT_ATTEMPTED, NOT_FINISHED = "inconclusive", "not attempted", "not finished"
 
-NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
+NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-", NOT_FINISHED: "t"}
 """Names of tests without a verdict in pytest's totals, and their progress characters."""
 
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
-"""Exit statuses in addition to those of pytest: too few claims pass; an engine has no verdict."""
+"""Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -206,6 +206,8 @@ class ClaimTest(pytest.Item):
         from compare.run.workers import Failure
 
         outcome = self.config.stash[_BENCH].outcome(self.study, self.engine, self._asked_with())
+        if isinstance(outcome, Failure) and outcome.unfinished:
+            self._without_verdict(NOT_FINISHED, outcome.reason)
         if isinstance(outcome, Failure):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
@@ -332,12 +334,14 @@ def _why_none(report: pytest.TestReport) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Set exit status 7 if an engine has no verdict, or 6 if too few claims pass."""
+    """Set exit status 7 if an engine has no verdict, or 6 if claims are not finished or too few pass."""
     config, names = session.config, _engines(session.config)
     if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return
     counts = config.stash[_BENCH].counts
-    if any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
+    if any(counts[name, NOT_FINISHED] for name in names):
+        session.exitstatus = NOTHING_SHOWN
+    elif any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
         session.exitstatus = NOTHING_MEASURED
     elif sum(counts[name, "passed"] for name in names) < config.getoption("friction_discs_least"):
         session.exitstatus = NOTHING_SHOWN

@@ -17,7 +17,7 @@ from compare.claims.as_json import as_json
 from compare.diagnosis.findings import MOTIONS, RUNGS, Creep, History, Lag, Moments, Motion, Repeat, Support
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import HEADINGS, SPEED, SUPPORTS
-from compare.diagnosis.scaling import Scales, blind, deviation, speed_limit
+from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, deviation, speed_limit
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -329,7 +329,8 @@ def _of_history(history: History, explained: bool) -> Iterator[Remark]:
 def _of_support(support: Support) -> list[Remark]:
     """Return the forces of the support that are wrong; an equal factor of all is that of the mass."""
     off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
-    change = 1.0 / float(support.shares[np.argmax(np.abs(support.shares - 1.0))]) - 1.0
+    farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
+    change = 1.0 / farthest - 1.0 if farthest else math.inf
     if np.all(off) and float(np.ptp(support.shares)) < ALIKE * abs(change):
         word = "large" if change > 0.0 else "small"
         text = f"The mass is {error_text(100.0 * abs(change))} % too {word}, because all forces act alike."
@@ -453,6 +454,28 @@ def drawn(rows: Sequence[Row]) -> Figure:
     return figure
 
 
+def drawn_forces(rows: Sequence[Row]) -> Figure:
+    """Return a figure of the measured friction force, with its error, against each variable of ``Scales``."""
+    figure, panels = new_figure(ncols=len(VARIABLES), width=15.0, height=3.5)
+    wide = max(float(np.ptp(np.log10(np.hypot(*row.scales.forces.T)))) for row in rows if row.scales) > 1.0
+    for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
+        scales = row.scales
+        assert scales is not None  # by the caller
+        sizes = np.hypot(*scales.forces.T)
+        for panel, values in zip(panels, np.abs(scales.conditions).T, strict=True):
+            moves = values > 0.0
+            panel.errorbar(
+                values[moves], sizes[moves], scales.errors[moves], fmt=marker, markersize=3, label=row.engine
+            )
+    for column, (panel, name, unit) in enumerate(zip(panels, VARIABLES, UNITS, strict=True)):
+        panel.set(xscale="log", yscale="log" if wide else "linear", xlabel=f"{name} in {unit}")
+        panel.set_visible(any(row.scales and np.any(row.scales.conditions[:, column]) for row in rows))
+        panel.axhline(1.0, color="0.6", linewidth=0.8, linestyle=":")
+    panels[0].set_ylabel("friction force over μN")
+    figure.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=4)
+    return figure
+
+
 # --- Files of a matrix: numbers and sentences as JSON, and the figure.
 
 
@@ -462,12 +485,17 @@ def write_rows(rows: Sequence[Row], folder: Path) -> None:
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 
 
-def write_picture(rows: Sequence[Row], folder: Path) -> None:
-    """Write matrix.svg and matrix.png, if any motion was simulated."""
-    if not any(row.motions for row in rows):
-        return
+def write_pictures(rows: Sequence[Row], folder: Path) -> list[Path]:
+    """Write matrix and friction as svg and png, if there is something to draw; return the paths of the latter."""
+    figures: dict[str, Figure] = {}
+    wrong = [row for row in rows if row.scales is not None and row.verdict != RIGHT]
     with paper_style():
-        figure = drawn(rows)
-    for ending, content in zip(("svg", "png"), saved(figure), strict=True):
-        with replacing(folder / f"matrix.{ending}", "wb") as stream:
-            stream.write(content)
+        if any(row.motions for row in rows):
+            figures["matrix"] = drawn(rows)
+        if wrong:
+            figures["friction"] = drawn_forces(wrong)
+    for name, figure in figures.items():
+        for ending, content in zip(("svg", "png"), saved(figure), strict=True):
+            with replacing(folder / f"{name}.{ending}", "wb") as stream:
+                stream.write(content)
+    return [folder / f"{name}.png" for name in figures]

@@ -14,7 +14,7 @@ from compare.diagnosis import findings, run
 from compare.diagnosis.findings import MOTIONS, PROBES, RUNGS, Ladder, Motion, motion, tolerances
 from compare.diagnosis.laws import CONE, Friction, fitted
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
-from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_picture, write_rows
+from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, exudyn, plain, reference
 from compare.run.workers import Workers
@@ -323,5 +323,5 @@ def test_recorded_engines_have_rows_like_the_others(tmp_path):
     content = json.loads((tmp_path / "matrix.json").read_text(encoding="utf-8"))
     assert content[-1]["motions"]["slip"]["errors"] == [1e-2, 5e-3, 2e-3, 1e-3]
     assert content[-1]["sentences"] == ["Errors are of order 1.0 in the tolerance."]
-    write_picture([*rows, mine], tmp_path)
+    write_pictures([*rows, mine], tmp_path)
     assert (tmp_path / "matrix.png").stat().st_size > 10_000
