@@ -10,7 +10,6 @@ Without ``--pyargs compare`` or a file of this package the plugin is inactive an
 
 from __future__ import annotations
 
-import shlex
 from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
@@ -63,6 +62,14 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         help="Studies to measure: all, or only those that take seconds (default: full)",
     )
     group.addoption(
+        "--seed",
+        dest="friction_discs_seed",
+        type=int,
+        metavar="N",
+        help="Seed of the units of mass, length and time in which an engine receives its motions, drawn for each "
+        "system over three decades (default: 1 for --level quick, else SI units)",
+    )
+    group.addoption(
         "--study",
         dest="friction_discs_studies",
         action="append",
@@ -111,6 +118,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not _engines(config):
         return
     from compare.engines import known_name
+    from compare.run.runner import seed_of
     from compare.studies import studies
 
     limit = config.getoption("friction_discs_limit")
@@ -122,7 +130,8 @@ def pytest_configure(config: pytest.Config) -> None:
         studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
-    config.stash[_BENCH] = Bench(limit)
+    level, seed = (config.getoption(f"friction_discs_{name}") for name in ("level", "seed"))
+    config.stash[_BENCH] = Bench(limit, seed_of(level, seed))
     config.pluginmanager.register(config.stash[_BENCH])
 
 
@@ -219,11 +228,14 @@ class ClaimTest(pytest.Item):
             pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
-            pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS], self.engine), pytrace=False)
+            pytest.fail(self._account(verdicts[Verdict.DIFFERS]), pytrace=False)
         if Verdict.INCONCLUSIVE in verdicts:
-            self._without_verdict(
-                INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE], self.engine)
-            )
+            self._without_verdict(INCONCLUSIVE, self._account(verdicts[Verdict.INCONCLUSIVE]))
+
+    def _account(self, claim: Claim) -> str:
+        from compare.report.page import command
+
+        return _account(claim, command(self.study.name, self.engine, self.config.stash[_BENCH].seed))
 
     def _asked_with(self) -> tuple[str, ...]:
         """Return the parts of the study that this run selects, including by -k, -m or node ids."""
@@ -243,9 +255,10 @@ class Bench:
     It is also a plugin that counts the results of each engine, including those from other processes.
     """
 
-    def __init__(self, limit: float) -> None:
+    def __init__(self, limit: float, seed: int | None) -> None:
         from compare.run.workers import Workers
 
+        self.seed = seed
         self._workers = Workers(1, limit)
         self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
         self.counts: Counter[tuple[str, str]] = Counter()
@@ -256,7 +269,7 @@ class Bench:
 
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, owner=engine)
+            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, self.seed, owner=engine)
         return self._outcomes[key]
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -272,7 +285,7 @@ class Bench:
 _BENCH = pytest.StashKey[Bench]()
 
 
-def _account(study: Study, claim: Claim, engine: str) -> str:
+def _account(claim: Claim, again: str) -> str:
     """Return a description of a claim: the deciding numbers, and the parameters and command that repeat it."""
     from compare.claims.claim import Verdict
     from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
@@ -282,7 +295,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
         "source": claim.source,
         "note": claim.note,
-        "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
+        "again": again,
     }
     if claim.answers:
         first = f"{in_short(claim)} hold, {answers_text(element.numerical)} undecided"

@@ -24,6 +24,7 @@ from compare.cli.options import (
     Folder,
     Jobs,
     Resume,
+    Seed,
     check_folder,
     chosen_from,
     cores,
@@ -106,6 +107,7 @@ def report(
     claim: OneClaim = None,
     engine: Engines = None,
     level: Level = "full",
+    seed: Seed = None,
     study_limit: Limit = None,
     min_conclusive: LeastConclusive = 1,
     output: Folder = Path("report"),
@@ -132,13 +134,14 @@ def report(
       friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.claims.errata import ERRATA
-    from compare.run.runner import loaded, run
+    from compare.run.runner import loaded, run, seed_of
     from compare.run.workers import Workers
 
     studies = _requested_studies(context, names or [], claim, level, resume)
     output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
     with refused(), Workers() as workers:
-        chosen = loaded(engine or [], workers)
+        seed = seed_of(level, seed)
+        chosen = tuple(replace(one, seed=seed) for one in loaded(engine or [], workers))
         check_folder(output)
         check_folder(store := store_of(output))
 
