@@ -10,29 +10,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import ROUNDING, TRUTH
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
+from compare.diagnosis.ladder import HALVED, RUNGS, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
-from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
+from compare.engines import USUAL_TOLERANCE, Engine
 from compare.foreign import CASES, Quantity
 from reference_model import simulate
 from reference_model.systems import FloatArray
-
-# --- Convergence of a quantity at successively smaller tolerances or steps.
-
-RUNGS = 4
-"""Number of rungs of a ladder, the same for every engine and machine."""
-
-HALVED = 2.0
-"""Ratio of fixed steps from rung to rung."""
-
-SAFETY = 3.0
-"""Ratio of the error estimate to the last change: three times the error for first order and halved steps."""
-
 
 PER_STEP = 0.2
 """Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
@@ -45,40 +33,6 @@ HELD = 0.05
 
 MOST_HELD, BISECTIONS = 32.0, 20
 """Largest load over μN that is tried on blocks at rest, and the number of bisections."""
-
-
-def tolerances(engine: Engine) -> FloatArray:
-    """Return the tolerances of the rungs in descending order, shape (RUNGS,); the last one is the default."""
-    factor = COARSENING if engine.step is None else HALVED**engine.root
-    return USUAL_TOLERANCE * factor ** np.arange(RUNGS - 1, -1, -1.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Ladder:
-    """Values of one quantity at each rung, shape (RUNGS, ...)."""
-
-    values: FloatArray
-
-    @classmethod
-    def of(cls, engine: Engine, question: Callable[[float], ArrayLike]) -> Ladder:
-        """Evaluate ``question(tolerance)`` at each rung."""
-        return cls(np.array([question(tolerance) for tolerance in tolerances(engine).tolist()], dtype=float))
-
-    @property
-    def finest(self) -> FloatArray:
-        """Value at the finest rung, shape (...)."""
-        return np.asarray(self.values[-1])
-
-    @property
-    def error(self) -> FloatArray:
-        """Estimated distance of the finest value from the limit, shape (...), at least rounding error."""
-        change = np.max(np.abs(np.diff(self.values[-3:], axis=0)), axis=0)
-        return np.asarray(SAFETY * change + ROUNDING * np.max(np.abs(self.finest), initial=0.0))
-
-
-def step_ratio(engine: Engine) -> float:
-    """Return the ratio of steps from rung to rung, or of tolerances if the step is not fixed."""
-    return COARSENING if engine.step is None else HALVED
 
 
 # --- The parts and their results.
@@ -249,7 +203,7 @@ def friction(engine: Engine) -> Friction:
         per_step = float(sizes[-1]) * engine.step_at(float(tolerances(engine)[-1]))
         values[..., probes.FORCE] *= (sizes[-1] / sizes)[:, None, None]
     error = float(np.max(Ladder(values).error[:, probes.FORCE]))
-    found = fitted(values[-1, :, :4], error + float(np.max(_noise(engine, pushes))))
+    found = fitted(values[-1, :, :4], error + float(np.max(values[-1, :, probes.NOISE])))
     return replace(found, per_step=per_step)
 
 
@@ -257,20 +211,6 @@ def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
     """Return the slides at each rung, with twice as many intervals from rung to rung."""
     rungs = enumerate(tolerances(engine).tolist())
     return Ladder(np.array([probes.slides(engine, pushes, it, probes.FEWEST_PANELS << i) for i, it in rungs]))
-
-
-def _noise(engine: Engine, pushes: Sequence[probes.Push]) -> FloatArray:
-    """Return the error of the forces over μN from the precision that the engine declares, shape (n,)."""
-    return np.array(
-        [
-            3.0
-            * engine.precision
-            * push.system.mass
-            * abs(push.velocity)
-            / (push.system.friction_force * push.lasts)
-            for push in pushes
-        ]
-    )
 
 
 def scales(engine: Engine) -> Scales:
@@ -283,25 +223,14 @@ def scales(engine: Engine) -> Scales:
     finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
     error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)
     error += SAFETY * np.max(np.hypot(changes[..., 2], changes[..., 3]), axis=0)
-    systems = [push.system for push in pushes]
     return Scales(
-        np.array(
-            [
-                (one.mass, one.friction_force, speed, one.disc_speed, abs(push.place))
-                for one, speed, push in zip(systems, finest[:, probes.SLIP_SPEED], pushes, strict=True)
-            ]
-        ),
+        finest[:, probes.CONDITIONS],
         finest[:, probes.FORCE],
         ladder.values[-2, :, probes.FORCE],
         finest[:, probes.SLIP],
         finest[:, probes.RADIAL],
-        error + _noise(engine, pushes) + ROUNDING,
-        np.array(
-            [
-                (abs(push.velocity), kept * abs(push.velocity))
-                for push, kept in zip(pushes, finest[:, probes.KEPT], strict=True)
-            ]
-        ),
+        error + finest[:, probes.NOISE] + ROUNDING,
+        finest[:, probes.BEGUN],
     )
 
 
@@ -421,13 +350,6 @@ def _plane(numbers: np.ndarray) -> FloatArray:
 
 def _largest(vectors: FloatArray) -> float:
     return float(np.max(np.hypot(*vectors.T)))
-
-
-def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
-    """Return the order from the last two of ``sizes`` and the ``ratio`` of their steps; NaN if undefined."""
-    if len(sizes) < 2 or not (0.0 < sizes[-2] < math.inf and 0.0 < sizes[-1] < math.inf):
-        return math.nan
-    return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
 
 
 PROBES: dict[str, type[Any]] = {

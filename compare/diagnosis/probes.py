@@ -125,18 +125,27 @@ def _within(ends: tuple[float, float], level: float) -> float:
     return float(ends[0] * (ends[1] / ends[0]) ** level)
 
 
-FORCE, SLIP, RADIAL, SLIP_SPEED, LEFT, KEPT = slice(0, 2), slice(2, 4), slice(4, 6), 6, 7, 8
+FORCE, SLIP, RADIAL, CONDITIONS, BEGUN, NOISE, LEFT = (
+    slice(0, 2),
+    slice(2, 4),
+    slice(4, 6),
+    slice(6, 11),
+    slice(11, 13),
+    13,
+    14,
+)
 """Columns of ``slides``."""
 
 
 def slides(
     engine: Engine, pushes: Sequence[Push], tolerance: float, panels: int = FEWEST_PANELS
 ) -> FloatArray:
-    """Return, for each slide, the numbers in the columns above, shape (n, 9).
+    """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
-    They are the mean friction force over μN, the mean directions of slip and of the place, the mean slip speed in
-    m/s, the smallest slip over the first, and the initial speed over the given one. This initial speed follows from
-    speed and force when the measurement begins.
+    They are the mean friction force over μN, the mean directions of slip and of the place, and the conditions: mass,
+    load, mean slip speed, disc speed and distance from the axis. The speeds in m/s are the given initial one, and the
+    one that follows from speed and force when the measurement begins. The last two are the error of the force due to
+    the declared precision, and the smallest slip over the first.
     """
     motions = [(push.system, push.start, push.times(panels)) for push in pushes]
     runs = engine.simulate_many(motions, tolerance=tolerance)
@@ -150,11 +159,13 @@ def slides(
         mean, radial = (
             simpson(one / np.maximum(np.abs(one), 1e-300), x=times) / push.lasts for one in (slip, z)
         )
-        first = abs(push.velocity - 1j * system.disc_speed * push.place)
         begun = v[0] - force * system.friction_force / system.mass * SETTLES_FOR
-        left, kept = np.min(np.abs(slip)) / first, abs(begun) / abs(push.velocity)
         vectors = (part for one in (force, mean, radial) for part in (one.real, one.imag))
-        found.append([*vectors, np.mean(np.abs(slip)), left, kept])
+        speed, slips = abs(push.velocity), np.abs(slip)
+        noise = 3.0 * engine.precision * system.mass * speed / (system.friction_force * push.lasts)
+        left = np.min(slips) / abs(push.velocity - 1j * system.disc_speed * push.place)
+        conditions = system.mass, system.friction_force, np.mean(slips), system.disc_speed, abs(push.place)
+        found.append([*vectors, *conditions, speed, abs(begun), noise, left])
     return np.array(found)
 
 

@@ -11,7 +11,8 @@ from faults.catalogue import SOUND, made, mistaken
 from stepping import box, chattering, cone, engine, pyramid, stepped, weaker_along_y
 
 from compare.diagnosis import findings, run
-from compare.diagnosis.findings import MOTIONS, PROBES, RUNGS, Ladder, Motion, motion, tolerances
+from compare.diagnosis.findings import MOTIONS, PROBES, Motion, motion
+from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
 from compare.diagnosis.laws import CONE, Friction, fitted
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
@@ -101,11 +102,11 @@ NAMED = {
     ),
     "100 times too much": (
         engine("strong", limit=lambda *_: 100.0),
-        f"{LAW}the coefficient μ is 100 times as large as it should be",
+        f"{LAW}the coefficient μ is 100 times the right one",
     ),
     "box 100 times too large": (
         engine("strong box", law=box, limit=lambda *_: 100.0),
-        f"{LAW}friction is a box with a separate limit for each axis, but the coefficient μ is 100 times as large",
+        f"{LAW}friction is a box with a separate limit for each axis, but the coefficient μ is 100 times the right",
     ),
     "impulse per step": (
         engine("per step", limit=lambda system, speed, step: 1.0 / step),
@@ -141,9 +142,9 @@ NAMED = {
     ),
     "spring pushes": (
         engine("spring", spring=-1.0),
-        "Wrong motion: the spring force is negative, -1 times the right one.",
+        "Wrong motion: the spring force is -1 times the right one.",
     ),
-    "lever": (made("lever", moment=0.99), "Wrong motion: the friction moment on a disc is 0.99"),
+    "lever": (made("lever", moment=0.99), "Wrong motion: the friction moment on a disc is 1.0 % too small."),
 }
 
 
@@ -188,7 +189,7 @@ def test_an_unknown_law_is_described_by_its_largest_deviation():
 
 def test_chatter_that_falls_with_the_step_is_named_but_not_wrong():
     row, found = sentences(engine("explicit", law=chattering))
-    assert "Friction chatters: a block that should rest moves to and fro at " in found
+    assert "Friction chatters: a block that should rest swings at " in found
     assert "m/s, decreasing with the step." in found
     assert row.verdict == RIGHT_VERDICT
 

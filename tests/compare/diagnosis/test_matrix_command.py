@@ -7,6 +7,7 @@ import pytest
 
 from compare.cli import app as cli
 from compare.diagnosis import findings
+from compare.diagnosis.ladder import falling
 
 BLOCKS = """
 import functools, math
@@ -59,4 +60,4 @@ def test_probes_come_first_among_the_parts():
     from compare.engines import reference
 
     assert list(findings.parts_of(reference))[: len(findings.PROBES)] == list(findings.PROBES)
-    assert math.isnan(findings.falling([1.0], 2.0))
+    assert math.isnan(falling([1.0], 2.0))
