@@ -122,11 +122,13 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
     grows = sizes[wrong] > GROWS * before[wrong]
     falls = bool(np.all(sizes[wrong] < law.strength) and np.median(grows))
     sizes, blocks = ratios.real, conditions[:, DISC_SPEED] == 0.0
-    text = (
-        _power(conditions[blocks], sizes[blocks])
-        or _of_speed(conditions[blocks], sizes[blocks], errors[blocks])
-        or _thresholds(conditions, sizes, wrong)
-    )
+    text = _thresholds(conditions, sizes, wrong)
+    if np.any(wrong & blocks):
+        text = (
+            _power(conditions[blocks], sizes[blocks])
+            or _of_speed(conditions[blocks], sizes[blocks], errors[blocks])
+            or text
+        )
     if text:
         return Deviation(text, True, falls)
     worst = int(np.argmax(off / allowed))
@@ -140,7 +142,8 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
         if off[worst] < 0.1
         else f"is {sizes[worst]:.3g} times μN"
     )
-    return Deviation(f"the friction force {size} at {at}", False, falls)
+    where = "" if np.any(wrong & blocks) else "on turntables only, "
+    return Deviation(f"{where}the friction force {size} at {at}", False, falls)
 
 
 def blind(scales: Scales) -> str:
@@ -193,7 +196,7 @@ def _of_speed(conditions: FloatArray, sizes: FloatArray, errors: FloatArray) -> 
     if name in regularised:
         return f"friction is regularised as {name} with ε = {error_text(scale)} m/s"
     if name in RISING:
-        law = f"{base:.4g} + {more / scale:.3g}·v/(m/s)"
+        law = f"{base:.4g} {'+' if more > 0.0 else '−'} {abs(more) / scale:.3g}·v/(m/s)"
         return f"the coefficient μ depends on the slip speed v, as {law} times its value"
     return (
         "the coefficient μ falls with the slip speed (Stribeck), "

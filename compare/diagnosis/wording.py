@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.diagnosis.findings import Creep, History, Lag, Moments, Motion, Repeat, Support
+from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Moments, Motion, Repeat, Support
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import SPEED, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
@@ -128,7 +128,9 @@ def _deviations(law: Friction) -> list[str]:
     least = max(DISTINCT * law.error, LEAST_DEVIATION, law.misfit)
     if abs(law.strength - 1.0) > least:
         found.append(f"the coefficient μ is {size_text(law.strength, law.error)}")
-    if abs(law.angle) > least:
+    if abs(abs(law.angle) - math.pi) < least:
+        found.append("friction accelerates the slip")
+    elif abs(law.angle) > least:
         found.append(
             f"the friction force is rotated by {error_text(math.degrees(law.angle))}° "
             f"(±{error_text(math.degrees(law.error))}°)"
@@ -161,7 +163,9 @@ def of_history(history: History, explained: bool) -> Iterator[Remark]:
     allowed = 2.0 * history.delay_error + history.second_delay_error + SAME_DELAY * once
     if explained:
         return
-    if history.static > 1.0:
+    if history.static > 0.9 * MOST_HELD:
+        yield Remark(f"A block at rest is not released by {history.static:.0f} times the limit μN.", True)
+    elif history.static > 1.0:
         yield Remark(
             f"Static friction is {error_text(100.0 * (history.static - 1.0))} % above sliding friction.", True
         )

@@ -100,6 +100,18 @@ NAMED = {
         engine("static", static=1.05),
         f"{LAW}static friction is 5.0 % above sliding friction.",
     ),
+    "never released": (
+        engine("stuck", static=1e9),
+        f"{LAW}a block at rest is not released by 32 times the limit μN.",
+    ),
+    "backwards": (
+        engine("backwards", law=functools.partial(cone, factor=-1.0)),
+        f"{LAW}friction accelerates the slip",
+    ),
+    "absolute velocity": (
+        made("absolute", relative=0.0),
+        f"{LAW}on turntables only, the friction force ",
+    ),
     "100 times too much": (
         engine("strong", limit=lambda *_: 100.0),
         f"{LAW}the coefficient μ is 100 times the right one",
