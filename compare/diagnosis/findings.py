@@ -113,16 +113,12 @@ class History:
 
 
 @dataclass(frozen=True)
-class Support:
-    """Forces of ``probes.SUPPORTS`` over the exact ones, and their errors, shape (3,)."""
+class Shares:
+    """Forces over the exact ones, and their errors.
 
-    shares: FloatArray
-    errors: FloatArray
-
-
-@dataclass(frozen=True)
-class Moments:
-    """Force and moment on a disc over the exact ones, and their errors, shape (n, 2); NaN where there is none."""
+    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2); NaN where there is
+    none.
+    """
 
     shares: FloatArray
     errors: FloatArray
@@ -190,7 +186,7 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Scales | Creep | History | Support | Lag | Moments | Repeat | Motion
+Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
 
 
 def friction(engine: Engine) -> Friction:
@@ -288,14 +284,14 @@ def _held(engine: Engine, pulls: Sequence[float]) -> float:
     return least
 
 
-def support(engine: Engine) -> Support:
+def support(engine: Engine) -> Shares:
     """Return the forces of spring, damper and offset without friction."""
     ladder = Ladder.of(engine, functools.partial(probes.supports, engine))
     noise = SAFETY * engine.precision / (probes.SLIDES_FOR - probes.SETTLES_FOR)
-    return Support(ladder.finest, ladder.error + noise)
+    return Shares(ladder.finest, ladder.error + noise)
 
 
-def moments(engine: Engine) -> Moments:
+def moments(engine: Engine) -> Shares:
     """Return force and moment on the discs that the engine simulates, on a ring and on points."""
     kinds = [points for points in (None, 6) if engine.simulates(probes.discs(points)[0][0])]
     ladder = Ladder.of(
@@ -303,7 +299,7 @@ def moments(engine: Engine) -> Moments:
     )
     changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)
     noise = SAFETY * engine.precision * probes.SPEED / (probes.FRICTION * probes.SLIDES_FOR)
-    return Moments(ladder.finest, SAFETY * changes + noise)
+    return Shares(ladder.finest, SAFETY * changes + noise)
 
 
 def repeat(engine: Engine) -> Repeat:
@@ -357,10 +353,10 @@ PROBES: dict[str, type[Any]] = {
     "scales": Scales,
     "creep": Creep,
     "history": History,
-    "support": Support,
+    "support": Shares,
     "repeat": Repeat,
     "lag": Lag,
-    "moments": Moments,
+    "moments": Shares,
 }
 """Parts that identify the friction law, and their results."""
 

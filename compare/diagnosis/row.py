@@ -14,7 +14,7 @@ import numpy as np
 
 from compare.claims.as_json import as_json
 from compare.diagnosis import wording
-from compare.diagnosis.findings import MOTIONS, Creep, History, Lag, Moments, Motion, Repeat, Support
+from compare.diagnosis.findings import MOTIONS, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.laws import DISTINCT, Friction
 from compare.diagnosis.probes import HEADINGS
@@ -58,10 +58,10 @@ class Row:
     scales: Scales | None = None
     creep: Creep | None = None
     history: History | None = None
-    support: Support | None = None
+    support: Shares | None = None
     repeat: Repeat | None = None
     lag: Lag | None = None
-    moments: Moments | None = None
+    moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)
     not_simulated: tuple[str, ...] = ()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Moments, Motion, Repeat, Support
+from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
 from compare.diagnosis.probes import SPEED, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
@@ -180,7 +180,7 @@ def of_history(history: History, explained: bool) -> Iterator[Remark]:
         )
 
 
-def of_support(support: Support) -> list[Remark]:
+def of_support(support: Shares) -> list[Remark]:
     """Return the forces of the support that are wrong; an equal factor of all is that of the mass."""
     off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
     farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
@@ -203,7 +203,7 @@ def of_repeat(repeat: Repeat | None) -> list[Remark]:
     return [Remark(f"{text}, more than the declared precision of {repeat.declared:g}; declare it.", None)]
 
 
-def of_moments(moments: Moments, law: Friction | None) -> Iterator[Remark]:
+def of_moments(moments: Shares, law: Friction | None) -> Iterator[Remark]:
     """Yield the errors of force and moment on discs that are not those of the law."""
     least = LEAST_SHARE
     if law is not None:
