@@ -25,7 +25,7 @@ from reference_model.systems import FloatArray
 PER_STEP = 0.2
 """Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
 
-SAME = 0.5
+SAME = 0.8
 """Least ratio of the creep at any rung to the largest, for creep that is the same at all rungs."""
 
 HELD = 0.05

@@ -170,18 +170,14 @@ def slides(
 
 
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
-    """Return the slides with loads so small that friction removes little of the slip.
-
-    A slide whose slip does not depend on the load, such as that of an engine with a largest speed, keeps its load.
-    """
-    found, tried = list(pushes), dict(enumerate(pushes))
-    for power in range(MOST_WEAKER + 1):
-        weaker = {i: pushes[i].weaker(WEAKER**power) for i in tried}
-        left = slides(engine, list(weaker.values()), tolerance)[:, LEFT]
-        enough = dict(zip(weaker, left >= 1.0 - SPENT, strict=True))
-        found = [weaker[i] if enough.get(i) else push for i, push in enumerate(found)]
-        tried = {i: push for i, push in weaker.items() if not enough[i]}
-        if not tried:
+    """Return the slides with loads so small that friction removes little of the slip, if there are such loads."""
+    found, saturated = list(pushes), list(range(len(pushes)))
+    for _ in range(MOST_WEAKER):
+        left = slides(engine, [found[i] for i in saturated], tolerance)[:, LEFT]
+        saturated = [i for i, share in zip(saturated, left, strict=True) if share < 1.0 - SPENT]
+        for i in saturated:
+            found[i] = found[i].weaker(WEAKER)
+        if not saturated:
             break
     return found
 

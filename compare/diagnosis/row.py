@@ -17,9 +17,9 @@ from compare.diagnosis import wording
 from compare.diagnosis.findings import MOTIONS, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.laws import DISTINCT, Friction
-from compare.diagnosis.probes import HEADINGS
+from compare.diagnosis.probes import HEADINGS, SPEED
 from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, speed_limit
-from compare.diagnosis.wording import LEAST_LAG, MASS, MOTION, Remark, sentence
+from compare.diagnosis.wording import LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -81,9 +81,10 @@ class Row:
         if law is None or law.coulomb:
             explained = any(remark.wrong for remark in found)
             if self.creep is not None and not (self.scales is not None and blind(self.scales)):
-                found += wording.of_creep(self.creep, self._refined)
+                found += wording.of_creep(self.creep, self._refined, self._least_speed)
             if self.history is not None and support_right:
-                found += wording.of_history(self.history, explained or any(remark.wrong for remark in found))
+                explained = explained or any(remark.wrong for remark in found)
+                found += wording.of_history(self.history, explained, self._least_speed)
             if self.lag is not None and not explained:
                 found += wording.of_lag(self.lag, self.step, self._least_lag)
             if self.moments is not None and support_right:
@@ -137,6 +138,12 @@ class Row:
     def _refined(self) -> str:
         """Quantity that decreases from rung to rung: "tolerance" or "step"."""
         return "tolerance" if math.isnan(self.step) else "step"
+
+    @property
+    def _least_speed(self) -> float:
+        """Speed in m/s below which a block is at rest: that of an exact engine, or of noise in the states."""
+        noise = max(self.repeat.difference, self.repeat.declared) if self.repeat is not None else 0.0
+        return (RESTS + noise) * SPEED
 
     @property
     def _least_lag(self) -> float:

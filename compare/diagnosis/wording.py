@@ -10,7 +10,7 @@ import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import SPEED, SUPPORTS
+from compare.diagnosis.probes import SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 
@@ -138,10 +138,10 @@ def _deviations(law: Friction) -> list[str]:
     return found
 
 
-def of_creep(creep: Creep, refined: str) -> Iterator[Remark]:
-    """Yield whether a block that should rest creeps or chatters."""
-    chatters = creep.chatter > max(RESTS * SPEED, CHATTERS * abs(creep.speed))
-    if not chatters and abs(creep.speed) < RESTS * SPEED:
+def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
+    """Yield whether a block that should rest creeps or chatters, faster than ``least`` m/s."""
+    chatters = creep.chatter > max(least, CHATTERS * abs(creep.speed))
+    if not chatters and abs(creep.speed) < least:
         yield Remark("A block loaded below μN stays at rest.", False)
         return
     falls = (creep.chatter_order if chatters else creep.order) > FALLS
@@ -157,7 +157,7 @@ def of_creep(creep: Creep, refined: str) -> Iterator[Remark]:
     yield Remark(sentence(text), not falls)
 
 
-def of_history(history: History, explained: bool) -> Iterator[Remark]:
+def of_history(history: History, explained: bool, least: float) -> Iterator[Remark]:
     """Yield how friction depends on the motion before; ``explained`` if another finding may be the reason."""
     once, twice = history.delay, history.second_delay
     allowed = 2.0 * history.delay_error + history.second_delay_error + SAME_DELAY * once
@@ -173,7 +173,7 @@ def of_history(history: History, explained: bool) -> Iterator[Remark]:
         yield Remark(f"A block is released {error_text(1e3 * history.delay)} ms late.", True)
     elif abs(history.second - 1.0) > max(DISTINCT * history.second_error, LEAST_SHARE):
         yield Remark(f"The way of a block after a second release is {size_text(history.second)}.", True)
-    if history.rest > RESTS * SPEED:
+    if history.rest > least:
         yield Remark(
             f"A block at rest after a slide, or close to its release, creeps at {error_text(history.rest)} m/s.",
             True,
