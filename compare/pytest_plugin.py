@@ -2,15 +2,14 @@
 
 Each study is a file and each of its claim sentences a test, collected without measuring. The first test of a study
 measures the whole study in a separate process with a time limit. A test fails if the claim differs or the engine has
-no answer. Claims that the engine does not support are "not attempted", and claims that its errors leave open are
-"inconclusive"; neither is a pass.
+no answer. Claims that the engine does not support are "not attempted", claims that its errors leave open are
+"inconclusive", and claims that exceed the time limit are "not finished"; none of these is a pass.
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
 """
 
 from __future__ import annotations
 
-import shlex
 from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
@@ -28,15 +27,15 @@ STUDIES = Path(__file__).with_name("studies")
 
 STUDY_MODULES = "compare.studies"
 
-INCONCLUSIVE, NOT_ATTEMPTED = "inconclusive", "not attempted"
+INCONCLUSIVE, NOT_ATTEMPTED, NOT_FINISHED = "inconclusive", "not attempted", "not finished"
 
-NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-"}
+NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-", NOT_FINISHED: "t"}
 """Names of tests without a verdict in pytest's totals, and their progress characters."""
 
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
-"""Exit statuses in addition to those of pytest: too few claims pass; an engine has no verdict."""
+"""Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -61,6 +60,14 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         choices=("quick", "full"),
         default="full",
         help="Studies to measure: all, or only those that take seconds (default: full)",
+    )
+    group.addoption(
+        "--seed",
+        dest="friction_discs_seed",
+        type=int,
+        metavar="N",
+        help="Seed of the units of mass, length and time in which an engine receives its motions, drawn for each "
+        "system over three decades (default: 1 for --level quick, else SI units)",
     )
     group.addoption(
         "--study",
@@ -111,6 +118,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not _engines(config):
         return
     from compare.engines import known_name
+    from compare.run.runner import seed_of
     from compare.studies import studies
 
     limit = config.getoption("friction_discs_limit")
@@ -122,7 +130,8 @@ def pytest_configure(config: pytest.Config) -> None:
         studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
-    config.stash[_BENCH] = Bench(limit)
+    level, seed = (config.getoption(f"friction_discs_{name}") for name in ("level", "seed"))
+    config.stash[_BENCH] = Bench(limit, seed_of(level, seed))
     config.pluginmanager.register(config.stash[_BENCH])
 
 
@@ -206,6 +215,8 @@ class ClaimTest(pytest.Item):
         from compare.run.workers import Failure
 
         outcome = self.config.stash[_BENCH].outcome(self.study, self.engine, self._asked_with())
+        if isinstance(outcome, Failure) and outcome.unfinished:
+            self._without_verdict(NOT_FINISHED, outcome.reason)
         if isinstance(outcome, Failure):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
@@ -217,11 +228,14 @@ class ClaimTest(pytest.Item):
             pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:
-            pytest.fail(_account(self.study, verdicts[Verdict.DIFFERS], self.engine), pytrace=False)
+            pytest.fail(self._account(verdicts[Verdict.DIFFERS]), pytrace=False)
         if Verdict.INCONCLUSIVE in verdicts:
-            self._without_verdict(
-                INCONCLUSIVE, _account(self.study, verdicts[Verdict.INCONCLUSIVE], self.engine)
-            )
+            self._without_verdict(INCONCLUSIVE, self._account(verdicts[Verdict.INCONCLUSIVE]))
+
+    def _account(self, claim: Claim) -> str:
+        from compare.report.page import command
+
+        return _account(claim, command(self.study.name, self.engine, self.config.stash[_BENCH].seed))
 
     def _asked_with(self) -> tuple[str, ...]:
         """Return the parts of the study that this run selects, including by -k, -m or node ids."""
@@ -241,9 +255,10 @@ class Bench:
     It is also a plugin that counts the results of each engine, including those from other processes.
     """
 
-    def __init__(self, limit: float) -> None:
+    def __init__(self, limit: float, seed: int | None) -> None:
         from compare.run.workers import Workers
 
+        self.seed = seed
         self._workers = Workers(1, limit)
         self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
         self.counts: Counter[tuple[str, str]] = Counter()
@@ -254,7 +269,7 @@ class Bench:
 
         key = (study.name, engine)
         if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, owner=engine)
+            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, self.seed, owner=engine)
         return self._outcomes[key]
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
@@ -270,7 +285,7 @@ class Bench:
 _BENCH = pytest.StashKey[Bench]()
 
 
-def _account(study: Study, claim: Claim, engine: str) -> str:
+def _account(claim: Claim, again: str) -> str:
     """Return a description of a claim: the deciding numbers, and the parameters and command that repeat it."""
     from compare.claims.claim import Verdict
     from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
@@ -280,7 +295,7 @@ def _account(study: Study, claim: Claim, engine: str) -> str:
         "parameters": ", ".join(f"{name} = {value}" for name, value in claim.parameters.items()),
         "source": claim.source,
         "note": claim.note,
-        "again": f"friction-discs report {study.name} --engine {shlex.quote(engine)}",
+        "again": again,
     }
     if claim.answers:
         first = f"{in_short(claim)} hold, {answers_text(element.numerical)} undecided"
@@ -332,12 +347,14 @@ def _why_none(report: pytest.TestReport) -> str:
 
 @pytest.hookimpl(trylast=True)
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    """Set exit status 7 if an engine has no verdict, or 6 if too few claims pass."""
+    """Set exit status 7 if an engine has no verdict, or 6 if claims are not finished or too few pass."""
     config, names = session.config, _engines(session.config)
     if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return
     counts = config.stash[_BENCH].counts
-    if any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
+    if any(counts[name, NOT_FINISHED] for name in names):
+        session.exitstatus = NOTHING_SHOWN
+    elif any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):
         session.exitstatus = NOTHING_MEASURED
     elif sum(counts[name, "passed"] for name in names) < config.getoption("friction_discs_least"):
         session.exitstatus = NOTHING_SHOWN

@@ -12,6 +12,7 @@ from compare.cli.command import (
     FINE,
     INTERRUPTED,
     NOTHING_MEASURED,
+    NOTHING_SHOWN,
     SOMETHING_DIFFERS,
     measurements,
     printing,
@@ -50,11 +51,13 @@ def matrix(
 ) -> int:
     """Identify the friction laws of engines and their convergence.
 
-    Three tests with blocks (sliding, pulled, slip that turns) identify the law within seconds. The motions of the
-    recorded engines follow, each with four steps or tolerances. The command prints findings for each engine and a
-    table. It writes matrix.json after each row, then matrix.svg and matrix.png.
+    Short motions identify the law within seconds: blocks and discs that slide at many masses, loads and speeds, and
+    blocks that are pulled from rest. The motions of the recorded engines follow. All have four steps or tolerances.
+    The command prints findings for each engine, with the verdict first, and a table. It writes matrix.json after each
+    row, then matrix.png, and friction.png with the measured forces if a law is wrong, both also as svg.
 
-    The exit status is 0 if all errors vanish with smaller steps, and 1 otherwise. It is 2 for bad input, 4 if an
+    The exit status is 0 if an engine is right, which includes errors that vanish with smaller steps, and 1 if it is
+    wrong. It is 2 for bad input, and 3 if the verdict is open or a part was not finished in time. It is 4 if an
     engine simulates none of these motions, and 130 after Ctrl-C.
 
     \b
@@ -69,7 +72,7 @@ def matrix(
         chosen = loaded(engine or [], workers)
         check_folder(output)
 
-    from compare.diagnosis.row import write_picture, write_rows
+    from compare.diagnosis.row import UNDECIDED, write_pictures, write_rows
     from compare.diagnosis.run import diagnosed, recorded_rows
 
     rows: list[Row] = list(recorded_rows()) if recorded else []
@@ -84,11 +87,11 @@ def matrix(
     except KeyboardInterrupt:
         done = len(rows) - others
         return say(f"Interrupted; {done} of {len(chosen)} rows were written to {output}.", INTERRUPTED)
-    write_picture(rows, output)
+    pictures = write_pictures(rows, output)
     with printing():
         _print_table(rows)
-        print(output / "matrix.png")
-    if any(row.wrong or row.gaps for row in rows[others:]):
+        print(*pictures, sep="\n")
+    if any(row.wrong for row in rows[others:]):
         return SOMETHING_DIFFERS
     empty = [row.engine for row in rows[others:] if row.empty]
     if empty:
@@ -96,7 +99,8 @@ def matrix(
             f"nothing was measured: none of these motions can be simulated by {', '.join(empty)}",
             NOTHING_MEASURED,
         )
-    return FINE
+    open_ = [row.engine for row in rows[others:] if row.verdict == UNDECIDED]
+    return say(f"undecided: {', '.join(open_)}", NOTHING_SHOWN) if open_ else FINE
 
 
 def _print_row(row: Row) -> None:

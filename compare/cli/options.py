@@ -177,6 +177,18 @@ def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
     return changes
 
 
+Seed = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N",
+        help="Seed of the units of mass, length and time, drawn for each system over three decades. Engines receive "
+        "their motions in these units. Default: 1 for --level quick, else SI units.",
+        parser=whole("seed", 0, 1_000_000),
+        show_default=False,
+    ),
+]
+
+
 def studies_of(context: typer.Context, names: Sequence[str], level: str = "full") -> tuple[Study, ...]:
     """Return the named studies, or all of a level, from the studies passed to ``main`` or the paper's."""
     from compare.studies import STUDIES, studies

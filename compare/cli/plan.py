@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, measurements, printing, refused, say
-from compare.cli.options import Folder, Jobs, check_folder, cores, studies_of
+from compare.cli.options import Folder, Jobs, Seed, check_folder, cores, studies_of
 from compare.cli.report import Level
 
 Names = Annotated[
@@ -31,6 +31,7 @@ def plan(
     names: Names = None,
     kind: Kinds = None,
     level: Level = "full",
+    seed: Seed = None,
     output: Folder = Path("plan"),
     jobs: Jobs = None,
 ) -> int:
@@ -53,6 +54,7 @@ def plan(
         check_folder(output)
 
     from compare.run.plan import Planned, planned, write_plan
+    from compare.run.runner import seed_of
     from compare.run.workers import Failure, Workers
 
     for study in studies:
@@ -60,9 +62,10 @@ def plan(
             say(f"{study.name} applies only to {' and '.join(study.only)}; skipped", FINE)
     studies = tuple(study for study in studies if not study.only)
     found: dict[str, Planned | Failure] = {}
+    seed = seed_of(level, seed)
     with Workers(jobs or cores()) as workers, measurements() as progress:
         for study in sorted(studies, key=lambda study: -study.seconds):
-            workers.submit(study.name, planned, study, kinds)
+            workers.submit(study.name, planned, study, kinds, seed)
         for count, done in enumerate(workers.finished(), 1):
             found[str(done.key)] = done.value
             progress(count, len(studies), str(done.key))
@@ -83,6 +86,8 @@ def plan(
             print(
                 f"{name}: {len(one.motions)} motions for {one.claims} claims, {one.adaptive} claims left out"
             )
-        command = f"friction-discs report --engine files:{output}"
+        command = f"friction-discs report --engine files:{output}" + (
+            f" --seed {seed}" if seed is not None else ""
+        )
         print(f"{len(motions)} motions in {output}; judge the answers with {command}")
     return FINE if len(plans) == len(found) else SOMETHING_DIFFERS

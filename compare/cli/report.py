@@ -24,6 +24,7 @@ from compare.cli.options import (
     Folder,
     Jobs,
     Resume,
+    Seed,
     check_folder,
     chosen_from,
     cores,
@@ -116,6 +117,7 @@ def report(
     claim: OneClaim = None,
     engine: Engines = None,
     level: Level = "full",
+    seed: Seed = None,
     study_limit: Limit = None,
     min_conclusive: LeastConclusive = 1,
     output: Folder = Path("report"),
@@ -130,8 +132,9 @@ def report(
     --output.
 
     The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
-    if too few claims agree. It is 4 if an engine named with --engine has no verdict, or omits a claim without a
-    reason. It is 130 after Ctrl-C; the report then contains the finished measurements, and --resume completes it.
+    if too few claims agree or some were not finished in time. It is 4 if an engine named with --engine has no
+    verdict, or omits a claim without a reason. It is 130 after Ctrl-C; the report then contains the finished
+    measurements, and --resume completes it.
     --resume does not notice changes to data files of your own engine; then run the command without it.
 
     \b
@@ -142,14 +145,15 @@ def report(
       friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.claims.errata import ERRATA
-    from compare.run.runner import loaded, run
+    from compare.run.runner import loaded, run, seed_of
     from compare.run.workers import Workers
 
     _check_logs(data)
     studies = _requested_studies(context, names or [], claim, level, resume)
     output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
     with refused(), Workers() as workers:
-        chosen = loaded(engine or [], workers)
+        seed = seed_of(level, seed)
+        chosen = tuple(replace(one, seed=seed) for one in loaded(engine or [], workers))
         check_folder(output)
         check_folder(store := store_of(output))
 
@@ -254,6 +258,8 @@ def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collectio
     wrong = matrix.totals[State.DIFFERS] or matrix.totals[State.FAILED] or _failures(result)
     if wrong:
         return SOMETHING_DIFFERS
+    if unfinished := matrix.totals[State.MISSING]:
+        return say(f"{unfinished} claims were not finished within the time limit", NOTHING_SHOWN)
     if unexplained := "; ".join(_unexplained(result, matrix, named)):
         return say(unexplained, NOTHING_MEASURED)
     conclusive = matrix.totals[State.AGREES] - matrix.of_evidence("algebra")[State.AGREES]
@@ -291,7 +297,9 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
             line = f"{row.study.name} {column} {cell.state.value}"
             if cell.state is State.FAILED:
                 lines.append(f"{line}: {result.outcomes[row.study.name, column]}")
-            elif cell.state is State.NOT_SIMULATED:
+            elif cell.state is State.NOT_SIMULATED or (
+                cell.state is State.MISSING and not result.interrupted
+            ):
                 lines.append(f"{line}: {cell.reason}")
             elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
                 lines.append(f"{line}: {row.sentence}")

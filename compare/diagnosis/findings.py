@@ -10,61 +10,29 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from compare.claims.error_estimates import ROUNDING, TRUTH
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
+from compare.diagnosis.ladder import HALVED, RUNGS, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
-from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
+from compare.diagnosis.scaling import Scales
+from compare.engines import USUAL_TOLERANCE, Engine
 from compare.foreign import CASES, Quantity
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
-# --- Convergence of a quantity at successively smaller tolerances or steps.
+PER_STEP = 0.2
+"""Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
 
-RUNGS = 4
-"""Number of rungs of a ladder, the same for every engine and machine."""
+SAME = 0.8
+"""Least ratio of the creep at any rung to the largest, for creep that is the same at all rungs."""
 
-HALVED = 2.0
-"""Ratio of fixed steps from rung to rung."""
+HELD = 0.05
+"""Mean speed over a Coulomb block's, below which a block is held."""
 
-SAFETY = 3.0
-"""Ratio of the error estimate to the last change: three times the error for first order and halved steps."""
-
-
-def tolerances(engine: Engine) -> FloatArray:
-    """Return the tolerances of the rungs in descending order, shape (RUNGS,); the last one is the default."""
-    factor = COARSENING if engine.step is None else HALVED**engine.root
-    return USUAL_TOLERANCE * factor ** np.arange(RUNGS - 1, -1, -1.0)
-
-
-@dataclass(frozen=True, eq=False)
-class Ladder:
-    """Values of one quantity at each rung, shape (RUNGS, ...)."""
-
-    values: FloatArray
-
-    @classmethod
-    def of(cls, engine: Engine, question: Callable[[float], ArrayLike]) -> Ladder:
-        """Evaluate ``question(tolerance)`` at each rung."""
-        return cls(np.array([question(tolerance) for tolerance in tolerances(engine).tolist()], dtype=float))
-
-    @property
-    def finest(self) -> FloatArray:
-        """Value at the finest rung, shape (...)."""
-        return np.asarray(self.values[-1])
-
-    @property
-    def error(self) -> FloatArray:
-        """Estimated distance of the finest value from the limit, shape (...), at least rounding error."""
-        change = np.max(np.abs(np.diff(self.values[-3:], axis=0)), axis=0)
-        return np.asarray(SAFETY * change + ROUNDING * np.max(np.abs(self.finest), initial=0.0))
-
-
-def step_ratio(engine: Engine) -> float:
-    """Return the ratio of steps from rung to rung, or of tolerances if the step is not fixed."""
-    return COARSENING if engine.step is None else HALVED
+MOST_HELD, BISECTIONS = 32.0, 20
+"""Largest load over μN that is tried on blocks at rest, and the number of bisections."""
 
 
 # --- The parts and their results.
@@ -102,6 +70,10 @@ class Creep:
         Regularised friction law that explains the creep; "" if none does.
     epsilon : float
         Regularisation of that law in m/s, at the finest rung.
+    chatter : float
+        Largest deviation in m/s of the velocity from the creep, at the finest rung.
+    chatter_order : float
+        Order of ``chatter``.
 
     """
 
@@ -109,6 +81,59 @@ class Creep:
     order: float
     smoothing: str
     epsilon: float
+    chatter: float = 0.0
+    chatter_order: float = math.nan
+
+
+@dataclass(frozen=True)
+class History:
+    """Dependence of friction on the motion before.
+
+    Parameters
+    ----------
+    static : float
+        Largest load that friction holds from rest, over μN; 1 if it holds no load above μN.
+    second, second_error : float
+        Distance of a second release over the exact one, and its error.
+    delay, delay_error, second_delay, second_delay_error : float
+        Delay in s of the release from rest, and of the motion after two releases.
+    rest : float
+        Creep in m/s of a block close to release, or of one at rest after a slide; 0 if it depends on the rung.
+
+    """
+
+    static: float
+    second: float
+    second_error: float
+    delay: float
+    delay_error: float
+    second_delay: float
+    second_delay_error: float
+    rest: float
+
+
+@dataclass(frozen=True)
+class Shares:
+    """Forces over the exact ones, and their errors.
+
+    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2); NaN where there is
+    none.
+    """
+
+    shares: FloatArray
+    errors: FloatArray
+
+
+@dataclass(frozen=True)
+class Repeat:
+    """Difference between two equal calls, over the size of the states, and the precision that the engine declares.
+
+    ``deaf`` is True if a motion does not change with the tolerance or the step.
+    """
+
+    difference: float
+    declared: float
+    deaf: bool = False
 
 
 @dataclass(frozen=True)
@@ -161,22 +186,133 @@ class Motion:
         return self.estimate <= self.resolution
 
 
-Part = Friction | Creep | Lag | Motion
+Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
 
 
 def friction(engine: Engine) -> Friction:
     """Return the friction law that decelerates blocks on a plane at rest."""
-    ladder = Ladder.of(engine, functools.partial(probes.forces, engine))
-    noise = engine.precision * probes.SPEED * probes.SLIDE.mass / (probes.FRICTION * probes.SLIDES_FOR)
-    return fitted(ladder.finest, float(np.max(ladder.error[:, :2])) + noise)
+    pushes = probes.unsaturated(engine, probes.headings(), float(tolerances(engine)[0]))
+    values = _slides(engine, pushes).values.copy()
+    sizes = np.max(np.hypot(values[..., 0], values[..., 1]), axis=1)
+    per_step = math.nan
+    if engine.step is not None and abs(falling(sizes[[0, -1]], HALVED ** (RUNGS - 1)) + 1.0) < PER_STEP:
+        per_step = float(sizes[-1]) * engine.step_at(float(tolerances(engine)[-1]))
+        values[..., probes.FORCE] *= (sizes[-1] / sizes)[:, None, None]
+    error = float(np.max(Ladder(values).error[:, probes.FORCE]))
+    found = fitted(values[-1, :, :4], error + float(np.max(values[-1, :, probes.NOISE])))
+    return replace(found, per_step=per_step)
+
+
+def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
+    """Return the slides at each rung, with twice as many intervals from rung to rung."""
+    rungs = enumerate(tolerances(engine).tolist())
+    return Ladder(np.array([probes.slides(engine, pushes, it, probes.FEWEST_PANELS << i) for i, it in rungs]))
+
+
+def scales(engine: Engine) -> Scales:
+    """Return friction forces over wide ranges of mass, load, speed and place."""
+    pushes = probes.draws(turning=False)
+    if engine.simulates(probes.TURN):
+        pushes += probes.draws(turning=True)
+    pushes = probes.unsaturated(engine, pushes, float(tolerances(engine)[0]))
+    ladder = _slides(engine, pushes)
+    finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
+    error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)
+    error += SAFETY * np.max(np.hypot(changes[..., 2], changes[..., 3]), axis=0)
+    return Scales(
+        finest[:, probes.CONDITIONS],
+        finest[:, probes.FORCE],
+        ladder.values[-2, :, probes.FORCE],
+        finest[:, probes.SLIP],
+        finest[:, probes.RADIAL],
+        error + finest[:, probes.NOISE] + ROUNDING,
+        finest[:, probes.BEGUN],
+    )
 
 
 def creep(engine: Engine) -> Creep:
     """Return the creep of blocks under loads that friction can hold."""
-    ladder = Ladder.of(engine, functools.partial(probes.creep, engine))
-    half = ladder.values[:, probes.PULLS.index(0.5)]
-    order = falling(np.abs(half), step_ratio(engine))
-    return Creep(float(half[-1]), order, *smoothing_of(ladder.finest))
+    ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.PULLS))
+    half, ratio = np.abs(ladder.values[:, probes.PULLS.index(0.5)]), step_ratio(engine)
+    shaking = np.max(ladder.values[:, :, 1], axis=1)
+    return Creep(
+        float(ladder.finest[probes.PULLS.index(0.5), 0]),
+        falling(half[:, 0], ratio),
+        *smoothing_of(ladder.finest[:, 0]),
+        float(shaking[-1]),
+        falling(shaking, ratio),
+    )
+
+
+def history(engine: Engine) -> History:
+    """Return the largest load held from rest, and how friction acts after a slide."""
+    pulls, gravity = np.array(probes.BEYOND), probes.FRICTION / probes.SLIDE.mass
+    ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.BEYOND))
+    moves = ladder.finest[:, 0] > HELD * (pulls - 1.0) * gravity * probes.PULLED_FOR
+    _, _, gained, speed = ladder.values[:, -1].T
+    rate = probes.SLIDE.natural_frequency
+    exact = (pulls[-1] - 1.0) * gravity * math.sin(0.5 * rate * probes.PULLED_FOR) / rate
+    delay = Ladder((exact - speed) / np.where(gained == 0.0, np.inf, gained))
+    second = Ladder.of(engine, functools.partial(probes.second_release, engine))
+    rest = Ladder.of(engine, functools.partial(probes.at_rest, engine))
+    return History(
+        1.0 if moves[0] else _held(engine, probes.BEYOND),
+        float(second.finest[0]),
+        float(second.error[0]),
+        float(delay.finest),
+        float(delay.error),
+        float(second.finest[1]),
+        float(second.error[1]),
+        float(rest.finest) if np.min(rest.values) > SAME * np.max(rest.values) else 0.0,
+    )
+
+
+def _held(engine: Engine, pulls: Sequence[float]) -> float:
+    """Return the largest load over μN that a block at rest withstands, at most ``MOST_HELD``, by bisection."""
+    least, most = pulls[0], MOST_HELD
+    for number in range(BISECTIONS):
+        middle = (
+            pulls[number]
+            if 0 < number < len(pulls) and least < pulls[number] < most
+            else math.sqrt(least * most)
+        )
+        ((speed, *_),) = probes.pulled(engine, (middle,), float(tolerances(engine)[-1]))
+        if speed > HELD * (middle - 1.0) * probes.FRICTION / probes.SLIDE.mass * probes.PULLED_FOR:
+            most = middle
+        else:
+            least = middle
+    return least
+
+
+def support(engine: Engine) -> Shares:
+    """Return the forces of spring, damper and offset without friction."""
+    ladder = Ladder.of(engine, functools.partial(probes.supports, engine))
+    noise = SAFETY * engine.precision / (probes.SLIDES_FOR - probes.SETTLES_FOR)
+    return Shares(ladder.finest, ladder.error + noise)
+
+
+def moments(engine: Engine) -> Shares:
+    """Return force and moment on the discs that the engine simulates, on a ring and on points."""
+    kinds = [points for points in (None, 6) if engine.simulates(probes.discs(points)[0][0])]
+    ladder = Ladder.of(
+        engine, lambda tolerance: np.vstack([probes.moments(engine, points, tolerance) for points in kinds])
+    )
+    changes = np.max(np.abs(np.diff(ladder.values[-3:], axis=0)), axis=0)
+    noise = SAFETY * engine.precision * probes.SPEED / (probes.FRICTION * probes.SLIDES_FOR)
+    return Shares(ladder.finest, SAFETY * changes + noise)
+
+
+def repeat(engine: Engine) -> Repeat:
+    """Return the difference between two equal calls."""
+    motion = (probes.TURN, (0.0, 0.0, probes.SPEED, 0.0), (0.0, probes.TURNS_FOR))
+    if not engine.simulates(probes.TURN):
+        motion = (probes.SWING, (1.0, 0.0, 0.0, 0.0), (0.0, 0.5))
+    usual, again, coarse = (
+        engine.simulate(*motion, tolerance=tolerance).states
+        for tolerance in (USUAL_TOLERANCE, USUAL_TOLERANCE, float(tolerances(engine)[0]))
+    )
+    difference = float(np.max(np.abs(again - usual)) / np.max(np.abs(usual)))
+    return Repeat(difference, engine.precision, bool(np.array_equal(usual, coarse)))
 
 
 def lag(engine: Engine) -> Lag:
@@ -212,14 +348,16 @@ def _largest(vectors: FloatArray) -> float:
     return float(np.max(np.hypot(*vectors.T)))
 
 
-def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
-    """Return the order from the last two of ``sizes`` and the ``ratio`` of their steps; NaN if undefined."""
-    if len(sizes) < 2 or not (0.0 < sizes[-2] < math.inf and 0.0 < sizes[-1] < math.inf):
-        return math.nan
-    return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)
-
-
-PROBES: dict[str, type[Any]] = {"law": Friction, "creep": Creep, "lag": Lag}
+PROBES: dict[str, type[Any]] = {
+    "law": Friction,
+    "scales": Scales,
+    "creep": Creep,
+    "history": History,
+    "support": Shares,
+    "repeat": Repeat,
+    "lag": Lag,
+    "moments": Shares,
+}
 """Parts that identify the friction law, and their results."""
 
 
@@ -230,9 +368,12 @@ def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
     """
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
-        parts |= {"law": friction, "creep": creep}
+        parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}
+        parts |= {"support": support, "repeat": repeat}
     if engine.simulates(probes.TURN):
         parts["lag"] = lag
+    if any(engine.simulates(probes.discs(points)[0][0]) for points in (None, 6)):
+        parts["moments"] = moments
     return parts | {
         name: functools.partial(motion, name=name)
         for name, case in MOTIONS.items()

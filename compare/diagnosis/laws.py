@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
+from scipy.optimize import least_squares, minimize_scalar
 
-from compare.diagnosis.probes import PULLS
+from compare.diagnosis.probes import PLANE, PULLS
 from reference_model.systems import FloatArray
 
 Complex = NDArray[np.complex128]
@@ -24,13 +24,14 @@ Complex = NDArray[np.complex128]
 SIDES = (3, 4, 6, 8, 12, 16)
 """Number of sides of the polygons, each tried with a corner on the x axis and with a side across it."""
 
-PLANE = np.array([1.0, 1j])
-
 FITS = 1e-6
 """Misfit over μN allowed for any law, because the force is not quite constant during the slide."""
 
 DISTINCT = 3.0
 """Least ratio of the second-best misfit to the best, and of a reported deviation to its error."""
+
+NEAR, FAR = 1e-3, 100.0
+"""Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit to it."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Shape:
     sizes: Mapping[str, float]
 
 
-CONE = "cone"
+CONE, ELLIPSE, NOTHING = "cone", "ellipse", "no friction"
 
 
 def _against(slip: complex) -> complex:
@@ -92,7 +93,13 @@ class Friction:
     misfit : float
         Largest difference between the forces, over μN.
     sure : bool
-        True if this law fits within three times the error and no other law fits nearly as well.
+        True if this law fits and no other law fits nearly as well.
+    along, across : float
+        μ of the ellipse along its first axis and across it, over the nominal μ; NaN for other laws.
+    axis : float
+        Direction of that axis in rad; NaN for other laws.
+    per_step : float
+        Largest friction impulse in N s of a step if it does not depend on the step, over μN; else NaN.
 
     """
 
@@ -102,16 +109,84 @@ class Friction:
     error: float
     misfit: float
     sure: bool
+    along: float = math.nan
+    across: float = math.nan
+    axis: float = math.nan
+    per_step: float = math.nan
+
+    @property
+    def fits(self) -> bool:
+        """True if the law explains the forces within their error."""
+        return self.misfit <= max(DISTINCT * self.error, FITS)
+
+    @property
+    def coulomb(self) -> bool:
+        """True if friction is Coulomb's cone with the nominal μ to 10 %, so other probes can be compared with it."""
+        return self.sure and self.shape == CONE and abs(self.strength - 1.0) < 0.1
+
+    def force(self, slips: Complex) -> Complex:
+        """Return the force over μN for slip directions of unit length, shape (n,)."""
+        if self.shape == ELLIPSE:
+            return _ellipse(np.array([self.along, self.across, self.axis]), slips)
+        shape, size = next((s, s.sizes[self.shape]) for s in SHAPES if self.shape in s.sizes)
+        factor = self.strength * size * cmath.rect(1.0, self.angle)
+        return factor * np.array([shape.direction(complex(slip)) for slip in slips])
 
 
 def fitted(forces: FloatArray, error: float) -> Friction:
-    """Return the law of best fit to ``forces`` from ``probes.forces``, with their ``error`` over μN."""
+    """Return the law of best fit to ``forces``, with their ``error`` over μN.
+
+    The columns of ``forces`` are F_x and F_y over μN and the direction of slip, shape (n, 4).
+    """
     measured, slips = forces[:, :2] @ PLANE, forces[:, 2:] @ PLANE
+    if np.max(np.abs(measured)) <= max(DISTINCT * error, FITS) and error < NEAR:
+        return Friction(NOTHING, 0.0, 0.0, error, 0.0, True)
     fits = sorted((_fit(shape, slips, measured) for shape in SHAPES), key=lambda fit: fit[2])
     (shape, factor, misfit), next_best = fits[0], fits[1][2]
+    if misfit > max(DISTINCT * error, FITS) and (found := _as_ellipse(slips, measured, error, misfit)):
+        return found
     name, size = min(shape.sizes.items(), key=lambda one: abs(math.log(abs(factor) / one[1])))
-    sure = misfit <= max(DISTINCT * error, FITS) and next_best > DISTINCT * max(misfit, error)
+    fitting = misfit <= max(DISTINCT * error, FITS) or (misfit <= NEAR and next_best > FAR * misfit)
+    sure = fitting and next_best > DISTINCT * max(misfit, error)
     return Friction(name, abs(factor) / size, cmath.phase(factor), error, misfit, sure)
+
+
+def _ellipse(numbers: FloatArray, slips: Complex) -> Complex:
+    """Return the force with the largest dissipation in an ellipse with the semi-axes and direction ``numbers``."""
+    turn = np.exp(1j * numbers[2])
+    along = slips / turn
+    x, y = numbers[0] ** 2 * along.real, numbers[1] ** 2 * along.imag
+    size = np.hypot(numbers[0] * along.real, numbers[1] * along.imag)
+    return np.asarray(-turn * (x + 1j * y) / size)
+
+
+def _as_ellipse(slips: Complex, measured: Complex, error: float, misfit: float) -> Friction | None:
+    """Return an ellipse if it fits much better than the other laws, whose best ``misfit`` is given."""
+
+    def off(numbers: FloatArray) -> FloatArray:
+        rest = measured - _ellipse(numbers, slips)
+        return np.concatenate((rest.real, rest.imag))
+
+    sizes = np.max(np.abs(measured)), np.min(np.abs(measured))
+    starts = [
+        least_squares(off, (*sizes, axis), xtol=1e-15, ftol=1e-15, gtol=1e-15) for axis in (0.1, 0.8, 1.5)
+    ]
+    best = min(starts, key=lambda found: found.cost)
+    left = float(np.max(np.abs(measured - _ellipse(best.x, slips))))
+    if left > max(DISTINCT * error, FITS, misfit / FAR):
+        return None
+    along, across, axis = (float(number) for number in best.x)
+    return Friction(
+        ELLIPSE,
+        math.sqrt(abs(along * across)),
+        0.0,
+        error,
+        left,
+        True,
+        abs(along),
+        abs(across),
+        axis % math.pi,
+    )
 
 
 def _fit(shape: Shape, slips: Complex, measured: Complex) -> tuple[Shape, complex, float]:
@@ -123,17 +198,24 @@ def _fit(shape: Shape, slips: Complex, measured: Complex) -> tuple[Shape, comple
 
 @dataclass(frozen=True)
 class Smoothing:
-    """Regularised friction: its formula over μN, and the inverse, v/ε for a share of μN."""
+    """Regularised friction: v/ε for a share of μN, and its inverse, the share of μN at v/ε."""
 
     name: str
     slip: Callable[[FloatArray], FloatArray]
+    share: Callable[[FloatArray], FloatArray]
 
 
 SMOOTHINGS = (
-    Smoothing("min(v/ε, 1)", lambda share: share),
-    Smoothing("tanh(v/ε)", np.arctanh),
-    Smoothing("v/√(v² + ε²)", lambda share: share / np.sqrt(1.0 - share**2)),
-    Smoothing("2/π·arctan(v/ε)", lambda share: np.tan(np.pi / 2.0 * share)),
+    Smoothing("min(v/ε, 1)", lambda share: share, lambda slip: np.minimum(slip, 1.0)),
+    Smoothing("tanh(v/ε)", np.arctanh, np.tanh),
+    Smoothing(
+        "v/√(v² + ε²)", lambda share: share / np.sqrt(1.0 - share**2), lambda slip: slip / np.hypot(slip, 1.0)
+    ),
+    Smoothing(
+        "2/π·arctan(v/ε)",
+        lambda share: np.tan(np.pi / 2.0 * share),
+        lambda slip: 2.0 / np.pi * np.arctan(slip),
+    ),
 )
 
 

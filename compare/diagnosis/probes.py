@@ -1,4 +1,4 @@
-"""Short motions that reveal the friction force: a sliding block, a loaded block and a rotating slip.
+"""Short motions that reveal the friction force, its history, the support and the moment of a disc.
 
 The change of momentum gives the friction force without a friction law or an exact solution. A block that slides
 straight on a plane at rest is decelerated by a constant force. Steps then have no error, so any step distinguishes
@@ -8,13 +8,18 @@ cone, box and pyramid.
 from __future__ import annotations
 
 import cmath
-from dataclasses import replace
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.integrate import simpson
 
 from compare.engines import Engine
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model import simulate
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+
+PLANE = np.array([1.0, 1j])
 
 HEADINGS = np.radians(np.arange(4.0, 364.0, 15.0))
 """Directions of slip in rad; no direction is equally close to two axes of a polygon with up to 16 sides."""
@@ -23,7 +28,7 @@ FRICTION = 0.2
 """μN in N for a mass of 1 kg."""
 
 WEAK = 1e-5
-"""Stiffness in N/m: its force is small compared with friction, and the momentum balance accounts for it.
+"""Stiffness in N/m for a mass of 1 kg: its force is small, and the momentum balance accounts for it.
 
 It is not smaller because engines may derive a characteristic speed from μN and the natural frequency.
 """
@@ -39,47 +44,217 @@ SETTLES_FOR = 0.05
 SLIDES_FOR = 0.1
 """Duration in s: friction removes 1/50 of the speed, less than the smallest component across an axis."""
 
+PANELS = 32
+"""Number of intervals for the integral of friction with a direction that changes."""
+
+FEWEST_PANELS = 4
+"""The same at the coarsest rung, because longer steps than an interval are not possible."""
+
+
+# --- Friction force against mass, load, speed, heading and place.
+
+DRAWS, TURNING_DRAWS = 48, 24
+"""Number of combinations on a plane at rest and on a turntable."""
+
+MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
+"""Ranges in kg, m/s and rad/s. Loads follow, because friction may remove little of the speed."""
+
+SPENT = 0.05
+"""Largest share of the slip that friction may remove; otherwise the probe is repeated with a smaller load."""
+
+WEAKER, MOST_WEAKER = 10.0, 7
+"""Factor of the load from repetition to repetition, and their largest number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A body that slides: its system, and its initial position and velocity as complex numbers."""
+
+    system: PinOnDisc
+    place: complex
+    velocity: complex
+
+    @classmethod
+    def of(
+        cls, mass: float, load: float, slip: complex, place: complex = 0j, disc_speed: float = 0.0
+    ) -> Push:
+        """Return a slide with the slip velocity ``slip`` in m/s at ``place`` in m."""
+        system = replace(SLIDE, mass=mass, stiffness=WEAK * mass, friction_force=load, disc_speed=disc_speed)
+        return cls(system, place, slip + 1j * disc_speed * place)
+
+    @property
+    def lasts(self) -> float:
+        """Duration of the measurement in s."""
+        return SLIDES_FOR / max(1.0, abs(self.system.disc_speed))
+
+    def weaker(self, factor: float) -> Push:
+        """Return the same slide with a smaller load."""
+        return replace(self, system=replace(self.system, friction_force=self.system.friction_force / factor))
+
+    def times(self, panels: int) -> FloatArray:
+        """Return the start in s and the ends of the intervals of the measurement; a straight slide has two."""
+        panels = panels if self.system.disc_speed else 2
+        return np.concatenate(([0.0], SETTLES_FOR + np.linspace(0.0, self.lasts, panels + 1)))
+
+    @property
+    def start(self) -> tuple[float, ...]:
+        """Initial state."""
+        return (self.place.real, self.place.imag, self.velocity.real, self.velocity.imag)
+
+
+def headings() -> list[Push]:
+    """Return slides in all directions, each across the radius because some engines ignore slip along it."""
+    return [Push.of(1.0, FRICTION, unit * SPEED, 1j * unit) for unit in np.exp(1j * HEADINGS).tolist()]
+
+
+def draws(turning: bool) -> list[Push]:
+    """Return slides whose masses, speeds, loads, headings and places fill their ranges (a Latin hypercube)."""
+    number, random = (TURNING_DRAWS if turning else DRAWS), np.random.default_rng(1)
+    levels = (np.array([random.permutation(number) for _ in range(7)]) + random.random((7, number))) / number
+    found = []
+    for mass, speed, load, heading, radius, angle, disc in levels.T.tolist():
+        mass, speed = _within(MASSES, mass), _within(SPEEDS, speed)
+        omega = math.copysign(_within(DISC_SPEEDS, disc), heading - 0.5) if turning else 0.0
+        place = cmath.rect(speed / (abs(omega) or 1.0) * 10.0 ** (radius - 0.5), 2.0 * math.pi * angle)
+        slip = cmath.rect(speed, HEADINGS[int(heading * len(HEADINGS))])
+        found.append(Push.of(mass, FRICTION * mass * speed * 10.0 ** (-2.0 * load), slip, place, omega))
+    return found
+
+
+def _within(ends: tuple[float, float], level: float) -> float:
+    return float(ends[0] * (ends[1] / ends[0]) ** level)
+
+
+FORCE, SLIP, RADIAL, CONDITIONS, BEGUN, NOISE, LEFT = (
+    slice(0, 2),
+    slice(2, 4),
+    slice(4, 6),
+    slice(6, 11),
+    slice(11, 13),
+    13,
+    14,
+)
+"""Columns of ``slides``."""
+
+
+def slides(
+    engine: Engine, pushes: Sequence[Push], tolerance: float, panels: int = FEWEST_PANELS
+) -> FloatArray:
+    """Return, for each slide, the numbers in the columns above, shape (n, 15).
+
+    They are the mean friction force over μN, the mean directions of slip and of the place, and the conditions: mass,
+    load, mean slip speed, disc speed and distance from the axis. The speeds in m/s are the given initial one, and the
+    one that follows from speed and force when the measurement begins. The last two are the error of the force due to
+    the declared precision, and the smallest slip over the first.
+    """
+    motions = [(push.system, push.start, push.times(panels)) for push in pushes]
+    runs = engine.simulate_many(motions, tolerance=tolerance)
+    found = []
+    for push, run in zip(pushes, runs, strict=True):
+        system, times = push.system, run.times[1:]
+        z, v = run.states[1:, :2] @ PLANE, run.states[1:, 2:] @ PLANE
+        slip = v - 1j * system.disc_speed * z
+        impulse = system.mass * (v[-1] - v[0]) + system.stiffness * simpson(z, x=times)
+        force = impulse / (system.friction_force * push.lasts)
+        mean, radial = (
+            simpson(one / np.maximum(np.abs(one), 1e-300), x=times) / push.lasts for one in (slip, z)
+        )
+        begun = v[0] - force * system.friction_force / system.mass * SETTLES_FOR
+        vectors = (part for one in (force, mean, radial) for part in (one.real, one.imag))
+        speed, slips = abs(push.velocity), np.abs(slip)
+        noise = 3.0 * engine.precision * system.mass * speed / (system.friction_force * push.lasts)
+        left = np.min(slips) / abs(push.velocity - 1j * system.disc_speed * push.place)
+        conditions = system.mass, system.friction_force, np.mean(slips), system.disc_speed, abs(push.place)
+        found.append([*vectors, *conditions, speed, abs(begun), noise, left])
+    return np.array(found)
+
+
+def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
+    """Return the slides with loads so small that friction removes little of the slip, if there are such loads."""
+    found, saturated = list(pushes), list(range(len(pushes)))
+    for _ in range(MOST_WEAKER):
+        left = slides(engine, [found[i] for i in saturated], tolerance)[:, LEFT]
+        saturated = [i for i, share in zip(saturated, left, strict=True) if share < 1.0 - SPENT]
+        for i in saturated:
+            found[i] = found[i].weaker(WEAKER)
+        if not saturated:
+            break
+    return found
+
+
+# --- History: blocks pulled from rest, at rest after a slide, and released a second time.
+
 PULLS = (0.25, 0.5, 0.75, 0.9)
 """Loads on blocks that should stick, as fractions of μN."""
 
+NEARLY, BEYOND = 0.99, (1.001, 1.01, 1.05, 1.2)
+"""Load that friction can just hold, and loads that it cannot hold."""
+
 PULLED_FOR = 4.0
 """Duration in s; the creep speed is measured in the second half."""
+
+LOOKS = 16
+"""Number of samples of the velocity in the second half; a block that chatters has other velocities than its mean."""
+
+
+def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
+    """Return mean speed, largest deviation from it, and mean acceleration of pulled blocks, shape (n, 4).
+
+    The fourth column is the velocity at the middle of the time. All refer to the second half, in m/s and m/s².
+    """
+    # an offset so large that a displacement of 1 m hardly changes the load
+    blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in pulls]
+    times = np.concatenate(([0.0], PULLED_FOR * np.linspace(0.5, 1.0, LOOKS + 1)))
+    runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
+    found = []
+    for run in runs:
+        x, v, half = run.states[1:, 0], run.states[1:, 2], times[-1] - times[1]
+        mean = (x[-1] - x[0]) / half
+        found.append([mean, np.max(np.abs(v - mean)), (v[-1] - v[0]) / half, v[0]])
+    return np.array(found)
+
+
+SWING = PinOnDisc(mass=1.0, stiffness=4.0, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
+"""A block on a spring; μN stretches the spring by 5 cm."""
+
+SECOND_PULL = 1.03
+"""Load over μN at the second release, after a swing that starts at a load larger by 2."""
+
+RATE = 2.0
+"""Natural frequency of ``SWING`` in rad/s."""
+
+
+def second_release(engine: Engine, tolerance: float) -> FloatArray:
+    """Return how far the block moves after its second release, and its delay in s, shape (2,).
+
+    The distance is relative to the exact one: 1 for Coulomb friction, 0 if the block remains at rest.
+    """
+    stretch = FRICTION / SWING.stiffness
+    turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
+    start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
+    times = (0.0, turned + quarter, 2.5 * turned)
+    x = engine.simulate(SWING, start, times, tolerance=tolerance).states[:, 0] / stretch
+    swing = SECOND_PULL - 1.0
+    return np.array([(x[2] + SECOND_PULL) / (2.0 * swing), -(x[1] + 1.0) / (swing * RATE)])
+
+
+def at_rest(engine: Engine, tolerance: float) -> float:
+    """Return the largest creep speed in m/s of a block close to release and of one that came to rest from a slide.
+
+    The slide starts across a pull of μN/2.
+    """
+    ((nearly, *_),) = pulled(engine, (NEARLY,), tolerance)
+    block = replace(SLIDE, offset=0.5 * FRICTION / WEAK)
+    run = engine.simulate(block, (0.0, 0.0, 0.0, 0.2), (0.0, 5.0, 6.0), tolerance=tolerance)
+    return float(max(abs(nearly), np.hypot(*(run.states[2, :2] - run.states[1, :2]))))
+
+
+# --- Lag of friction behind a slip that turns.
 
 TURN = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=0.02, disc_speed=1.0, offset=0.0)
 
 TURNS_FOR = 1.0
 """Duration in s. The slip of a pin that leaves the axis radially rotates as the speed of the disc under it grows."""
-
-PANELS = 32
-"""Number of intervals for the integral of friction."""
-
-
-def forces(engine: Engine, tolerance: float) -> FloatArray:
-    """Return F_x and F_y over μN and the slip direction of blocks that slide along ``HEADINGS``, shape (n, 4).
-
-    Both are means over ``SLIDES_FOR``. The slip direction is a unit vector, which a transverse force rotates.
-    """
-    velocities = [cmath.rect(SPEED, heading) for heading in HEADINGS.tolist()]
-    times = (0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR)
-    runs = engine.simulate_many(
-        [(SLIDE, (0.0, 0.0, v.real, v.imag), times) for v in velocities], tolerance=tolerance
-    )
-    found = []
-    for run in runs:
-        (place, before), (end, after) = run.states[1:, ::2] + 1j * run.states[1:, 1::2]
-        force = ((after - before) * SLIDE.mass / SLIDES_FOR + WEAK * (place + end) / 2.0) / FRICTION
-        slip = (before + after) / abs(before + after)
-        found.append([force.real, force.imag, slip.real, slip.imag])
-    return np.array(found)
-
-
-def creep(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the creep speed in m/s of a block under each of ``PULLS``, shape (n,)."""
-    # an offset so large that a displacement of 1 m hardly changes the load
-    blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in PULLS]
-    times = np.array([0.0, 0.5, 1.0]) * PULLED_FOR
-    runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
-    return np.array([(run.states[2, 0] - run.states[1, 0]) / (times[2] - times[1]) for run in runs])
 
 
 def lag(engine: Engine, tolerance: float) -> float:
@@ -87,9 +262,10 @@ def lag(engine: Engine, tolerance: float) -> float:
 
     It is the missing momentum over the change of momentum due to a shift in time, along the direction of the latter.
     """
-    times = np.linspace(0.0, TURNS_FOR, PANELS + 1)
-    states = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), times, tolerance=tolerance).states
-    z, v = states[:, :2] @ (1.0, 1j), states[:, 2:] @ (1.0, 1j)
+    times = SETTLES_FOR + np.linspace(0.0, TURNS_FOR, PANELS + 1)
+    run = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), np.concatenate(([0.0], times)), tolerance=tolerance)
+    states = run.states[1:]
+    z, v = states[:, :2] @ PLANE, states[:, 2:] @ PLANE
     slip = v - 1j * TURN.disc_speed * z
     direction = slip / np.abs(slip)
     turning = (np.gradient(np.unwrap(np.angle(slip)), times, edge_order=2)) * 1j * direction
@@ -97,3 +273,83 @@ def lag(engine: Engine, tolerance: float) -> float:
     # m·Δv = −∫C·z − ∫μN·(direction − lag·turning)
     missing = TURN.mass * (v[-1] - v[0]) + WEAK * simpson(z, x=times) + expected
     return float((missing * np.conj(shifted)).real / abs(shifted) ** 2)
+
+
+# --- The support without friction, and the moment of a disc.
+
+SMOOTH = replace(SLIDE, friction_force=1e-9)
+"""A block with almost no friction; some engines cannot omit it."""
+
+SUPPORTS = {
+    "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),
+    "damper force": (replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
+    "force of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
+}
+"""Systems and initial states with one acting part of the support, by the name of its force."""
+
+
+def supports(engine: Engine, tolerance: float) -> FloatArray:
+    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one, shape (3,).
+
+    The exact motion starts from the engine's state after ``SETTLES_FOR``.
+    """
+    motions = [
+        (system, start, np.array([0.0, SETTLES_FOR, SLIDES_FOR])) for system, start in SUPPORTS.values()
+    ]
+    return np.array(
+        [
+            _share(
+                run.states[2, 2:],
+                simulate(system, run.states[1], times[1:]).states[-1, 2:],
+                run.states[1, 2:],
+            )
+            for (system, _, times), run in zip(
+                motions, engine.simulate_many(motions, tolerance=tolerance), strict=True
+            )
+        ]
+    )
+
+
+def _share(found: FloatArray, exact: FloatArray, start: FloatArray) -> float:
+    """Return the component of a change of state along the exact change, over the latter."""
+    right = exact - start
+    return float((found - start) @ right / (right @ right))
+
+
+def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]]:
+    """Return discs on a plane that slide, spin and do both, small and large."""
+    found: list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]] = []
+    for mass, radius in ((1.0, 0.1), (30.0, 2.0)):
+        for slip, spin in ((1.0, 0.0), (0.0, 1.0), (0.6, 0.8)):
+            disc = DiscOnDisc(
+                mass=mass,
+                polar_inertia=mass * radius**2,
+                stiffness=WEAK * mass,
+                damping=0.0,
+                friction_force=FRICTION * mass,
+                disc_speed=0.0,
+                contact_radius=radius,
+                shaft_damping=0.0,
+                shaft_speed=0.0,
+                contact_points=points,
+            )
+            heading = cmath.rect(slip * SPEED, 0.3)
+            start = (0.0, 0.0, 0.0, heading.real, heading.imag, spin * SPEED / radius)
+            found.append((disc, start, np.array([0.0, SETTLES_FOR, SETTLES_FOR + SLIDES_FOR])))
+    return found
+
+
+def moments(engine: Engine, points: int | None, tolerance: float) -> FloatArray:
+    """Return force and moment of friction over the exact ones, shape (6, 2); NaN where there is none.
+
+    The exact motion starts from the engine's state after ``SETTLES_FOR``.
+    """
+    motions, found = discs(points), []
+    for (disc, start, times), run in zip(
+        motions, engine.simulate_many(motions, tolerance=tolerance), strict=True
+    ):
+        begun, ended = run.states[1:]
+        exact = simulate(disc, begun, times[1:], tolerance=1e-12).states[-1]
+        force = _share(ended[3:5], exact[3:5], begun[3:5]) if start[3] else math.nan
+        found.append([force, (ended[5] - begun[5]) / (exact[5] - begun[5]) if start[5] else math.nan])
+    return np.array(found)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import math
@@ -12,27 +13,19 @@ from pathlib import Path
 import numpy as np
 
 from compare.claims.as_json import as_json
-from compare.diagnosis.findings import MOTIONS, RUNGS, Creep, Lag, Motion
-from compare.diagnosis.laws import CONE, DISTINCT, FITS, Friction
-from compare.diagnosis.probes import FRICTION, SPEED
+from compare.diagnosis import wording
+from compare.diagnosis.findings import MOTIONS, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.ladder import RUNGS
+from compare.diagnosis.laws import DISTINCT, Friction
+from compare.diagnosis.probes import HEADINGS, SPEED
+from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, speed_limit
+from compare.diagnosis.wording import LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
-LEAST_DEVIATION = 1e-8
-"""Smallest reported relative deviation of a force or its direction."""
-
-FALLS = 0.3
-"""Order in the step above which a quantity counts as decreasing with it."""
-
-RESTS = 1e-9
-"""Ratio of speed to sliding speed below which a block is at rest."""
-
-LEAST_LAG = 1e-6
-"""Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
-
-STEPS = (0.2, 3.0)
-"""Range of lags, in steps, that are reported in steps."""
+RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
+"""Verdicts over everything that was measured."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +38,7 @@ class Row:
         Name and version of the engine.
     step : float
         Step in s at the finest rung; NaN if the engine has a tolerance.
-    law, creep, lag
+    law, scales, creep, history, support, repeat, lag, moments
         Results of the probes; None if not measured.
     motions : mapping
         Errors of the simulated motions, by name.
@@ -62,27 +55,77 @@ class Row:
     version: str = ""
     step: float = math.nan
     law: Friction | None = None
+    scales: Scales | None = None
     creep: Creep | None = None
+    history: History | None = None
+    support: Shares | None = None
+    repeat: Repeat | None = None
     lag: Lag | None = None
+    moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)
     not_simulated: tuple[str, ...] = ()
     seconds: float = 0.0
 
+    @functools.cached_property
+    def remarks(self) -> tuple[Remark, ...]:
+        """Findings about friction, the support and the motions, the cause of others first."""
+        law, found = self.law, [*wording.of_repeat(self.repeat)]
+        if self.scales is not None and (text := speed_limit(self.scales)):
+            found.append(Remark(sentence(text), True, MOTION))
+        elif self.support is not None:
+            found += wording.of_support(self.support)
+        support_right = not any(remark.wrong for remark in found)
+        if law is not None and not any(remark.about == MASS for remark in found):
+            found += wording.of_law(law, self.scales, support_right, self._refined)
+        if law is None or law.coulomb:
+            explained = any(remark.wrong for remark in found)
+            if self.creep is not None and not (self.scales is not None and blind(self.scales)):
+                found += wording.of_creep(self.creep, self._refined, self._least_speed)
+            if self.history is not None and support_right:
+                explained = explained or any(remark.wrong for remark in found)
+                found += wording.of_history(self.history, explained, self._least_speed)
+            if self.lag is not None and not explained:
+                found += wording.of_lag(self.lag, self.step, self._least_lag)
+            if self.moments is not None and support_right:
+                found += wording.of_moments(self.moments, law)
+        found += wording.of_motions(self.motions, self._refined)
+        for reason, names in self._gaps_by_reason.items():
+            found.append(Remark(f"No result for {', '.join(names)}: {reason}.", None))
+        if self.repeat is not None and self.repeat.deaf and any(remark.wrong for remark in found):
+            deaf = Remark(
+                f"Results do not change with the {self._refined}, so an error of the integration cannot be "
+                "distinguished from another law.",
+                True,
+                MOTION,
+            )
+            found.insert(0 if law is None or law.coulomb else len(found), deaf)
+        said = {
+            remark.text.partition(" with ε")[0]: remark for remark in reversed(found)
+        }  # regularised by two probes
+        return tuple(remark for remark in found if remark in said.values())
+
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Diagnosis in a few sentences, the friction law first."""
-        said = []
-        if self.law is not None:
-            said.append(_of_law(self.law))
-        if self.creep is not None:
-            said.append(_of_creep(self.creep, self._refined))
-        if self.lag is not None and self._is_coulombs:
-            said.append(_of_lag(self.lag, self.step, self._least_lag))
-        said.append(_of_motions(self.motions, self._refined))
-        for reason, names in self._gaps_by_reason.items():
-            said.append(f"No result for {', '.join(names)}: {reason}.")
-        return tuple(filter(None, said))
+        """Diagnosis in a few sentences: the verdict over everything, then the other findings."""
+        decisive = True if self.verdict == WRONG else None
+        first = next((remark for remark in self.remarks if remark.wrong is decisive), None)
+        said = [remark.text for remark in self.remarks if remark is not first]
+        if first is not None:
+            about = first.about if decisive else "Undecided"
+            said.insert(0, f"{about}: {first.text[0].lower()}{first.text[1:]}")
+        elif self.law is not None:
+            said.insert(0, f"Coulomb friction, accurate to {error_text(self.law.error)} times the limit μN.")
+        if self.scales is not None:
+            said.append(f"Examined: {self.scales.looked_at}; {len(HEADINGS)} headings.")
+        return tuple(said)
+
+    @property
+    def verdict(self) -> str:
+        """``RIGHT``, ``WRONG`` or ``UNDECIDED``."""
+        if any(remark.wrong for remark in self.remarks):
+            return WRONG
+        return UNDECIDED if any(remark.wrong is None for remark in self.remarks) else RIGHT
 
     @property
     def _gaps_by_reason(self) -> dict[str, list[str]]:
@@ -97,9 +140,10 @@ class Row:
         return "tolerance" if math.isnan(self.step) else "step"
 
     @property
-    def _is_coulombs(self) -> bool:
-        """True if friction opposes the slip with μN, possibly with a lag."""
-        return self.law is not None and self.law.sure and not _is_other(self.law)
+    def _least_speed(self) -> float:
+        """Speed in m/s below which a block is at rest: that of an exact engine, or of noise in the states."""
+        noise = max(self.repeat.difference, self.repeat.declared) if self.repeat is not None else 0.0
+        return (RESTS + noise) * SPEED
 
     @property
     def _least_lag(self) -> float:
@@ -114,105 +158,7 @@ class Row:
     @property
     def wrong(self) -> bool:
         """True if a deviation was found that persists at smaller steps."""
-        return (
-            (self.law is not None and _is_other(self.law))
-            or (self.creep is not None and _creeps_for_good(self.creep))
-            or (self.lag is not None and self._is_coulombs and _lags_for_good(self.lag, self._least_lag))
-            or any(not motion.converges for motion in self.motions.values())
-        )
-
-
-def _of_law(law: Friction) -> str:
-    if law.misfit > max(DISTINCT * law.error, FITS):
-        return (
-            f"No known friction law fits: the best fit, a {law.shape}, "
-            f"deviates by {error_text(law.misfit)} times μN."
-        )
-    if not law.sure:
-        return (
-            "The friction law could not be identified: "
-            f"the error of the forces is {error_text(law.error)} times μN."
-        )
-    deviations = _deviations(law)
-    name = "Friction is Coulomb's cone" if law.shape == CONE else f"Friction is a {law.shape}"
-    if deviations:
-        return f"{name}, but {' and '.join(deviations)}."
-    return f"{name}, accurate to {error_text(law.error)} times μN."
-
-
-def _is_other(law: Friction) -> bool:
-    """Return whether a law certainly differs from Coulomb's."""
-    return (law.sure and law.shape != CONE) or bool(_deviations(law))
-
-
-def _deviations(law: Friction) -> list[str]:
-    """Return descriptions of the deviations of a force from its own law."""
-    found = []
-    least = max(DISTINCT * law.error, LEAST_DEVIATION)
-    if abs(law.strength - 1.0) > least:
-        size = "large" if law.strength > 1.0 else "small"
-        found.append(
-            f"μ is {error_text(100.0 * abs(law.strength - 1.0))} % too {size} (±{error_text(100.0 * law.error)} %)"
-        )
-    if abs(law.angle) > least:
-        found.append(
-            f"its force is rotated by {error_text(math.degrees(law.angle))}° "
-            f"(±{error_text(math.degrees(law.error))}°)"
-        )
-    return found
-
-
-def _of_creep(creep: Creep, refined: str) -> str:
-    if abs(creep.speed) < RESTS * SPEED:
-        return "A block loaded below μN stays at rest."
-    how = f"decreasing with the {refined}" if creep.order > FALLS else f"independent of the {refined}"
-    if creep.smoothing:
-        return (
-            f"A block loaded below μN creeps: friction is regularised as {creep.smoothing} with "
-            f"ε = {error_text(creep.epsilon)} m/s, {how}."
-        )
-    return f"A block loaded with half of μN = {FRICTION:g} N creeps at {error_text(abs(creep.speed))} m/s, {how}."
-
-
-def _creeps_for_good(creep: Creep) -> bool:
-    return abs(creep.speed) >= RESTS * SPEED and not creep.order > FALLS
-
-
-def _of_lag(lag: Lag, step: float, least: float) -> str:
-    if abs(lag.seconds) < least:
-        return ""
-    verb = "lags" if lag.seconds > 0.0 else "leads"
-    if _lags_for_good(lag, least):
-        return f"Friction {verb} the slip by {error_text(abs(lag.seconds))} s at every step size."
-    if lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
-        return f"Friction {verb} the slip by {error_text(abs(lag.seconds) / step)} steps."
-    return ""
-
-
-def _lags_for_good(lag: Lag, least: float) -> bool:
-    return abs(lag.seconds) > max(DISTINCT * lag.error, least)
-
-
-def _of_motions(motions: dict[str, Motion], refined: str) -> str:
-    """Return a sentence on the order of the errors and the motions that do not converge to the exact one."""
-    others = {name: motion for name, motion in motions.items() if not motion.converges}
-    said = []
-    orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
-    if orders:
-        least, most = (f"{order:.1f}" for order in (min(orders), max(orders)))
-        said.append(f"errors are of order {least}" + f" to {most}" * (least != most) + f" in the {refined}")
-    open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
-    if open_:
-        said.append(f"too coarse to tell: {', '.join(open_)}")
-    if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
-        said.append(
-            f"results do not change with the {refined}, so an error cannot be distinguished from another law"
-        )
-    elif others:
-        off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
-        said.append(f"converges to a motion that deviates from the exact one: {off}")
-    text = "; ".join(said)
-    return f"{text[0].upper()}{text[1:]}." if text else ""
+        return self.verdict == WRONG
 
 
 # --- The figure of the matrix: error of each engine in each motion against the rung.
@@ -249,6 +195,28 @@ def drawn(rows: Sequence[Row]) -> Figure:
     return figure
 
 
+def drawn_forces(rows: Sequence[Row]) -> Figure:
+    """Return a figure of the measured friction force, with its error, against each variable of ``Scales``."""
+    figure, panels = new_figure(ncols=len(VARIABLES), width=15.0, height=3.5)
+    wide = max(float(np.ptp(np.log10(np.hypot(*row.scales.forces.T)))) for row in rows if row.scales) > 1.0
+    for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
+        scales = row.scales
+        assert scales is not None  # by the caller
+        sizes = np.hypot(*scales.forces.T)
+        for panel, values in zip(panels, np.abs(scales.conditions).T, strict=True):
+            moves = values > 0.0
+            panel.errorbar(
+                values[moves], sizes[moves], scales.errors[moves], fmt=marker, markersize=3, label=row.engine
+            )
+    for column, (panel, name, unit) in enumerate(zip(panels, VARIABLES, UNITS, strict=True)):
+        panel.set(xscale="log", yscale="log" if wide else "linear", xlabel=f"{name} in {unit}")
+        panel.set_visible(any(row.scales and np.any(row.scales.conditions[:, column]) for row in rows))
+        panel.axhline(1.0, color="0.6", linewidth=0.8, linestyle=":")
+    panels[0].set_ylabel("friction force over μN")
+    figure.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=4)
+    return figure
+
+
 # --- Files of a matrix: numbers and sentences as JSON, and the figure.
 
 
@@ -258,12 +226,17 @@ def write_rows(rows: Sequence[Row], folder: Path) -> None:
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 
 
-def write_picture(rows: Sequence[Row], folder: Path) -> None:
-    """Write matrix.svg and matrix.png, if any motion was simulated."""
-    if not any(row.motions for row in rows):
-        return
+def write_pictures(rows: Sequence[Row], folder: Path) -> list[Path]:
+    """Write matrix and friction as svg and png, if there is something to draw; return the paths of the latter."""
+    figures: dict[str, Figure] = {}
+    wrong = [row for row in rows if row.scales is not None and row.verdict != RIGHT]
     with paper_style():
-        figure = drawn(rows)
-    for ending, content in zip(("svg", "png"), saved(figure), strict=True):
-        with replacing(folder / f"matrix.{ending}", "wb") as stream:
-            stream.write(content)
+        if any(row.motions for row in rows):
+            figures["matrix"] = drawn(rows)
+        if wrong:
+            figures["friction"] = drawn_forces(wrong)
+    for name, figure in figures.items():
+        for ending, content in zip(("svg", "png"), saved(figure), strict=True):
+            with replacing(folder / f"{name}.{ending}", "wb") as stream:
+                stream.write(content)
+    return [folder / f"{name}.png" for name in figures]

@@ -9,7 +9,8 @@ from typing import Any
 
 from compare.claims.as_json import from_json
 from compare.claims.error_estimates import ROUNDING
-from compare.diagnosis.findings import PROBES, RUNGS, Motion, falling, parts_of
+from compare.diagnosis.findings import PROBES, Motion, parts_of
+from compare.diagnosis.ladder import RUNGS, falling
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, TOLERANCE, Recording, estimate, recordings

@@ -6,7 +6,7 @@ import functools
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from compare.engines.answer import BadTrajectoryError, as_many_as, checked
 from compare.engines.precision import LEAST_PRECISE, USUAL_TOLERANCE, blurred, blurred_start
 from compare.engines.stick import StatesOnly, slip_of
+from compare.engines.units import InOtherUnits
 from compare.output.outside_text import one_line, one_of
 from reference_model.support import Support
 from reference_model.systems import FloatArray, PinOnDisc, System, finite_number
@@ -110,6 +111,8 @@ class Engine:
         The engine's own version.
     about : str
         One or two sentences for readers of the report.
+    seed : int, optional
+        Seed of the units of the motions that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
     Raises
     ------
@@ -131,6 +134,7 @@ class Engine:
     contact_only: bool = False
     version: str = ""
     about: str = ""
+    seed: int | None = None
 
     def __post_init__(self) -> None:
         """Normalise the fields; raise ``ValueError`` if one is invalid."""
@@ -174,7 +178,7 @@ class Engine:
 
         """
         self._refuse(system, initial_state, times)
-        answer = self.function(
+        answer = self._asked(
             system, self._start(system, initial_state, tolerance), times, **self._accuracy(tolerance)
         )
         return self._seen(answer, system, initial_state, times, tolerance)
@@ -193,7 +197,7 @@ class Engine:
 
         """
         motions = list(motions)
-        at_once: SimulateMany | None = getattr(self.function, "simulate_many", None)
+        at_once: SimulateMany | None = getattr(self._asked, "simulate_many", None)
         if at_once is None:
             return [self.simulate(*motion, tolerance=tolerance) for motion in motions]
         for motion in motions:
@@ -208,6 +212,10 @@ class Engine:
             except BadTrajectoryError as error:
                 raise BadTrajectoryError(f"motion {i + 1} of {len(motions)}: {error}") from None
         return found
+
+    @property
+    def _asked(self) -> Callable[..., Any]:
+        return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
         """Raise ``UnsupportedSystemError`` for a motion that the engine does not simulate."""
@@ -239,7 +247,7 @@ class Engine:
 
         def more(times: FloatArray) -> FloatArray:
             start = self._start(system, initial_state, tolerance)
-            return looked_at(self.function(system, start, times, **self._accuracy(tolerance)), times).states
+            return looked_at(self._asked(system, start, times, **self._accuracy(tolerance)), times).states
 
         found = looked_at(answer, times)
         if (self.phases and found.phases) or any(phase.kind != "slip" for phase in found.phases):

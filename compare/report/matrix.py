@@ -327,7 +327,7 @@ def _gap(run: Run, study: Study, column: str) -> Cell | None:
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
     if isinstance(outcome, Failure):
-        return Cell(State.FAILED, reason=outcome.reason)
+        return Cell(State.MISSING if outcome.unfinished else State.FAILED, reason=outcome.reason)
     return Cell(State.MISSING, reason="not finished before the interruption") if outcome is None else None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import shlex
 from collections import Counter
 from collections.abc import Mapping
@@ -81,7 +82,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             hero_study=hero_study,
             filters=_filters(matrix),
             erratum_id=erratum_id,
-            claim_commands=_claim_commands,
+            claim_commands=functools.partial(_claim_commands, run.seed),
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
             worst=worst,
@@ -312,17 +313,20 @@ def _reason(value: object) -> str:
 
 def _commands(run: Run, study: Study) -> list[str]:
     engines = [column for column in run.columns(study) if column != THEORY]
-    return [command(study.name, engine) for engine in engines] or [command(study.name, THEORY)]
+    return [command(study.name, engine, run.seed) for engine in engines or [THEORY]]
 
 
-def _claim_commands(row: Row) -> list[str]:
+def _claim_commands(seed: int | None, row: Row) -> list[str]:
     engines = list(dict.fromkeys(claim.engine for claim in row.claims if claim.engine != THEORY)) or [THEORY]
-    return [command(f"--claim {shlex.quote(row.identity)}", engine) for engine in engines]
+    return [command(f"--claim {shlex.quote(row.identity)}", engine, seed) for engine in engines]
 
 
-def command(what: str, engine: str) -> str:
+def command(what: str, engine: str, seed: int | None = None) -> str:
     """Return the command that repeats the measurement of a study, or of a claim, with one engine."""
-    return f"friction-discs report {what}" + ("" if engine == THEORY else f" --engine {shlex.quote(engine)}")
+    text = f"friction-discs report {what}"
+    if engine == THEORY:
+        return text
+    return f"{text} --engine {shlex.quote(engine)}" + (f" --seed {seed}" if seed is not None else "")
 
 
 def _number(value: float) -> Markup:

@@ -310,7 +310,7 @@ def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
     outcome = run.outcomes.get((study, column))
     state, reason = State.MISSING.value, ""
     if isinstance(outcome, Failure):
-        state, reason = State.FAILED.value, outcome.reason
+        state, reason = (State.MISSING if outcome.unfinished else State.FAILED).value, outcome.reason
     elif outcome is not None:
         reason = outcome.not_simulated
         state = State.NOT_SIMULATED.value if reason else "finished"

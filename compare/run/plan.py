@@ -66,16 +66,19 @@ class _Recorder:
         return self.answer(line, system, initial_state, times, tolerance)
 
 
-def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
-    """Return the motions that ``study`` requests from an engine of ``kinds`` that reports no phases."""
+def planned(study: Study, kinds: tuple[str, ...], seed: int | None = None) -> Planned:
+    """Return the motions that ``study`` requests from an engine of ``kinds`` that reports no phases.
+
+    ``seed`` is that of their units, see ``Engine.seed``.
+    """
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
     for part in study.sentences().values():  # claims can be measured separately
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
-        found = _measured(study, exact, kinds, part)
+        found = _measured(study, Engine("plan", exact, kinds, phases=False, seed=seed), part)
         with suppress(Exception):  # a study may raise anything for wrong answers
-            _measured(study, off, kinds, part)
+            _measured(study, Engine("plan", off, kinds, phases=False, seed=seed), part)
         if list(exact.asked) != list(off.asked):
             adaptive += found
         elif found > 0:  # no claims if the system is of another kind
@@ -84,8 +87,8 @@ def planned(study: Study, kinds: tuple[str, ...]) -> Planned:
     return Planned(tuple(motions), claims, adaptive)
 
 
-def _measured(study: Study, recorder: _Recorder, kinds: tuple[str, ...], part: str) -> int:
-    return len(study.measure(Engine("plan", recorder, kinds, phases=False), only=(part,)).claims)
+def _measured(study: Study, engine: Engine, part: str) -> int:
+    return len(study.measure(engine, only=(part,)).claims)
 
 
 class _Truth:

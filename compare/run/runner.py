@@ -49,6 +49,8 @@ class Run:
         Evidence or failure for each erratum, by its index in ``errata``.
     versions : dict
         Versions of the engines by name; "" if unknown.
+    seed : int, optional
+        Seed of the units of the motions, see ``Engine.seed``.
     interrupted : bool
         True if Ctrl-C ended the run early.
 
@@ -64,6 +66,7 @@ class Run:
     drawings: dict[str, Drawing | Failure] = field(default_factory=dict)
     evidence: dict[int, Evidence | Failure] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
+    seed: int | None = None
     interrupted: bool = False
 
     def columns(self, study: Study) -> tuple[str, ...]:
@@ -140,6 +143,7 @@ def run(
         tuple(engine.name for engine in engines if engine.contact_only),
         tuple(engine.about for engine in engines if engine.about),
         versions={one.name: engine_version(one.name, one.kin, one.version) for one in engines},
+        seed=next((engine.seed for engine in engines), None),
     )
     with Workers(jobs, limit) as workers:
         try:
@@ -222,15 +226,26 @@ class _Runner:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
 
 
-def measured(study: Study, engine: Engine | str | None, only: Collection[str] = ()) -> Findings:
+QUICK_SEED = 1
+"""Seed of the quick level, whose motions are mostly of 1 kg and slow in SI units."""
+
+
+def seed_of(level: str, seed: int | None) -> int | None:
+    """Return the given ``seed`` of the units of motions, or that of the level "quick" or "full"."""
+    return QUICK_SEED if level == "quick" and seed is None else seed
+
+
+def measured(
+    study: Study, engine: Engine | str | None, only: Collection[str] = (), seed: int | None = None
+) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
-    ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
+    An engine given by name is imported here, in a process that may hang or crash; ``seed`` is for its units. ``only``
+    selects claims as in ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
-        (engine,) = engines([engine])
+        engine = replace(engines([engine])[0], seed=seed)
     if engine is not None:
         try:
             findings = study.measure(engine, only=only)

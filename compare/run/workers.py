@@ -52,10 +52,14 @@ TICK = 0.005
 
 @dataclass(frozen=True)
 class Failure:
-    """A failed piece of work: the reason and the locations in the code ("pin.py:12 in simulate"), innermost last."""
+    """A failed piece of work: the reason and the locations in the code ("pin.py:12 in simulate"), innermost last.
+
+    ``unfinished`` is True if only the time limit ended it.
+    """
 
     reason: str
     where: tuple[str, ...] = ()
+    unfinished: bool = False
 
     def __post_init__(self) -> None:
         """Make the texts printable, because most of them come from an engine."""
@@ -173,7 +177,8 @@ class Workers:
             if connection in ready:
                 done = worker.result()
             elif self._limit is not None and time.monotonic() >= worker.started + self._limit:
-                done = Done(worker.key, Failure(f"not finished within {self._limit:g} s"), self._limit)
+                late = Failure(f"not finished within {self._limit:g} s", unfinished=True)
+                done = Done(worker.key, late, self._limit)
                 worker.end()
             else:
                 continue

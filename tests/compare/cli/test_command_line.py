@@ -92,7 +92,7 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
     assert totals == f" ({folder / 'index.html'})"
     assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
-    assert diagnoses[1].startswith("failing: No result for law: the step size became too small")
+    assert diagnoses[1].startswith("failing: Undecided: no result for law: the step size became too small")
 
 
 LACKS = "fake_studies:straight does not simulate a disc on single points or a disc on a continuous ring"

@@ -7,6 +7,7 @@ import pytest
 
 from compare.cli import app as cli
 from compare.diagnosis import findings
+from compare.diagnosis.ladder import falling
 
 BLOCKS = """
 import functools, math
@@ -24,7 +25,10 @@ boxed.kinds, boxed.step = ("block",), 1e-2
 
 @pytest.mark.parametrize(
     ("name", "status", "said"),
-    [("simulate", 0, "Friction is Coulomb's cone, accurate to"), ("boxed", 1, "Friction is a box")],
+    [
+        ("simulate", 0, "Coulomb friction, accurate to"),
+        ("boxed", 1, "Not Coulomb friction: friction is a box"),
+    ],
 )
 def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, monkeypatch, capsys):
     (tmp_path / f"of_{name}.py").write_text(BLOCKS)
@@ -56,4 +60,4 @@ def test_probes_come_first_among_the_parts():
     from compare.engines import reference
 
     assert list(findings.parts_of(reference))[: len(findings.PROBES)] == list(findings.PROBES)
-    assert math.isnan(findings.falling([1.0], 2.0))
+    assert math.isnan(falling([1.0], 2.0))

@@ -76,7 +76,7 @@ def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkey
     studies = (fake.UNENDING, fake.AGREEMENT)
     result = run(studies, (fake.ALSO_GOOD,), folder=tmp_path, limit=limit, progress=progress)
     assert given_up["unending also-good"] > 9
-    assert result.outcomes["unending", "also-good"] == Failure("not finished within 1000 s")
+    assert result.outcomes["unending", "also-good"] == Failure("not finished within 1000 s", unfinished=True)
     assert result.seconds["unending", "also-good"] == limit
     assert isinstance(result.outcomes["agreement", "also-good"], Findings)
     assert multiprocessing.active_children() == []

@@ -1,0 +1,245 @@
+"""Friction force against mass, load, speed and place: the law that explains its deviations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from compare.diagnosis.laws import CONE, DISTINCT, SMOOTHINGS, Friction
+from compare.diagnosis.probes import PLANE
+from compare.report.numbers import error_text
+from reference_model.systems import FloatArray
+
+LEAST = 1e-6
+"""Smallest deviation of the force over μN that counts: friction removes down to 1e-4 of the speed, see ``probes``."""
+
+KEEPS = 0.98
+"""Share of the initial speed below which a block has lost it by something other than friction."""
+
+GROWS = 1.1
+"""Least growth of a force that is too small, from rung to rung, that counts as convergence."""
+
+POWER_FITS = 0.02
+"""Largest relative misfit of a power law."""
+
+CURVE_FITS = 0.03
+"""Largest misfit of a curve over speed, relative to the deviations that it explains."""
+
+FEWEST = 3
+"""Least number of slides beyond a threshold."""
+
+Curve = Callable[[FloatArray], FloatArray]
+
+VARIABLES = ("mass", "friction force", "slip speed", "disc speed", "distance from the axis")
+UNITS = ("kg", "N", "m/s", "rad/s", "m")
+MASS, LOAD, SPEED, DISC_SPEED, DISTANCE = range(len(VARIABLES))
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """Forces on slides over wide ranges.
+
+    Parameters
+    ----------
+    conditions : array of shape (n, 5)
+        The ``VARIABLES`` in ``UNITS``; the disc speed is 0 on a plane at rest.
+    forces, coarser, slips, radial : array of shape (n, 2)
+        Mean friction force over μN, the same at the rung before, mean direction of slip, and mean direction from the
+        axis to the body.
+    errors : array of shape (n,)
+        Errors of the forces.
+    speeds : array of shape (n, 2)
+        Initial speed in m/s, given and as it follows from speed and force when the measurement begins.
+
+    """
+
+    conditions: FloatArray
+    forces: FloatArray
+    coarser: FloatArray
+    slips: FloatArray
+    radial: FloatArray
+    errors: FloatArray
+    speeds: FloatArray
+
+    def ratios(self, law: Friction) -> NDArray[np.complex128]:
+        """Return measured over expected forces, NaN where a law other than the cone has no fixed direction."""
+        force, slip = self.forces @ PLANE, self.slips @ PLANE
+        if law.shape == CONE:
+            return np.asarray(force / -slip)
+        expected = law.force(slip / np.abs(slip)) / law.strength
+        return np.where(self.conditions[:, DISC_SPEED] == 0.0, force / expected, np.nan)
+
+    @property
+    def looked_at(self) -> str:
+        """Ranges of the variables in words."""
+        found = []
+        for name, unit, values in zip(VARIABLES, UNITS, np.abs(self.conditions).T, strict=True):
+            if np.any(values := values[values > 0.0]):
+                found.append(f"{name} {_short(np.min(values))} to {_short(np.max(values))} {unit}")
+        return ", ".join(found)
+
+
+def _short(value: float) -> str:
+    return error_text(value, 1)
+
+
+def speed_limit(scales: Scales) -> str:
+    """Return a sentence if bodies lose speed at once, else ""."""
+    before, after = scales.speeds[scales.conditions[:, DISC_SPEED] == 0.0].T
+    lost = after < KEEPS * before
+    if not np.any(lost):
+        return ""
+    i, most = int(np.argmin(after / before)), float(np.max(after))
+    alike = np.allclose(after[lost], most, rtol=0.1)
+    ending = f": speeds are limited to {error_text(most)} m/s" if alike else ""
+    return f"a body that starts at {error_text(before[i])} m/s moves at {error_text(after[i])} m/s at once{ending}"
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """A deviation in words, whether a known law explains it, and whether it falls with the step or the tolerance."""
+
+    text: str
+    explained: bool
+    falls: bool = False
+
+
+def deviation(scales: Scales, law: Friction) -> Deviation | None:
+    """Return how the force deviates from ``law`` over the ranges; None if it does not."""
+    ratios = scales.ratios(law)
+    keep = np.isfinite(ratios) & (scales.speeds[:, 1] >= KEEPS * scales.speeds[:, 0])
+    ratios, conditions, errors = ratios[keep], scales.conditions[keep], scales.errors[keep]
+    off = np.abs(ratios - law.strength * np.exp(1j * law.angle * (law.shape == CONE)))
+    allowed = np.maximum(DISTINCT * errors, max(LEAST, DISTINCT * law.error, law.misfit))
+    wrong = off > allowed
+    if not np.any(wrong):
+        return None
+    sizes, before = np.abs(scales.forces[keep] @ PLANE), np.abs(scales.coarser[keep] @ PLANE)
+    grows = sizes[wrong] > GROWS * before[wrong]
+    falls = bool(np.all(sizes[wrong] < law.strength) and np.median(grows))
+    sizes, blocks = ratios.real, conditions[:, DISC_SPEED] == 0.0
+    text = _thresholds(conditions, sizes, wrong)
+    if np.any(wrong & blocks):
+        text = (
+            _power(conditions[blocks], sizes[blocks])
+            or _of_speed(conditions[blocks], sizes[blocks], errors[blocks])
+            or text
+        )
+    if text:
+        return Deviation(text, True, falls)
+    worst = int(np.argmax(off / allowed))
+    at = ", ".join(
+        f"{error_text(abs(value))} {unit}"
+        for value, unit in zip(conditions[worst], UNITS, strict=True)
+        if value
+    )
+    size = (
+        f"deviates by {error_text(off[worst])} times μN"
+        if off[worst] < 0.1
+        else f"is {sizes[worst]:.3g} times μN"
+    )
+    where = "" if np.any(wrong & blocks) else "on turntables only, "
+    return Deviation(f"{where}the friction force {size} at {at}", False, falls)
+
+
+def blind(scales: Scales) -> str:
+    """Return a description of friction that ignores slip along the radius, else ""."""
+    at_rest = scales.conditions[:, DISC_SPEED] == 0.0
+    force, slip, radial = ((one @ PLANE)[at_rest] for one in (scales.forces, scales.slips, scales.radial))
+    acts, slides = force * np.conj(radial), slip * np.conj(radial)
+    oblique = np.minimum(np.abs(slides.real), np.abs(slides.imag)) > 0.1
+    ignores = np.all(np.abs(acts.real)[oblique] < 0.1 * np.abs(slides.real)[oblique])
+    acts_across = np.all(np.abs(acts.imag)[oblique] > 0.1 * np.abs(slides.imag)[oblique])
+    return "friction ignores slip towards and away from the axis" if ignores and acts_across else ""
+
+
+def _power(conditions: FloatArray, sizes: FloatArray) -> str:
+    """Return a description of a force that is a power of mass, load or speed, else ""."""
+    if not np.all(sizes > 0.0):
+        return ""
+    logs = np.log(conditions[:, : SPEED + 1])
+    full = np.column_stack((np.ones(len(sizes)), logs))
+    powers, *_ = np.linalg.lstsq(full, np.log(sizes), rcond=None)
+    if np.max(np.abs(full @ powers - np.log(sizes))) > POWER_FITS or np.max(np.abs(powers[1:])) < 0.05:
+        return ""
+    said = [
+        f"{name}^{power:.2f}" for name, power in zip(VARIABLES, powers[1:], strict=False) if abs(power) > 0.01
+    ]
+    return f"the friction force over μN is proportional to {' and '.join(said)}, but must not depend on it"
+
+
+RISING: dict[str, Curve] = {"v": lambda x: x}
+
+FALLING: dict[str, Curve] = {
+    "exp(−v/V)": lambda x: np.exp(-x),
+    "exp(−(v/V)²)": lambda x: np.exp(-x * x),
+    "1/(1 + v/V)": lambda x: 1.0 / (1.0 + x),
+}
+"""Curves over the slip speed v, as functions of v over a constant."""
+
+
+def _of_speed(conditions: FloatArray, sizes: FloatArray, errors: FloatArray) -> str:
+    """Return a description of a force that depends on the slip speed alone, else ""."""
+    allowed = CURVE_FITS * np.maximum(np.abs(sizes), 0.1) * min(1.0, float(np.ptp(sizes))) + DISTINCT * errors
+    regularised = {one.name: one.share for one in SMOOTHINGS}
+    found = [
+        (*_fit(curve, conditions[:, SPEED], sizes, allowed, alone=name in regularised), name)
+        for name, curve in (regularised | RISING | FALLING).items()
+    ]
+    misfit, scale, (base, more), name = min(found, key=lambda one: one[0])
+    if misfit > 1.0:
+        return ""
+    if name in regularised:
+        return f"friction is regularised as {name} with ε = {error_text(scale)} m/s"
+    if name in RISING:
+        law = f"{base:.4g} {'+' if more > 0.0 else '−'} {abs(more) / scale:.3g}·v/(m/s)"
+        return f"the coefficient μ depends on the slip speed v, as {law} times its value"
+    return (
+        "the coefficient μ falls with the slip speed (Stribeck), "
+        f"from {base + more:.5g} to {base:.5g} times its value, as {name} with V = {error_text(scale)} m/s"
+    )
+
+
+def _fit(
+    curve: Curve, speeds: FloatArray, sizes: FloatArray, allowed: FloatArray, *, alone: bool
+) -> tuple[float, float, FloatArray]:
+    """Return misfit, scale and coefficients of a + b·curve(v/scale); a = 0 if ``alone``."""
+
+    def fit(power: float) -> tuple[float, FloatArray]:
+        shape = curve(speeds / 10.0**power)
+        table = np.column_stack((np.full_like(shape, 0.0 if alone else 1.0), shape))
+        numbers, *_ = np.linalg.lstsq(table / allowed[:, None], sizes / allowed, rcond=None)
+        return float(np.max(np.abs(table @ numbers - sizes) / allowed)), np.asarray(numbers, dtype=float)
+
+    start = min(np.linspace(-6.0, 3.0, 91).tolist(), key=lambda power: fit(power)[0])
+    best = minimize_scalar(lambda power: fit(power)[0], bounds=(start - 0.1, start + 0.1))
+    misfit, numbers = fit(float(best.x))
+    return misfit, 10.0 ** float(best.x), numbers
+
+
+def _thresholds(conditions: FloatArray, sizes: FloatArray, wrong: NDArray[np.bool_]) -> str:
+    """Return a description of deviations beyond a threshold of one or several variables, else ""."""
+    sides = []
+    for name, unit, values in zip(VARIABLES, UNITS, np.abs(conditions).T, strict=True):
+        right = values[~wrong & (values > 0.0)]
+        if right.size:
+            low, high = float(np.min(right)), float(np.max(right))
+            sides.append((values > high, f"{name} above {error_text(high)} {unit}"))
+            sides.append(((values < low) & (values > 0.0), f"{name} below {error_text(low)} {unit}"))
+    left, said = wrong.copy(), []
+    while sides:
+        beyond, words = max(sides, key=lambda side: int(np.sum(left & side[0])))
+        if np.sum(left & beyond) < FEWEST:
+            break
+        said.append(words)
+        left &= ~beyond
+    share = sizes[wrong]
+    if not said or np.sum(left) > FEWEST or np.ptp(share) > 0.1 * np.max(np.abs(share - 1.0)):
+        return ""
+    change = 100.0 * (float(np.median(share)) - 1.0)
+    size = f"{error_text(abs(change))} % too {'large' if change > 0.0 else 'small'}"
+    return f"the coefficient μ is {size} for a {' or '.join(said)}"

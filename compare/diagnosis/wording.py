@@ -1,0 +1,256 @@
+"""Sentences that explain the results for one engine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
+from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
+from compare.diagnosis.probes import SUPPORTS
+from compare.diagnosis.scaling import Scales, blind, deviation
+from compare.report.numbers import error_text
+
+LEAST_DEVIATION = 1e-7
+"""Smallest reported relative deviation of a force or its direction."""
+
+FALLS = 0.3
+"""Order in the step above which a quantity counts as decreasing with it."""
+
+RESTS = 1e-9
+"""Ratio of speed to sliding speed below which a block is at rest."""
+
+LEAST_LAG = 1e-6
+"""Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
+
+STEPS = (0.2, 3.0)
+"""Range of lags, in steps, that are reported in steps."""
+
+
+LEAST_SHARE = 1e-6
+"""Smallest reported relative deviation of a distance, or of force and moment on a disc."""
+
+ALIKE = 0.1
+"""Largest spread of the forces of the support that a wrong mass explains, and deviation of a force that another
+explains, relative to the larger deviation."""
+
+SAME_DELAY = 0.2
+"""Largest relative difference of the delays of two late releases."""
+
+CHATTERS = 3.0
+"""Least ratio of the velocity of a block that chatters to its creep."""
+
+MOTION, MASS = "Wrong motion", "Wrong mass"
+"""Beginnings of the verdict of an engine whose friction may be right."""
+
+
+class Remark(NamedTuple):
+    """A finding: its sentence, True if it refutes the engine (None: undecided), and the beginning of the verdict."""
+
+    text: str
+    wrong: bool | None
+    about: str = "Not Coulomb friction"
+
+
+def sentence(text: str) -> str:
+    """Return ``text`` as a sentence."""
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def size_text(share: float, error: float | None = None) -> str:
+    """Return the ratio ``share`` of a number to the right one in words."""
+    if not 0.5 < share < 2.0:
+        return f"{share:.3g} times the right one"
+    margin = f" (±{error_text(100.0 * error)} %)" if error is not None else ""
+    return f"{error_text(100.0 * abs(share - 1.0))} % too {'large' if share > 1.0 else 'small'}{margin}"
+
+
+def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: str) -> Iterator[Remark]:
+    """Yield how friction differs from Coulomb's, over wide ranges and for one block."""
+    if scales is not None and (text := blind(scales)):
+        yield Remark(sentence(text), True)
+    elif law.shape == NOTHING:
+        yield Remark("There is no friction.", True)
+    elif not math.isnan(law.per_step):
+        shape = f" Its shape is a {law.shape}." if law.shape != CONE else ""
+        yield Remark(
+            f"Friction is limited by an impulse per step, {error_text(law.per_step)} s times the limit μN "
+            "at any step."
+            f"{shape}",
+            True,
+        )
+    elif not law.sure and law.fits:
+        yield Remark(
+            f"The friction law could not be identified: the error of the forces is {error_text(law.error)} times "
+            "the limit μN.",
+            None,
+        )
+    elif not law.sure:
+        yield Remark(
+            f"No known friction law fits: the best fit, a {law.shape}, "
+            f"deviates by {error_text(law.misfit)} times the limit μN.",
+            True,
+        )
+    else:
+        small = abs(law.force(np.ones(1, dtype=complex))[0] + 1.0) < NEAR  # a wrong support may explain it
+        other = deviation(scales, law) if scales is not None else None
+        cause, explained = _cause(law), other is not None and other.explained
+        if other is not None and (explained or (support_right and not cause)):
+            how = f", decreasing with the {refined}" if other.falls else ""
+            yield Remark(sentence(other.text + how), not other.falls)
+        if cause and (law.shape != CONE or not (explained or (small and not support_right))):
+            yield Remark(cause, True)
+
+
+def _cause(law: Friction) -> str:
+    """Return the sentence on how a law differs from Coulomb's, or ""."""
+    deviations = _deviations(law)
+    if law.shape == ELLIPSE:
+        return (
+            f"Friction is an ellipse: the coefficient μ is {law.along:.4g} times its value along "
+            f"{math.degrees(law.axis):.1f}° and {law.across:.4g} times across."
+        )
+    if law.shape != CONE or not law.fits:
+        further = (
+            "" if law.fits else f", with a further difference of {error_text(law.misfit)} times the limit μN"
+        )
+        name = "Coulomb's cone" if law.shape == CONE else f"a {law.shape}"
+        return f"Friction is {name}{''.join(f', but {one}' for one in deviations)}{further}."
+    return sentence(" and ".join(deviations)) if deviations else ""
+
+
+def _deviations(law: Friction) -> list[str]:
+    """Return descriptions of the deviations of a force from its own law."""
+    found = []
+    least = max(DISTINCT * law.error, LEAST_DEVIATION, law.misfit)
+    if abs(law.strength - 1.0) > least:
+        found.append(f"the coefficient μ is {size_text(law.strength, law.error)}")
+    if abs(abs(law.angle) - math.pi) < least:
+        found.append("friction accelerates the slip")
+    elif abs(law.angle) > least:
+        found.append(
+            f"the friction force is rotated by {error_text(math.degrees(law.angle))}° "
+            f"(±{error_text(math.degrees(law.error))}°)"
+        )
+    return found
+
+
+def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
+    """Yield whether a block that should rest creeps or chatters, faster than ``least`` m/s."""
+    chatters = creep.chatter > max(least, CHATTERS * abs(creep.speed))
+    if not chatters and abs(creep.speed) < least:
+        yield Remark("A block loaded below μN stays at rest.", False)
+        return
+    falls = (creep.chatter_order if chatters else creep.order) > FALLS
+    how = f"decreasing with the {refined}" if falls else f"independent of the {refined}"
+    text = f"a block that should rest creeps at {error_text(abs(creep.speed))} m/s under half of the limit μN"
+    if chatters:
+        text = f"friction chatters: a block that should rest swings at {error_text(creep.chatter)} m/s, {how}"
+    elif creep.smoothing:
+        law = f"{creep.smoothing} with ε = {error_text(creep.epsilon)} m/s"
+        text = f"friction is regularised as {law}, {how}: {text}"
+    else:
+        text = f"{text}, {how}"
+    yield Remark(sentence(text), not falls)
+
+
+def of_history(history: History, explained: bool, least: float) -> Iterator[Remark]:
+    """Yield how friction depends on the motion before; ``explained`` if another finding may be the reason."""
+    once, twice = history.delay, history.second_delay
+    allowed = 2.0 * history.delay_error + history.second_delay_error + SAME_DELAY * once
+    if explained:
+        return
+    if history.static > 0.9 * MOST_HELD:
+        yield Remark(f"A block at rest is not released by {history.static:.0f} times the limit μN.", True)
+    elif history.static > 1.0:
+        yield Remark(
+            f"Static friction is {error_text(100.0 * (history.static - 1.0))} % above sliding friction.", True
+        )
+    elif once > max(history.delay_error, LEAST_LAG) and abs(twice - 2.0 * once) < allowed:
+        yield Remark(f"A block is released {error_text(1e3 * history.delay)} ms late.", True)
+    elif abs(history.second - 1.0) > max(DISTINCT * history.second_error, LEAST_SHARE):
+        yield Remark(f"The way of a block after a second release is {size_text(history.second)}.", True)
+    if history.rest > least:
+        yield Remark(
+            f"A block at rest after a slide, or close to its release, creeps at {error_text(history.rest)} m/s.",
+            True,
+        )
+
+
+def of_support(support: Shares) -> list[Remark]:
+    """Return the forces of the support that are wrong; an equal factor of all is that of the mass."""
+    off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
+    farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
+    if np.all(off) and farthest and float(np.ptp(support.shares)) < ALIKE * abs(1.0 / farthest - 1.0):
+        return [Remark(f"The mass is {size_text(1.0 / farthest)}, because all forces act alike.", True, MASS)]
+    return [
+        Remark(f"The {name} is {size_text(share)}.", True, MOTION)
+        for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
+        if wrong
+    ]
+
+
+def of_repeat(repeat: Repeat | None) -> list[Remark]:
+    """Return whether equal calls have equal results."""
+    if repeat is None or repeat.difference == 0.0:
+        return []
+    text = f"Equal calls return states that differ by {error_text(repeat.difference)} of their size"
+    if repeat.difference <= 2.0 * repeat.declared:
+        return [Remark(f"{text}, within the declared precision.", False)]
+    return [Remark(f"{text}, more than the declared precision of {repeat.declared:g}; declare it.", None)]
+
+
+def of_moments(moments: Shares, law: Friction | None) -> Iterator[Remark]:
+    """Yield the errors of force and moment on discs that are not those of the law."""
+    least = LEAST_SHARE
+    if law is not None:
+        least += 2.0 * (DISTINCT * law.error + abs(law.strength - 1.0))
+    off = np.abs(moments.shares - 1.0)
+    beyond = off > np.maximum(DISTINCT * moments.errors, least)
+    largest = np.max(np.where(beyond, off, 0.0))
+    for column, name in enumerate(("force", "moment")):
+        # an error of the moment changes the spin, and so the force a little
+        wrong = beyond[:, column] & (off[:, column] > ALIKE * largest)
+        if np.any(wrong):
+            worst = float(moments.shares[np.argmax(np.where(wrong, off[:, column], 0.0)), column])
+            yield Remark(f"The friction {name} on a disc is {size_text(worst)}.", True, MOTION)
+
+
+def of_lag(lag: Lag, step: float, least: float) -> Iterator[Remark]:
+    """Yield a lag of friction behind the slip."""
+    if abs(lag.seconds) < least:
+        return
+    verb = "lags" if lag.seconds > 0.0 else "leads"
+    if abs(lag.seconds) > max(DISTINCT * lag.error, least):
+        yield Remark(
+            f"Friction {verb} the slip by {error_text(abs(lag.seconds))} s at every step size.",
+            True,
+        )
+    elif lag.order > FALLS and STEPS[0] <= abs(lag.seconds) / step <= STEPS[1]:
+        yield Remark(f"Friction {verb} the slip by {error_text(abs(lag.seconds) / step)} steps.", False)
+
+
+def of_motions(motions: dict[str, Motion], refined: str) -> Iterator[Remark]:
+    """Yield the order of the errors, and the motions that do not converge to the exact one."""
+    others = {name: motion for name, motion in motions.items() if not motion.converges}
+    orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
+    if orders:
+        least, most = (f"{order:.1f}" for order in (min(orders), max(orders)))
+        yield Remark(
+            f"Errors are of order {least}" + f" to {most}" * (least != most) + f" in the {refined}.", False
+        )
+    open_ = [name for name, motion in motions.items() if motion.converges and not motion.conclusive]
+    if open_:
+        yield Remark(f"Too coarse to tell: {', '.join(open_)}.", False)
+    if others and all(len(set(motion.errors)) == 1 for motion in others.values()):
+        yield Remark(
+            f"Results do not change with the {refined}, so an error cannot be distinguished from another law.",
+            True,
+            MOTION,
+        )
+    elif others:
+        off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
+        yield Remark(f"Motions converge to others than the exact ones: {off}.", True, MOTION)

@@ -1,0 +1,142 @@
+"""Motions in other units: equal to the requested ones in dimensionless form, with other parameters.
+
+The studies' masses are mostly 1 kg and their speeds below 2 m/s. An engine may be wrong at all others. If mass,
+length and time are measured in other units, the same claims test it there, at the same cost. The units are powers of
+two, so an engine without absolute constants returns the same digits.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from reference_model.systems import FloatArray, System
+from reference_model.trajectory import Trajectory
+
+MOST = 5
+"""Largest power of two in the factors of masses, stiffnesses, loads, speeds, lengths and times.
+
+Each factor then has a range of 2¹⁰, three decades.
+"""
+
+UNITS = tuple(
+    (mass, length, time)
+    for mass, length, time in itertools.product(range(-MOST, MOST + 1), repeat=3)
+    if max(abs(length - time), abs(mass - 2 * time), abs(mass + length - 2 * time)) <= MOST
+)
+"""Powers of two for kg, m and s."""
+
+DIMENSIONS = {
+    "mass": (1, 0, 0),
+    "stiffness": (1, 0, -2),
+    "damping": (1, 0, -1),
+    "friction_force": (1, 1, -2),
+    "disc_speed": (0, 0, -1),
+    "offset": (0, 1, 0),
+    "hardening": (1, -2, -2),
+    "stop_gap": (0, 1, 0),
+    "stop_stiffness": (1, 0, -2),
+    "polar_inertia": (1, 2, 0),
+    "contact_radius": (0, 1, 0),
+    "shaft_damping": (1, 2, -1),
+    "shaft_speed": (0, 0, -1),
+}
+"""Powers of mass, length and time in each parameter."""
+
+
+@dataclass(frozen=True)
+class InOtherUnits:
+    """A ``simulate`` that asks ``function`` for each motion in units drawn from ``seed`` and the system."""
+
+    function: Callable[..., Any]
+    seed: int
+
+    def __call__(self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float) -> Any:
+        """Return the motion in the units of ``system``."""
+        units = self._units(system)
+        return _back(
+            self.function(*_asked(system, initial_state, times, units), **_step(accuracy, units)),
+            system,
+            units,
+        )
+
+    @property
+    def simulate_many(self) -> Callable[..., Any] | None:
+        """The same for ``function.simulate_many``; None if there is none, or if it takes one step for all motions."""
+        at_once = getattr(self.function, "simulate_many", None)
+        return at_once and functools.partial(self._many, at_once)
+
+    def _many(
+        self,
+        at_once: Callable[..., Any],
+        systems: Sequence[System],
+        initial_states: Sequence[ArrayLike],
+        times: Sequence[ArrayLike],
+        **accuracy: float,
+    ) -> Any:
+        # one call has one step, so all of its motions have the units of the first system
+        units = [self._units(systems[0] if "step" in accuracy else system) for system in systems]
+        asked = [_asked(*motion) for motion in zip(systems, initial_states, times, units, strict=True)]
+        answers = at_once(*map(list, zip(*asked, strict=True)), **_step(accuracy, units[0]))
+        if isinstance(answers, Trajectory) or not isinstance(answers, Sequence) or len(answers) != len(asked):
+            return answers
+        return [_back(*one) for one in zip(answers, systems, units, strict=True)]
+
+    def _units(self, system: System) -> tuple[int, int, int]:
+        return UNITS[zlib.crc32(repr((self.seed, system)).encode()) % len(UNITS)]
+
+
+def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
+    """Return the factors of the components of a state, shape (4,) or (6,)."""
+    _, length, time = units
+    places = [2.0**length, 2.0**length] + [1.0] * (system.state_size // 2 - 2)
+    return np.array(places + [place / 2.0**time for place in places])
+
+
+def _asked(
+    system: System, state: ArrayLike, times: ArrayLike, units: tuple[int, int, int]
+) -> tuple[System, FloatArray, FloatArray]:
+    """Return system, state and times in other units."""
+    sizes = {
+        name: float(np.dot(powers, units)) for name, powers in DIMENSIONS.items() if hasattr(system, name)
+    }
+    there = replace(system, **{name: getattr(system, name) * 2.0**power for name, power in sizes.items()})
+    return (
+        there,
+        np.asarray(state, dtype=float) * _factors(system, units),
+        np.asarray(times, dtype=float) * 2.0 ** units[2],
+    )
+
+
+def _step(accuracy: dict[str, float], units: tuple[int, int, int]) -> dict[str, float]:
+    return {name: value * 2.0 ** units[2] if name == "step" else value for name, value in accuracy.items()}
+
+
+def _back(answer: Any, system: System, units: tuple[int, int, int]) -> Any:
+    """Return the answer in the units of ``system``; one that is not a valid trajectory is unchanged."""
+    factors, second = _factors(system, units), 2.0 ** units[2]
+    if not isinstance(answer, Trajectory) or np.shape(answer.states)[1:] != factors.shape:
+        return answer
+    speed = factors[-1] if len(factors) == 4 else factors[3]
+    return Trajectory(
+        system,
+        np.asarray(answer.times, dtype=float) / second,
+        np.asarray(answer.states, dtype=float) / factors,
+        tuple(
+            replace(
+                phase,
+                start=phase.start / second,
+                end=phase.end / second,
+                initial_state=np.asarray(phase.initial_state, dtype=float) / factors,
+            )
+            for phase in answer.phases
+        ),
+        replace(answer.solution, regularisation=answer.solution.regularisation / speed),
+    )
