@@ -29,24 +29,24 @@ class Variable:
 
     Parameters
     ----------
-    name : str
+    name
         Name for importers; the value reference is the index in the table.
-    unit : str
+    unit
         One of ``description.UNITS``, or "" if dimensionless.
-    about : str
+    about
         Description.
-    role : str
+    role
         "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
         only at events.
-    start : float, optional
+    start
         Value before initialisation; None if it follows from others.
-    least, most : float
+    least, most
         Allowed range.
-    type : str
+    type
         "real", "whole" or "boolean".
-    derivative_of : str
+    derivative_of
         Name of the state for a derivative, otherwise "".
-    scale : str
+    scale
         Scale of a state: "x" for lengths, "v" for speeds, or "1".
 
     """

@@ -59,11 +59,11 @@ class Group:
 
     Parameters
     ----------
-    files : Files
+    files
         Files of the store.
-    description : str
+    description
         Checksum of the store's description, because another machine may have another store at the same path.
-    name : str
+    name
         Name in the store.
 
     """

@@ -87,11 +87,11 @@ class Axis:
 
     Parameters
     ----------
-    name : str
+    name
         Component or parameter.
-    low, high : float
+    low, high
         First and last value, in its SI unit; low < high.
-    points : int
+    points
         Number of values, from 2 to 100,000.
 
     Raises

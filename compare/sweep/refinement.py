@@ -73,9 +73,9 @@ def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Gr
 
     Parameters
     ----------
-    shape : tuple of int
+    shape
         Number of points of the finest grid along y and x.
-    coarse : int
+    coarse
         Least number of points along each axis of the first grid.
 
     Returns

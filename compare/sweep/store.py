@@ -54,15 +54,15 @@ class SweepStore:
 
     Parameters
     ----------
-    files : Files
+    files
         Files of the store.
-    plan : Plan
+    plan
         Plan of the sweep.
-    chunk : int
+    chunk
         Number of trajectories that are computed and written together.
-    stamp : str
+    stamp
         Digest of the code that computes them.
-    place : str, optional
+    place
         Requested URL, if ``files`` belong to an unpacked archive.
 
     """

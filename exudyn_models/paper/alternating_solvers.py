@@ -96,17 +96,17 @@ def solve_in_turns(
 
     Parameters
     ----------
-    contact : RegularisedContact
+    contact
         Contact of the system. This and all other numbers are in units that make the motion of order one.
     state : array of shape (4,) or (6,)
         Initial state.
     times : array of shape (n,)
         Times from 0 on.
-    solver : SlipSolver
+    solver
         Solver for slip.
-    friction : Friction
+    friction
         Friction between the discs.
-    seconds : float
+    seconds
         Unit of time in s, for messages.
 
     """

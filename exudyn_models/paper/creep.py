@@ -26,9 +26,7 @@ class RegularisedContact:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    epsilon : float
+    epsilon
         ε > 0 of the contact as a whole, in the system's unit of speed.
 
     """

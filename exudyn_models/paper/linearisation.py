@@ -24,8 +24,6 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         State as in ``simulate``, usually an equilibrium.
 

@@ -20,13 +20,13 @@ class Scales:
 
     Parameters
     ----------
-    time : float
+    time
         Time scale of the motion, see ``time_scale``.
-    motion : float
+    motion
         Scale of DOPRI5's error, in m and m/s: 1, or the size of the motion if that is larger.
-    angle_rounding : float
+    angle_rounding
         Rounding error in rad of the angle of a disc after the span; 0 for a pin.
-    force : float
+    force
         Scale of the residual of Newton's method, > 0: the forces on the body in N or the moments in N m, whichever
         are smaller.
 

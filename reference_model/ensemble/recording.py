@@ -52,11 +52,11 @@ class Recording:
         Requested times in s, >= 0.
     states : array of shape (n, 4) or (n, 6)
         States at these times, as far as computed.
-    duration, unit : float
+    duration, unit
         Duration and unit of time in s.
     phases : list of (kind, start, state)
         Phases so far.
-    steps, evaluations : int
+    steps, evaluations
         Counts so far, as in ``Solution``, including rejected steps and stick phases.
 
     """

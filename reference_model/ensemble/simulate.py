@@ -44,21 +44,21 @@ def simulate_ensemble(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
         Initial states as in ``reference_model.simulate``, one per trajectory or one for all.
-    duration : float
+    duration
         Duration in s, > 0.
-    tolerance : float
+    tolerance
         Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. The tolerance of steps is
         a tenth of it (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s
         half have errors below 4e-9, 99 % below 1e-8, and one, of Fig. 9, has 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Parameters that differ between trajectories.
-    early_end : bool
+    early_end
         Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
-    threads : int, optional
+    threads
         Number of threads; by default one per processor.
 
     Raises

@@ -44,11 +44,11 @@ def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
 
     Parameters
     ----------
-    slip : complex
+    slip
         (ẋ + ωy) + i(ẏ − ωx), in m/s.
-    rim_speed : float
+    rim_speed
         R(ω − φ̇) in m/s, of either sign.
-    place : float
+    place
         φ + χ in rad.
 
     """
@@ -248,11 +248,11 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system; ``friction_force`` is ignored.
-    alpha : float
+    alpha
         α in rad, 0 < α < π/2.
-    contact : IsotropicContact or None
+    contact
         Friction law, :class:`reference_model.contact.contact_law.ThreeTermRing` for (23); None for the law of the
         parameters.
 

@@ -32,11 +32,11 @@ class OnePoint:
 
     Parameters
     ----------
-    motion : DiscMotion
+    motion
         Equations of motion of the disc.
-    contact : PointsOnRing
+    contact
         Friction law.
-    point : int
+    point
         Index of the point.
 
     """

@@ -45,9 +45,9 @@ class CompiledOnce:
 
     Parameters
     ----------
-    function : callable
+    function
         A function that numba can compile. It runs without the global interpreter lock.
-    package : Path
+    package
         Folder of all sources that are compiled into the function.
 
     Attributes

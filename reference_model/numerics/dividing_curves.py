@@ -52,14 +52,14 @@ def dividing_curves(
 
     Parameters
     ----------
-    function : callable
+    function
         Takes a point, shape (2,), and returns a number. It must be defined up to one cell beyond the rectangle.
     low, high : array of shape (2,)
         Limits of the rectangle.
-    cells : int
+    cells
         Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
         that pass between the points of the grid.
-    error : float
+    error
         Allowed error of a point across the curve, as a fraction of the rectangle.
 
     Raises

@@ -29,13 +29,13 @@ def whirl_branch(
 
     Parameters
     ----------
-    orbit : Orbit
+    orbit
         First orbit; its engine and tolerance are used for all.
-    until : float
+    until
         Smallest crossing x in m, > 0.
-    step : float
+    step
         Largest relative change of x between neighbours.
-    samples : int
+    samples
         Number of intervals of each trajectory.
 
     Raises

@@ -76,9 +76,9 @@ class ReleaseMap:
 
     Parameters
     ----------
-    pin : PinOnDisc
+    pin
         Parameters of the system, with friction, an offset and a turning disc.
-    tolerance : float
+    tolerance
         Tolerance for ``simulate``.
 
     """
@@ -214,15 +214,13 @@ class StickSlipOrbit(Orbit):
 
     Parameters
     ----------
-    system : PinOnDisc
-        Parameters of the system.
     release : array of shape (4,)
         State at the release.
-    release_angle : float
+    release_angle
         α in rad, the lag of the pull behind that of the offset at the release.
-    stick_time : float
+    stick_time
         Duration of stick in s.
-    multiplier : float
+    multiplier
         Growth factor per period of a small deviation of the release angle.
 
     """
@@ -254,11 +252,11 @@ def stick_slip_orbits(
 
     Parameters
     ----------
-    pin : PinOnDisc
+    pin
         Parameters of the system. There are no such motions without offset or friction, or on a disc at rest.
-    tolerance : float
+    tolerance
         Tolerance for ``simulate``.
-    samples : int
+    samples
         Number of intervals of the returned trajectories.
 
     Raises

@@ -47,9 +47,7 @@ class Shock:
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
-    vx, vy : float
+    vx, vy
         Change of the velocity in m/s.
 
     """

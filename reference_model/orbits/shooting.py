@@ -144,20 +144,18 @@ class Orbit:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         Initial state of the orbit. It lies on the x axis, y = 0, unless the guess started elsewhere. The angle of a
         disc is zero.
-    period : float
+    period
         Period in s.
-    residual : float
+    residual
         Distance between start and end of the orbit, relative to its size.
-    trajectory : Trajectory
+    trajectory
         One period at equally spaced times, both ends included.
-    problem : ShootingProblem
+    problem
         Its return map.
-    turn : float
+    turn
         Rotation of the motion about the axis in a period, in rad, including whole turns; 0 if it recurs without
         rotation.
 

@@ -67,13 +67,13 @@ class Boundary:
 
     Parameters
     ----------
-    kind : str
+    kind
         "Hopf", "fold" or "onset".
     parameters : array of shape (n, 2)
         Points of the curve, in the units of the two parameters.
     alpha : array of shape (n,)
         Angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a whirl of zero radius.
-    closed : bool
+    closed
         Whether the last point equals the first one.
 
     """
@@ -94,13 +94,13 @@ def boundaries(
 
     Parameters
     ----------
-    plane : ParameterPlane
+    plane
         The parameters and their ranges.
-    kind : str
+    kind
         "Hopf", "fold" or "onset".
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
-    step : float
+    step
         Largest distance of neighbouring points, in units of the ranges.
 
     Raises
@@ -123,9 +123,9 @@ def crossings(
     ----------
     plane, kind, contact
         As in :func:`boundaries`.
-    name : str
+    name
         Name of the parameter that is constant along the line.
-    value : float
+    value
         Its value.
 
     Returns

@@ -31,11 +31,9 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
-    contact : Contact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Returns
@@ -105,12 +103,10 @@ def equilibrium_eigenvalues(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (6,) or None
         State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
         pin.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -155,11 +151,9 @@ def turning_frame_jacobian(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,), or None
         A state on the whirl, with the centre on the x axis: y = vx = 0. None for a pin, which has at most one whirl.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -210,9 +204,9 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system, without offset; ``friction_force`` is ignored.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

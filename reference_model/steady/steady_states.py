@@ -80,9 +80,7 @@ def self_centred_equilibria(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -148,9 +146,7 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -258,9 +254,9 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system; ``friction_force`` is ignored.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

@@ -111,7 +111,6 @@ STUDY = Study.beside(
     swept=("damping", "shaft_damping"),
 )
 def leaves_axis(ends: Ends | None = None) -> Measured:
-    """Check that motions leave the axis above the onset and return to it below."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends
@@ -133,7 +132,6 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
     swept=("damping", "shaft_damping"),
 )
 def no_unstable_whirl(ends: Ends | None = None) -> Measured:
-    """Check that no motion ends as an unstable whirl."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends

@@ -106,7 +106,7 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Compare the drift of every drivetrain with zero; runs with half the steps yield the error."""
+    """Runs with half the steps yield the error."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []

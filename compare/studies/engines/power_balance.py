@@ -33,13 +33,13 @@ class Motion:
     ----------
     system, start, source
         Parameters, initial state, and their origin.
-    until, step : float
+    until, step
         Duration and sampling interval in s.
-    tolerance : float
+    tolerance
         Tolerance of the measurement.
-    drawn : bool
+    drawn
         True if the figure shows the motion.
-    contact_alone : bool
+    contact_alone
         True if engines that only provide the contact take part, see ``Engine.contact_only``.
 
     """
@@ -167,7 +167,6 @@ Motions = Callable[[], Mapping[str, Motion]]
     each=tuple(motions_of_the_pin()),
 )
 def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Measured | None:
-    """Compare the largest residual of the balance of a pin's motion with zero."""
     return _residual(engine, name, motions()[name])
 
 
@@ -181,7 +180,6 @@ def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Mea
     each=tuple(motions_of_the_disc()),
 )
 def disc(engine: Engine, name: str, motions: Motions = motions_of_the_disc) -> Measured | None:
-    """Compare the largest residual of the balance of a disc's motion with zero."""
     return _residual(engine, name, motions()[name])
 
 

@@ -134,7 +134,6 @@ DECAYS = "The position of rest is stable at every friction force within (5)"
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the final positions with (3)."""
     places, error = resting_places(engine, loads)
     return Measured(
         predicted=positions(loads),
@@ -180,7 +179,6 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
     swept=("friction_force",),
 )
 def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Evaluate (4) at the positions of rest."""
     places, error = resting_places(engine, loads)
     x, y = places.T
     # ∂(4)/∂(x, y) is twice the vector from the circle's centre, so its length on the circle is X0.
@@ -202,7 +200,6 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the friction force of the equilibrium on the axis, by extrapolation, with (5)."""
     limit, error = vanishing_load(loads, *resting_places(engine, loads))
     return Measured(predicted=LIMIT, value=limit, error=error)
 
@@ -216,7 +213,6 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
-    """Compare the final angular speed of the pin about the axis with 0 and ω, for friction forces near (5)."""
     x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:
@@ -268,7 +264,6 @@ def rates(engine: Engine, loads: Sequence[float]) -> Rates:
     swept=("friction_force",),
 )
 def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare all four eigenvalues with those of the linearised (1)."""
     found = rates(engine, loads)
     return found.compared({"μN in N": loads}, data={"eigenvalue": real_and_imaginary(found.measured)})
 
@@ -281,7 +276,6 @@ def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Check that all measured deviations decay."""
     return rates(engine, loads).decaying()
 
 
@@ -295,7 +289,6 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force", "disc_speed", "damping"),
 )
 def stable_on_a_grid() -> Measured:
-    """Check that all eigenvalues on the grid decay."""
     pins = [
         replace(PIN, friction_force=share * LIMIT, disc_speed=speed, damping=damping)
         for share in GRID_SHARES

@@ -170,7 +170,6 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
     swept=("friction_force",),
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
-    """Compare period and extent of the whirls with those of the reference."""
     first = [whirl_of(engine, with_load(load), TOLERANCE) for load in loads]
 
     def period_and_extent(tolerance: float) -> FloatArray:
@@ -211,7 +210,6 @@ def _reference_whirl(load: float) -> Orbit:
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest μN of the branch with the μN of a unit multiplier."""
     fold = last_whirl(
         with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
     )
@@ -245,7 +243,6 @@ def whirl_ends(engine: Engine) -> Measured:
     "whirl slide for the whole 100 s?",
 )
 def coexist(engine: Engine) -> Measured:
-    """Check that one start sticks and the other slides all the time."""
     stuck = 0.5 * sticking_radius(FIG6)
     orbit = whirl_orbit(FIG6)
     starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
@@ -271,7 +268,6 @@ def coexist(engine: Engine) -> Measured:
     "orbit.",
 )
 def cycle_exists(engine: Engine) -> Measured:
-    """Compare one turn from a state on the cycle with the reference."""
     orbit = cycle()
     times = np.linspace(0.0, orbit.period, 65)
     found = refined(
@@ -300,7 +296,6 @@ def cycle_exists(engine: Engine) -> Measured:
     "twice the deviation.",
 )
 def cycle_attracts(engine: Engine) -> Measured:
-    """Compare the ratio of successive distances from the cycle with the multiplier."""
     orbit = cycle()
     found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION), TOLERANCE)
     # For central differences, the error is a third of the change at twice the deviation.

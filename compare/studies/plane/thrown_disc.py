@@ -40,13 +40,13 @@ class Throw:
 
     Parameters
     ----------
-    name : str
+    name
         Label.
-    inertia : float
+    inertia
         J/(mR²).
-    sliding, rim : float
+    sliding, rim
         Initial U and W in m/s; W has the sign of the spin.
-    force, moment : float
+    force, moment
         Friction over μN and μNR while the disc moves.
 
     """
@@ -240,7 +240,6 @@ def seen(states: FloatArray) -> FloatArray:
     swept=("polar_inertia",),
 )
 def on_ring(engine: Engine) -> Measured:
-    """Compare throws of a ring with uniform deceleration."""
     return compared(in_engine(engine), RING, TO_REST, "ring")
 
 
@@ -254,7 +253,6 @@ def on_ring(engine: Engine) -> Measured:
     each={str(points): points for points in POINTS},
 )
 def on_points(engine: Engine, points: int) -> Measured:
-    """Compare throws of a disc on points with uniform deceleration."""
     return compared(in_engine(engine, points), POINTS[points], TO_REST, f"{points} points", points=points)
 
 
@@ -269,7 +267,6 @@ def on_points(engine: Engine, points: int) -> Measured:
     swept=("polar_inertia",),
 )
 def on_full_disc(engine: Engine) -> Measured:
-    """Compare throws of a full disc with uniform deceleration."""
     way = way_of(engine)
     return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
 

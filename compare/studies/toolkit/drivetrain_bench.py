@@ -94,11 +94,11 @@ class Operation:
 
     Parameters
     ----------
-    speed, slip : float
+    speed, slip
         Speed of the flywheel and slip of the disc, in rad/s.
-    torque : float
+    torque
         Transmitted torque in N m.
-    offset : float
+    offset
         X0 in m.
 
     """

@@ -76,7 +76,7 @@ def run(
         The record of all lanes, initially zeros.
     memory : array of shape (LANES,)
         Records of scalar code, for data that no vector needs.
-    first, last : int
+    first, last
         Numbers of trajectories.
     kind
         Properties of the system that must be known when ``advance`` is compiled, as a type.

@@ -18,8 +18,6 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
     radius : float or array
         A, the distance of the stuck pin from the axis, in m.
     disc_angle : float or array
@@ -54,11 +52,9 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
-    radius : float
+    radius
         A, the distance of the stuck pin from the axis, in m, >= 0.
-    start_angle : float
+    start_angle
         Angle of the pin at the start, in rad.
 
     Returns

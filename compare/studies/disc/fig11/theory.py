@@ -40,11 +40,11 @@ class SteadyWhirl:
     ----------
     state : array of shape (6,)
         A state on the whirl.
-    period : float
+    period
         Period in s.
-    turn, advance : float
+    turn, advance
         Rotation of the whirl about the axis in a period, in rad, and the disc's additional rotation.
-    eigenvalue : complex
+    eigenvalue
         Growth rate and frequency (> 0) in 1/s of the least damped pair.
     mode, projection : complex array of shape (6,)
         Right and left eigenvector, with product 1. The share projection·d of a deviation d, in axes that turn with

@@ -59,9 +59,9 @@ class Throw:
 
     Parameters
     ----------
-    inertia : float
+    inertia
         c = J/(mR²).
-    degrees : float
+    degrees
         Initial atan(W/U) in degrees: 0 only slides, 90 only spins; a negative value reverses the spin.
 
     """

@@ -51,7 +51,6 @@ class Deviation(NamedTuple):
     basis="reference",
 )
 def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Compare the growth rate and frequency of deviations with the pair of eigenvalues."""
     found = deviations(engine, lines)
     return Measured(
         predicted=real_and_imaginary([one.predicted for one in found]),
@@ -70,7 +69,6 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     implied_by=rates,
 )
 def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Check the side of the curves where deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
     for one in found:
@@ -144,7 +142,6 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     "In each region of the map, motions end as the map predicts", equation="(19), (20)", basis="reference"
 )
 def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
-    """Compare the final motions with the expected ones, by default from ``starts_in_regions``."""
     starts = starts_in_regions() if starts is None else starts
     ends, measured = theory.ends_of(engine.simulate, starts)
     return replace(measured, data=ends_by_plane(starts, ends))
@@ -158,10 +155,7 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 def coexist(
     engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
 ) -> Measured:
-    """Compare the final motions outside the Hopf curves with the expected ones, by default from ``coexisting``.
-
-    ``loads`` in N are the friction forces of the motions in the bifurcation diagram.
-    """
+    """``loads`` in N are the friction forces of the motions in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 

@@ -125,13 +125,13 @@ class CarWhirl:
 
     Parameters
     ----------
-    engine_speed, slip, frequency : float
+    engine_speed, slip, frequency
         ω, S and κ in rad/s.
-    radius : float
+    radius
         ρ in m.
-    friction_force, torque : float
+    friction_force, torque
         μN of both facings in N, and torque of the load in N m.
-    engine_torque : float
+    engine_torque
         In N m. The engine also drives the whirl, with the moment ρ·βκρ of friction about its axis.
 
     """

@@ -210,7 +210,7 @@ def _parameters() -> dict[str, float | str]:
     basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, top: float = TOP) -> Measured:
-    """Check the energy of the run-up to ``top`` (rpm), and keep the motion for the figures."""
+    """Simulate up to ``top`` in rpm, and keep the motion for the figures."""
     motions = _run_ups(engine, top)
     measured = balance_of([motion.energy for motion in motions], _parameters())
     return replace(measured, data=_shown(motions[0]))
@@ -221,10 +221,7 @@ def balance(engine: Engine, top: float = TOP) -> Measured:
     resolution=0.5 * LINES_APART,
 )
 def lines(engine: Engine, top: float = TOP) -> Measured | None:
-    """Compare the order of the strongest forward line in each window of the spectrum.
-
-    Return None if the run-up is shorter than a window.
-    """
+    """Return None if the run-up is shorter than a window of the spectrum."""
     motions = _run_ups(engine, top)
     if motions[0].engine_angle[-1] < 2.0 * math.pi * TURNS:
         return None

@@ -33,7 +33,6 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     "scatter. Model error: the effect of the term.",
 )
 def sliding(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent of the tolerance in the error of sliding pins with 1."""
     scan = theory.SCANS[engine.name]
     errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
@@ -65,7 +64,6 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     basis="reference",
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent of the tolerance in the errors of stick and release times with 1."""
     scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(
@@ -178,7 +176,6 @@ HOW = (
     + HOW,
 )
 def first_stick(engine: Engine) -> Measured | None:
-    """Compare the exponent of ε in the error of the first stick time with 2."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -229,7 +226,6 @@ class Smoothing(NamedTuple):
     note=HOW,
 )
 def later_events(engine: Engine) -> Measured | None:
-    """Compare the exponents of ε in the errors of all events after the first stick with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -256,7 +252,6 @@ def later_events(engine: Engine) -> Measured | None:
     note=HOW,
 )
 def state(engine: Engine) -> Measured | None:
-    """Compare the exponent of ε in the error of the state with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -307,7 +302,6 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
     "next, and at twice the step.",
 )
 def creep(engine: Engine) -> Measured | None:
-    """Compare the shift of the first release per ε with creep, for both starts of Fig. 5."""
     if engine.name != "exudyn":
         return None
     import exudyn_models

@@ -43,7 +43,6 @@ STUDY = Study.beside(
     each=tuple(theory.PROBLEMS),
 )
 def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
-    """Count the numbers whose true error lies within the estimate, in one kind of motion."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=1.0,
@@ -66,7 +65,6 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
     each=tuple(theory.PROBLEMS),
 )
 def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
-    """Compare the median ratio of estimate to true error in one kind of motion with its expected value."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=PROPORTIONAL,

@@ -84,13 +84,13 @@ class Problem:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         The parameters.
     start : array of shape (4,) or (6,)
         State at ``times[0]``.
     times : array of shape (n,)
         Times in s.
-    quantity : callable
+    quantity
         Returns the numbers of a trajectory, shape (m,), or fewer if the trajectory lacks some.
     exact : array of shape (m,)
         Exact values of the numbers.

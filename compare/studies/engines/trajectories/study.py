@@ -182,7 +182,6 @@ def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
 )
 @together
 def moves(engine: Engine, motion: parameters.Motion) -> Measured:
-    """Compare all states with those of the reference."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
     # Single numbers may agree by chance, or all of them if both runs take the same steps.
@@ -216,7 +215,6 @@ def moves(engine: Engine, motion: parameters.Motion) -> Measured:
 )
 @together
 def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of position and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
     return balance(
         engine,
@@ -238,7 +236,6 @@ def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
 )
 @together
 def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of momentum and angular momentum in each panel with the integral of forces and moments."""
     body = motion.system
     half = body.state_size // 2
     inertia = np.array(
@@ -297,7 +294,6 @@ def balance(
 )
 @together
 def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare start and end of all stick phases with those of the reference."""
     if not motion.sticks:
         return None
     predicted = stick_times(by_reference(motion))
@@ -318,7 +314,7 @@ def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
 )
 @together
 def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the ends of stick phases with (7), if the reference contains any."""
+    """Return None if the reference contains no stick phase."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None
