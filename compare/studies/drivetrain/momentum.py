@@ -106,7 +106,7 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Runs with half the steps yield the error."""
+    """Estimate the error by runs with half the steps."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []

@@ -155,7 +155,7 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 def coexist(
     engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
 ) -> Measured:
-    """``loads`` in N are the friction forces of the motions in the bifurcation diagram."""
+    """Draw motions at ``loads`` in N in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 

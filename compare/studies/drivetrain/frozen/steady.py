@@ -60,7 +60,7 @@ ONSET_NOTE = (
     named=NAMED,
 )
 def loses_stability(engine: Engine) -> Measured:
-    """The car's flywheel turns freely."""
+    """Let the car's flywheel turn freely in the linearisation."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix

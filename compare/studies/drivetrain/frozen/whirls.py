@@ -82,7 +82,7 @@ def linearised(engine: Engine) -> Measured:
     named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
 )
 def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
-    """The search lies ``between`` two speeds in rpm."""
+    """Search ``between`` two speeds in rpm."""
     car = centred_car()
 
     def borders(matrix: Matrix) -> FloatArray:

@@ -45,7 +45,6 @@ SUPPORTS = {"support": tuple(theory.PINS)}
     swept=("friction_force",),
 )
 def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """``loads`` contains μN in N."""
     pins = [[replace(pin, friction_force=load) for load in loads] for pin in theory.PINS.values()]
     miss = 0.0
 
