@@ -20,7 +20,7 @@ from reference_model.systems import (
     require_system,
 )
 
-NOT_TAKEN = ("hardening", "stop_gap", "stop_stiffness")
+UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
 """Parameters of a nonlinear support."""
 
 MOST_POINTS = 24
@@ -68,7 +68,7 @@ def simulate_ensemble(
 
     """
     require_system(system)
-    require_known(system)
+    require_supported(system)
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     n = _number_of(len(starts), varied)
@@ -88,21 +88,21 @@ def simulate_ensemble(
     return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
 
 
-def require_known(system: System) -> None:
+def require_supported(system: System) -> None:
     """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
-    unknown = _what_is_unknown(system)
+    unknown = _unsupported(system)
     if unknown:
         raise ValueError(unknown)
 
 
-def is_known(system: System) -> bool:
+def is_supported(system: System) -> bool:
     """Return whether compiled code supports a system."""
-    return not _what_is_unknown(system)
+    return not _unsupported(system)
 
 
-def _what_is_unknown(system: System) -> str:
+def _unsupported(system: System) -> str:
     """Return the reason why compiled code cannot simulate ``system``, or ""."""
-    for name in NOT_TAKEN:
+    for name in UNSUPPORTED:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":
             return (
@@ -130,7 +130,7 @@ def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
 
 
 def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArray:
-    allowed = [field.name for field in fields(system) if field.name not in (*NOT_TAKEN, "contact_points")]
+    allowed = [field.name for field in fields(system) if field.name not in (*UNSUPPORTED, "contact_points")]
     if name not in allowed:
         raise ValueError(
             f"parameters: {name!r} cannot differ between trajectories, only {', '.join(allowed)}"

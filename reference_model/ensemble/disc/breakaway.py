@@ -1,8 +1,7 @@
 """Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
 
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff. But the motion is a smooth function of
-time, and an implicit method for all nodes of a step (:mod:`.core.stepping.implicit`) follows it until an explicit one
-can.
+Slip grows like ½κt² with its direction slaved to the pull, which is stiff. An implicit method for all nodes of a step
+(:mod:`.core.stepping.implicit`) follows it until an explicit one can.
 """
 
 from __future__ import annotations

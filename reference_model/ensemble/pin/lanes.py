@@ -35,8 +35,8 @@ class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
     Further fields are the tolerance of a step; the slip speed below which rest may be near; when the lane next needs
-    attention (``due``); how closely it is watched; why it needs attention (``flag``); the number of steps so far and
-    the largest allowed; and the number of successive short steps.
+    attention (``due``); how closely it is watched; the reasons for attention (``flag``); the number of steps and the
+    largest allowed; and the number of successive short steps.
     """
 
     now: Moment
@@ -56,10 +56,10 @@ UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 """Degrees of watching: attention also when x is largest, and when the radius is largest or smallest too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip is about to end.
+"""Flags, which add up: slip is about to end; the due time has come; x was largest.
 
-The due time has come; x was largest; the radius was largest or smallest; step size or number of steps are out of
-bounds; an implicit step may be worthwhile.
+The radius was largest or smallest; step size or number of steps are out of bounds; an implicit step may be
+worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
@@ -98,7 +98,7 @@ def _advance_in(lanes: PinLanes, count: int) -> None:
         good = error < 1.0
         shorter = h * factor_of(error)
 
-        flag = reasons(state, k, new, k1, lanes.due[lane], lanes.slow[lane], lanes.watch[lane])
+        flag = flags_of(state, k, new, k1, lanes.due[lane], lanes.slow[lane], lanes.watch[lane])
         flag = flag if good else 0.0
         steps = lanes.steps[lane] + 1.0
         lost = (shorter < SMALLEST_STEP) | (steps > lanes.most_steps[lane])
@@ -126,7 +126,7 @@ def advance_alone(lanes: PinLanes, _: None) -> None:
 
 
 @inlined
-def reasons(
+def flags_of(
     state: PinState, k: PinState, new: PinState, k1: PinState, due: float, slow: float, watch: float
 ) -> float:
     """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
