@@ -132,7 +132,7 @@ class PointsBody(DiscBody):
         slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
         end = (slide_slowly if slowly else slide)(self.run, motion, t, own, self.leaving(motion))
         y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
-        if end.let_go:
+        if end.released:
             self.pivot = None
             self.run.enter("slip", end.t, y)
             return self._slip_from(i, end.t, y)
@@ -193,11 +193,11 @@ class PointsBody(DiscBody):
             return float(brentq(margin, held, given_way, xtol=1e-15, rtol=1e-14))
         return math.inf
 
-    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`DiscBody.let_go`: the disc slips, or pivots about one of its points."""
+    def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Like :meth:`DiscBody.begin_to_slip`: the disc slips, or pivots about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
-            return super().let_go(t, y)
+            return super().begin_to_slip(t, y)
         i, sense = pivot
         self.run.enter("pivot", t, y)
         self.pivot = i

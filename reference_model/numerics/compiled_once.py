@@ -37,7 +37,7 @@ UNUSED = 86_400.0
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
 _one_at_a_time = threading.Lock()
-_told_already = threading.Lock()
+_announced = threading.Lock()
 
 
 class CompiledOnce:
@@ -82,7 +82,7 @@ def compiled_for(
         folder = folder_of(package)
         if folder:
             stack.enter_context(_locked(Path(folder) / f"{function.__name__}.lock"))
-        stack.enter_context(_told())
+        stack.enter_context(_announcement())
         stack.enter_context(_without_garbage_collection())
         stack.enter_context(_cached_in(folder))
         compiling = numba.njit(kind, error_model="numpy", nogil=nogil, cache=bool(folder))
@@ -160,9 +160,9 @@ def _locked(lock: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _announcement() -> Iterator[None]:
     """Print a line, once per process, if compiling takes long; worker processes are silent."""
-    timer = threading.Timer(LONG, _tell)
+    timer = threading.Timer(LONG, _announce)
     timer.daemon = True
     timer.start()
     try:
@@ -171,8 +171,8 @@ def _told() -> Iterator[None]:
         timer.cancel()
 
 
-def _tell() -> None:
-    if multiprocessing.parent_process() is None and _told_already.acquire(blocking=False):
+def _announce() -> None:
+    if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
         text = "Compiling for this machine, once for each kind of system (about 20 s of processor time) ..."
         print(text, file=sys.stderr, flush=True)
 

@@ -143,11 +143,11 @@ def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
 
 
 class Outcome(NamedTuple):
-    """Time and unknowns where a description of the motion ended; ``let_go`` if the grip was lost."""
+    """Time and unknowns where a description of the motion ended; ``released`` if the grip was lost."""
 
     t: float
     y: list[float]
-    let_go: bool = False
+    released: bool = False
 
 
 Leave = Callable[[list[float]], bool]
