@@ -171,7 +171,6 @@ CURVES: dict[str, tuple[str, Any]] = {
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the final motions under the curves."""
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap

@@ -339,7 +339,6 @@ def balance(engine: Engine) -> Measured:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw growth against the slope of friction, and slip and temperature over time."""
     if not data:
         return {}
     judder, (growth,) = new_figure(width=5.5, height=3.6)

@@ -242,7 +242,6 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the angular momenta of the bodies of one drivetrain, and the drift of the sum in all of them."""
     found = next((values for values in data.values() if "each" in values), None)
     if found is None:
         return {}

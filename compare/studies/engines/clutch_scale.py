@@ -347,7 +347,6 @@ def shares(starts: int = ENSEMBLE) -> Measured:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the motion to rest at both scales, and their distance over time."""
     figure, (plane, history) = new_figure(ncols=2, width=11.0)
     exact = data.get("theory", {})
     micrometres = 1e6 * CLUTCH.length

@@ -244,7 +244,6 @@ def _drawn(balance: PowerBalance) -> Data:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the energies on the way to the whirl, and the residual of each engine."""
     figure, (energies, residuals) = new_figure(ncols=2)
     looks: dict[str, dict[str, Any]] = {
         "drive work": {"color": BLACK, "linestyle": "-"},

@@ -310,7 +310,6 @@ def stable_on_a_grid() -> Measured:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the semicircle with the errors, and the eigenvalues over the friction force."""
     figures = {"fig03-semicircle": draw_semicircle(data)}
     if "theory" in data:
         figures["fig03-eigenvalues"] = draw_eigenvalues(data)
@@ -318,7 +317,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_semicircle(data: ByEngine) -> Figure:
-    """Draw the positions of rest on the semicircle, and their distance from (3) over μN."""
     figure, (plane, distance) = new_figure(ncols=2, width=9.6, height=3.9)
     if "theory" in data:
         plane.plot(*data["theory"]["position"].T, **curve("theory", "eq. (3)"))
@@ -370,7 +368,6 @@ def _label(plane: Axes) -> None:
 
 
 def draw_eigenvalues(data: ByEngine) -> Figure:
-    """Draw real and imaginary parts of the eigenvalues over the friction force."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]
     for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):

@@ -248,7 +248,6 @@ MARKERS = dict(zip(CLAIM_SPEEDS, "os^", strict=True))
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the mean of the whirl over the speed, and its distance from both formulas over the offset."""
     figure, (left, right) = new_figure(ncols=2)
     _draw_shift(left, data)
     _draw_gaps(right, data)

@@ -328,7 +328,6 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the branches over the friction force, and an enlarged view near the limit (5)."""
     figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
     for panel in (whole, near):
         if "theory" in data:

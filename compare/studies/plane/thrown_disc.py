@@ -287,7 +287,6 @@ DASHES = ("-", "--", (0.0, (1.0, 1.5)))
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the speeds over time, on a ring and on a full disc."""
     if not data:
         return {}
     figure, panels = new_figure(ncols=2, width=9.6, height=3.8, sharey=True)

@@ -1,4 +1,4 @@
-"""Figures of the contact laws."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -32,7 +32,6 @@ NEAR = (0.2, 5.0)
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw force and moment of all laws over U/W, and their distance from the ring."""
     return {"contact-laws": laws(data), "contact-errors": errors(data)}
 
 

@@ -1,4 +1,4 @@
-"""Study of the contact laws and its claims."""
+"""Claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Study of Fig. 8 and eqs. (24) to (26): position and spin of the self-centred disc, and its end."""
+"""Claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Study of the free ring and its claims."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -154,7 +154,6 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
 
 
 def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
-    """Return the figure's data: both speeds in m/s, and A over the remaining time, from the start to rest."""
     speeds, approaches = [], []
     for throw in throws:
         trajectory, times = (

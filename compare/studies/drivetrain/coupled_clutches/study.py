@@ -1,4 +1,4 @@
-"""Claims: engines and the published result against the exact motion of Modelica's CoupledClutches."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -329,7 +329,6 @@ EXACT = 1e-7
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the available data."""
     return {"coupled-clutches": _draw(data)} if data else {}
 
 

@@ -1,4 +1,4 @@
-"""The car's drivetrain runs up from idle to 6000 rpm with a controlled slip of the clutch."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures of the convergence study."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the error over step and ε, over tolerance, and over work."""
     figures = {
         "engine-convergence-tolerance": _draw_tolerance(data),
         "engine-convergence-work": _draw_work(data),

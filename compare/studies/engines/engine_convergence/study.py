@@ -1,4 +1,4 @@
-"""Convergence of the engines with the tolerance, with the step, and with the slip speed that regularises friction."""
+"""Claims."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reliability of the error bars of all claims: true errors of random motions compared with their estimates."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -111,7 +111,6 @@ COLUMNS = 3
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw estimates against true errors, and the spread of their ratio."""
     return {"error-estimates": _scatter(data), "error-estimates-spread": _spread(data)}
 
 

@@ -1,4 +1,4 @@
-"""Claims about recorded motions of foreign engines: friction laws, orders, and errors over computing time."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -262,7 +262,6 @@ MARKERS = "os^Dv"
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the error over computing time, for a sliding pin, a sticking pin and a disc."""
     if "theory" not in data:
         return {}
     ladders = data["theory"]

@@ -1,4 +1,4 @@
-"""Simple motions: all states compared with the reference, and integrals of velocities and forces along them."""
+"""Claims."""
 
 from __future__ import annotations
 

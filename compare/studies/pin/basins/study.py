@@ -1,4 +1,4 @@
-"""Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -263,7 +263,6 @@ def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw ends and boundary in the plane of starts, the saddle, and shares over the speed."""
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap

@@ -1,4 +1,4 @@
-"""Fig. 5: equilibrium and whirl side by side, the stick phases before them, and the critical start."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 

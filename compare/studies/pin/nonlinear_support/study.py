@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -302,7 +302,6 @@ LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("w
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radius of the whirl over the friction force, and growth without damping."""
     figure, (whirl, growing) = new_figure(ncols=2, width=10.0, height=4.0)
     if "theory" in data:
         found = data["theory"]

@@ -1,4 +1,4 @@
-"""Eq. 6 to 9: where the pin sticks permanently, when it is released elsewhere, and the resonance of both."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -320,7 +320,6 @@ def shrinks() -> Measured:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radius over the disc speed, the time until release, and its deviation from (7)."""
     figure, (domain, time, error) = new_figure(ncols=3, width=12.6, height=3.7)
     if "theory" in data:
         domain.semilogy(data["theory"]["speed"], data["theory"]["radius"], **curve("theory", "eq. (9)"))

@@ -1,4 +1,4 @@
-"""Claims about the whirl without offset and its stability."""
+"""Claims."""
 
 from __future__ import annotations
 

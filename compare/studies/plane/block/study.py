@@ -1,4 +1,4 @@
-"""Study of a block on a plane at rest: thrown, held, released, on a spring, and pulled."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 

@@ -1,5 +1,3 @@
-"""The study of Fig. 8: its formulas and their limits."""
-
 import functools
 from dataclasses import replace
 

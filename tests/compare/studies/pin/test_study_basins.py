@@ -1,5 +1,3 @@
-"""The study of the basins: claims about the theory differ for wrong ends of motions."""
-
 from dataclasses import replace
 
 import numpy as np
