@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from exudyn_models.paper.creep import RELAXATIONS, WHOLE, RegularisedContact
 from exudyn_models.paper.dense_output import creep_between, creep_until
-from exudyn_models.paper.models.build import build
+from exudyn_models.paper.model import build_model
 from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.scales import time_scale
 from exudyn_models.paper.turning_axes import FIXED, Axes
@@ -143,7 +143,7 @@ class _Turns:
         """
         watch = _Slip(self)
         run = solve(
-            build(
+            build_model(
                 self.contact.system, state, regularisation=self.contact.epsilon, friction=self.friction.add
             ),
             start,
@@ -243,7 +243,7 @@ class _Turns:
             system = replace(system, friction_force=viscous * system.friction_force)
         else:
             add = partial(add, held=part)
-        return build(
+        return build_model(
             system,
             axes.start(state),
             regularisation=viscous * self.contact.epsilon,

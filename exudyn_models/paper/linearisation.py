@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from exudyn_models.paper.creep import RegularisedContact
-from exudyn_models.paper.models.build import build
+from exudyn_models.paper.model import build_model
 from exudyn_models.solver.linear_matrices import state_matrix
 from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
@@ -39,7 +39,7 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
         raise ValueError(
             f"state = {start.tolist()}: the contact, or a point of it, is at rest, where friction has no derivative"
         )
-    model = build(system, start, regularisation=REGULARISATION)
+    model = build_model(system, start, regularisation=REGULARISATION)
     matrix = state_matrix(model.mbs, slice(model.first, model.first + model.size))
     if isinstance(system, DiscOnDisc) and system.contact_points is None:
         matrix = np.delete(np.delete(matrix, ANGLE, 0), ANGLE, 1)

@@ -144,7 +144,7 @@ def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
 
     epsilon, state, states = EPSILON * tolerance * SPEED, throw.state, [throw.state]
     for span in np.diff(times).tolist():
-        model = exudyn_models.build_disc_on_disc(throw.disc(), state, regularisation=epsilon, friction=full)
+        model = exudyn_models.build_model(throw.disc(), state, regularisation=epsilon, friction=full)
         steps = solve(model, 0.0, span, integrator="DOPRI5", step=span, tolerance=0.01 * tolerance)
         state = steps.states[-1]
         states.append(state)
