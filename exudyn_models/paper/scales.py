@@ -52,8 +52,7 @@ def time_scale(system: System, state: FloatArray, span: float) -> float:
     """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
     A disc adds its spin, that of its shaft, and J/b. For a hardening support k is that at the largest deflection that
-    the initial energy allows; friction may increase it further, until the whirl turns with ω. A stop counts as
-    touched.
+    the initial energy allows. A stop counts as touched.
     """
     stiffest = hardened_stiffness(system, state) + system.stop_stiffness
     rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]

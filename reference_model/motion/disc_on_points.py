@@ -28,7 +28,7 @@ from reference_model.motion.stepper import Run
 from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
-LOOKS = 360
+SAMPLES_PER_TURN = 360
 """Samples per turn of the margin of a stuck disc; minima between them are searched."""
 
 
@@ -170,11 +170,11 @@ class PointsBody(DiscBody):
             return 0.0
         if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
             return math.inf  # relative to the disc, nothing turns
-        delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), LOOKS + 1)
+        delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), SAMPLES_PER_TURN + 1)
         margins = self.limit.margins(*self._share(y, delays))
         if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
             return 0.0  # already at the limit
-        for k in range(1, LOOKS + 1):
+        for k in range(1, SAMPLES_PER_TURN + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
                 # Next to a local minimum of the samples the margin may dip by as much as it changes to the next
@@ -182,7 +182,7 @@ class PointsBody(DiscBody):
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue
-                ends = (float(delays[k - 1]), float(delays[min(k + 1, LOOKS)]))
+                ends = (float(delays[k - 1]), float(delays[min(k + 1, SAMPLES_PER_TURN)]))
                 dip = minimize_scalar(margin, bounds=ends, method="bounded", options={"xatol": 1e-9})
                 if dip.fun >= -GRAZING:
                     continue

@@ -76,7 +76,7 @@ def compiled_for(
 ) -> Any:
     """Return numba's dispatcher of a function for these argument types, compiled or loaded from disk.
 
-    Threads and processes that need it at the same time wait for the first one and load its result.
+    Threads and processes that need it at the same time wait for the first one.
     """
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
@@ -118,8 +118,7 @@ def digest_of(package: Path) -> str:
 def folder_of(package: Path) -> str:
     """Return the folder of compiled functions for the present sources, or "" if none is writable.
 
-    It lies in the folder given by ``NUMBA_CACHE_DIR``, else next to the sources, or in the user's cache if the
-    sources are read-only.
+    It lies in ``NUMBA_CACHE_DIR`` if set, else next to the sources, or in the user's cache if these are read-only.
     """
     for place in _places(package):
         folder = place / f"{package.name}-{digest_of(package)}"

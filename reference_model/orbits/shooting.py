@@ -3,10 +3,9 @@
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
 offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
-Newton's method is written out here. ``scipy.optimize.root`` (hybr, in the same units) finds the whirls of Figs. 4, 6
-and 11 equally well, with 17 to 20 return maps compared with 14 to 20. But without an orbit near the guess it needs 51
-to 63 return maps, each a simulation, to fail, compared with 10 to 16 here. It cannot know that an orbit is far from
-the guess or has collapsed onto the axis.
+Newton's method is written out here. ``scipy.optimize.root`` (hybr) finds the whirls of Figs. 4, 6 and 11 equally
+well. But without an orbit near the guess it needs 51 to 63 return maps, each a simulation, to fail, compared with 10
+to 16 here, because it cannot know that an orbit is far from the guess or has collapsed onto the axis.
 """
 
 from __future__ import annotations
@@ -47,10 +46,9 @@ PERIOD, LOAD, TURN = -3, -2, -1
 CENTRAL = 3e-4
 """Relative step of the fourth-order central differences for multipliers.
 
-It was measured against the eigenvalues of the turning frame and the variational equations. For the whirl of Fig. 11
-with an offset, the worst case, the noise of the flow over the step equals the step's fourth power. The error of
-multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it is 1e-7 by the reference, and
-1e-5 by engines with more noise at a tolerance of 1e-12.
+For the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's fourth
+power. The measured error of multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it
+is 1e-7 by the reference, and 1e-5 by engines with more noise at a tolerance of 1e-12.
 """
 
 MOST_ITERATIONS = 25

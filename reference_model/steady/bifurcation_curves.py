@@ -1,10 +1,9 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-The paper stops at "the existence region of this complex limit cycle can be investigated analytically by a stability
-analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that analysis,
-for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl up to its
-torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes
-three unknowns, and a boundary has two equations, the balance and one of
+The paper suggests this analysis of the whirl but does not carry it out. It is for X0 = 0 and any isotropic friction
+law. The ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
+:func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes three unknowns, and a
+boundary has two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;

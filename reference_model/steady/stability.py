@@ -94,18 +94,16 @@ def equilibrium_eigenvalues(
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
     For a pin (3) they are known in closed form. It slips along the circumference, so friction resists its radial
-    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. The tangential motion drives the radial
-    one, but not vice versa. So the eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the
-    equilibrium is always stable if β > 0, as the paper says below (5).
-
-    For a disc, and for a pin on a nonlinear support, they are the eigenvalues of :func:`sliding_jacobian` without the
+    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So the eigenvalues are the roots of mλ²
+    + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the equilibrium is always stable if β > 0, as the paper says below
+    (5). For a disc, and for a pin on a nonlinear support, they are those of :func:`sliding_jacobian` without the
     angle.
 
     Parameters
     ----------
     state : array of shape (6,) or None
         State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
-        pin.
+            pin.
     contact
         Friction law of a disc; None for the law of the parameters.
 
@@ -113,7 +111,7 @@ def equilibrium_eigenvalues(
     ------
     ValueError
         If a pin has no such equilibrium, or has it on the axis, where it does not slide; if a disc rests on single
-        points, whose friction depends on the angle; as :func:`sliding_jacobian`.
+            points, whose friction depends on the angle; as :func:`sliding_jacobian`.
 
     """
     if isinstance(system, DiscOnDisc):
