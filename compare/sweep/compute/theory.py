@@ -31,7 +31,7 @@ def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
 def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
     """Yield the motions at each value.
 
-    With an offset, the search for the whirl starts from the whirl of the previous value.
+    The search for a whirl with an offset starts from the whirl of the previous value.
     """
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
