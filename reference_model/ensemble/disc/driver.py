@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 from reference_model.ensemble.checkpoints import Checkpoints, empty_checkpoints, from_the_start
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.disc.kernel import PARAMETERS, DiscTask, run_points, run_rings
+from reference_model.ensemble.disc.kernel import PARAMETERS, run_points, run_rings
 from reference_model.ensemble.disc.memory import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Ensemble, Results
-from reference_model.ensemble.parameters import parameter_table
+from reference_model.ensemble.parameters import Task, parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
@@ -47,7 +47,7 @@ def simulate_discs(
     settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
     results = Results.empty(n, disc.state_size)
     _run_through(
-        disc, DiscTask(table, starts, from_the_start(), np.full(1, duration)), settings, results, varied,
+        disc, Task(table, starts, from_the_start(), np.full(1, duration)), settings, results, varied,
         tolerance, threads,
     )  # fmt: skip
     return results.ensemble(varied.get("friction_force", disc.friction_force))
@@ -62,14 +62,14 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
         starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
     ) -> Results:
         results = Results.empty(1, disc.state_size)
-        _run(DiscTask(table, starts, paces, durations), settings._replace(checkpoints=checkpoints), results)
+        _run(Task(table, starts, paces, durations), settings._replace(checkpoints=checkpoints), results)
         return results
 
     def many(
         starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
     ) -> Results:
         results = Results.empty(len(starts), disc.state_size)
-        _run_through(disc, DiscTask(table, starts, paces, durations), settings, results, {}, tolerance)
+        _run_through(disc, Task(table, starts, paces, durations), settings, results, {}, tolerance)
         return results
 
     t = 0.0
@@ -90,7 +90,7 @@ def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDAr
     return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
-def _run(task: DiscTask, settings: DiscSettings, results: Results, threads: int = 1) -> None:
+def _run(task: Task, settings: DiscSettings, results: Results, threads: int = 1) -> None:
     """Run all trajectories as far as compiled code can follow them."""
     kernel = run_points if settings.around else run_rings
     in_chunks(lambda first, last: kernel(task, settings, results, first, last), len(results.ends), threads)
@@ -98,7 +98,7 @@ def _run(task: DiscTask, settings: DiscSettings, results: Results, threads: int 
 
 def _run_through(
     disc: DiscOnDisc,
-    task: DiscTask,
+    task: Task,
     settings: DiscSettings,
     results: Results,
     varied: Mapping[str, FloatArray],
@@ -118,7 +118,7 @@ def _run_through(
             again = Results.empty(len(handed), disc.state_size)
             left = durations[handed] - results.times[handed]
             table = task.parameters[handed] if varied else task.parameters
-            _run(DiscTask(table, results.states[handed], from_the_start(), left), settings, again, threads)
+            _run(Task(table, results.states[handed], from_the_start(), left), settings, again, threads)
             again.times[:] += results.times[handed]
             again.steps[:] += results.steps[handed]
             results.ends[handed], results.times[handed] = again.ends, again.times

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +16,15 @@ from reference_model.ensemble.core.requested_times import next_requested, record
 from reference_model.ensemble.core.stepping.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.disc.events import Slow, handle_flag_with
-from reference_model.ensemble.disc.lanes import RADII, TURNS, DiscLanes, advance_with, idle
+from reference_model.ensemble.disc.lanes import (
+    RADII,
+    TURNS,
+    DiscLanes,
+    Rates,
+    advance_with,
+    idle,
+    put_slipping,
+)
 from reference_model.ensemble.disc.memory import (
     DiscMemory,
     DiscSettings,
@@ -27,22 +33,18 @@ from reference_model.ensemble.disc.memory import (
 )
 from reference_model.ensemble.disc.rest import (
     points_rest,
-    points_slip,
     points_slow,
     ring_rests,
-    ring_slips,
     ring_slow,
 )
 from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.disc.stride import disc_stride_with
 from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
+from reference_model.ensemble.parameters import Task
 from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
-
-Slips = Callable[[DiscLanes, int, DiscLaw], None]
-"""Prepares a lane that slips."""
 
 PARAMETERS = (
     "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
@@ -55,19 +57,6 @@ STRETCHING_TIME = 0.5
 
 WATCHED_STEP = 1e-3
 """Step below which the points of a disc are checked for one that comes to rest."""
-
-
-class DiscTask(NamedTuple):
-    """Starts of trajectories.
-
-    ``parameters`` are (1 or n, 10), in the order of PARAMETERS; ``starts`` (1 or n, 6), their ``paces`` (1 or n, 5)
-    if they are checkpoints, ``durations`` in s (1 or n,).
-    """
-
-    parameters: FloatArray
-    starts: FloatArray
-    paces: FloatArray
-    durations: FloatArray
 
 
 @inlined
@@ -98,10 +87,10 @@ def load_with(
     memory: DiscMemory,
     lane: int,
     number: int,
-    task: DiscTask,
+    task: Task,
     settings: DiscSettings,
     rest: Slow,
-    slip: Slips,
+    rates: Rates,
 ) -> bool:
     """Write the start of a trajectory to the trial of a lane; return whether it ends there."""
     parameters = row_of(task.parameters, number)
@@ -136,7 +125,7 @@ def load_with(
     take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if u == 0j and r == 0.0 and force > 0.0:
         return bool(rest(lanes, memory, lane, law, settings))
-    slip(lanes, lane, law)
+    put_slipping(lanes, lane, law, rates)
     if goes_on:
         lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     return bool(duration <= 0.0)
@@ -185,9 +174,9 @@ def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw
 
 @written_out
 def _load_ring(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, settings: DiscSettings
+    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
 ) -> bool:
-    return load_with(lanes, memory, lane, number, task, settings, ring_rests, ring_slips)
+    return load_with(lanes, memory, lane, number, task, settings, ring_rests, ring_rates)
 
 
 @scalar
@@ -207,9 +196,9 @@ def _handle_ring(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: Disc
 
 @written_out
 def _load_points(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, settings: DiscSettings
+    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
 ) -> bool:
-    return load_with(lanes, memory, lane, number, task, settings, points_rest, points_slip)
+    return load_with(lanes, memory, lane, number, task, settings, points_rest, points_rates)
 
 
 @scalar
@@ -228,7 +217,7 @@ def _handle_points(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: Di
 
 
 @called_from_python
-def run_rings(task: DiscTask, settings: DiscSettings, results: Results, first: int, last: int) -> None:
+def run_rings(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
         _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store, idle,
@@ -238,13 +227,13 @@ def run_rings(task: DiscTask, settings: DiscSettings, results: Results, first: i
 
 
 @called_from_python
-def run_points(task: DiscTask, settings: DiscSettings, results: Results, first: int, last: int) -> None:
+def run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
     _run_points(task, settings, results, first, last)
 
 
 @inlined
-def _run_points(task: DiscTask, settings: DiscSettings, results: Results, first: int, last: int) -> None:
+def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,

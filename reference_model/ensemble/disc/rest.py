@@ -36,7 +36,7 @@ from reference_model.ensemble.disc.memory import (
     record_requested,
     take_checkpoint,
 )
-from reference_model.ensemble.disc.slip import centre_of, held_friction, points_rates, ring_rates, stuck_for
+from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_rates, stuck_for
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
@@ -94,14 +94,8 @@ def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, se
     """Follow a disc on a ring from rest until it slips; return whether its trajectory ends before."""
     ended = _held(lanes, memory, lane, law, settings)
     if not ended:
-        ring_slips(lanes, lane, law)
+        put_slipping(lanes, lane, law, ring_rates)
     return ended
-
-
-@scalar
-def ring_slips(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Prepare a disc on a ring that slips."""
-    put_slipping(lanes, lane, law, ring_rates)
 
 
 @scalar
@@ -126,12 +120,6 @@ def points_rest(
     """Hand over a disc on points that rests."""
     memory.end = HANDED_OVER
     return True
-
-
-@scalar
-def points_slip(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Prepare a disc on points that slips."""
-    put_slipping(lanes, lane, law, points_rates)
 
 
 @scalar

@@ -10,8 +10,8 @@ from reference_model.ensemble.checkpoints import Checkpoints, empty_checkpoints,
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Ensemble, Results
-from reference_model.ensemble.parameters import parameter_table
-from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
+from reference_model.ensemble.parameters import Task, parameter_table
+from reference_model.ensemble.pin.kernel import PARAMETERS, run_pins
 from reference_model.ensemble.pin.memory import no_regions, settings_of
 from reference_model.ensemble.pin.trapping import trapping_regions
 from reference_model.ensemble.recording import Recording
@@ -35,7 +35,7 @@ def simulate_pins(
         regions[:] = trapping_regions(pin)
     local = tolerance_of_steps(tolerance)
     task, results = (
-        PinTask(table, starts, from_the_start(), np.full(1, duration)),
+        Task(table, starts, from_the_start(), np.full(1, duration)),
         Results.empty(n, pin.state_size),
     )
     nowhere = empty_checkpoints(0, pin.state_size)
@@ -56,7 +56,7 @@ def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: R
         starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
     ) -> Results:
         results = Results.empty(len(starts), pin.state_size)
-        task = PinTask(table, starts, paces, durations)
+        task = Task(table, starts, paces, durations)
         run_pins(task, settings_of(local, False, False, regions, checkpoints), results, 0, len(starts))
         return results
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
 from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
+from reference_model.ensemble.parameters import Task
 from reference_model.ensemble.pin.end_states import well_of
 from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
@@ -40,7 +40,6 @@ from reference_model.ensemble.pin.memory import (
     put_state,
     take_checkpoint,
 )
-from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
@@ -61,23 +60,8 @@ PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "o
 """Parameters of a pin, in the order of the kernel."""
 
 
-class PinTask(NamedTuple):
-    """Starts of trajectories.
-
-    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), their ``paces`` (1 or n, 5) if
-    they are checkpoints, ``durations`` in s (1 or n,).
-    """
-
-    parameters: FloatArray
-    starts: FloatArray
-    paces: FloatArray
-    durations: FloatArray
-
-
 @written_out
-def load(
-    lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTask, settings: Settings
-) -> bool:
+def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task, settings: Settings) -> bool:
     """Write the start of a trajectory to the trial of a lane; return whether it has ended."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
     x, y, vx, vy = row_of(task.starts, number)
@@ -174,13 +158,13 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
 
 
 @called_from_python
-def run_pins(task: PinTask, settings: Settings, results: Results, first: int, last: int) -> None:
+def run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded)."""
     _run_pins(task, settings, results, first, last)
 
 
 @inlined
-def _run_pins(task: PinTask, settings: Settings, results: Results, first: int, last: int) -> None:
+def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
     """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
         load, advance, advance_alone, handle_flag, store, idle,

@@ -20,8 +20,8 @@ from scipy.linalg import solve_discrete_lyapunov
 
 from reference_model.ensemble.checkpoints import empty_checkpoints, from_the_start
 from reference_model.ensemble.end_states import EndState, Results
-from reference_model.ensemble.parameters import parameter_table
-from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
+from reference_model.ensemble.parameters import Task, parameter_table
+from reference_model.ensemble.pin.kernel import PARAMETERS, run_pins
 from reference_model.ensemble.pin.memory import no_regions, settings_of
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc
@@ -139,7 +139,7 @@ def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
-    task = PinTask(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
+    task = Task(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
     checkpoints = empty_checkpoints(0, pin.state_size)
     settings = settings_of(TOLERANCE, early, once, no_regions(), checkpoints)
     run_pins(task, settings, results, 0, len(starts))
