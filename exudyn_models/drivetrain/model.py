@@ -113,11 +113,7 @@ class DrivetrainModel:
         It is computed by DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad,
         m/s, rad/s and ``ENERGY_UNIT``.
 
-        Raises
-        ------
-        SimulationError
-            If Exudyn fails or a state is not finite.
-
+        Raises ``SimulationError`` if Exudyn fails or a state is not finite.
         """
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
