@@ -82,7 +82,7 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     return replace(pin_of(disc), friction_force=centre.friction * disc.mass)
 
 
-class Place(NamedTuple):
+class Position(NamedTuple):
     """Position of a self-centred disc, x and y in m, and its spin in rad/s."""
 
     x: float
@@ -106,12 +106,12 @@ def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatAr
     return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
-def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Place:
+def position_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Position:
     """Return position and spin by (24) from A in m and the angles α and θ in rad.
 
     The slip speeds of centre and rim are U = |ω|A·cos α and R(ω − φ̇) = ωA·sin α.
     """
-    return Place(
+    return Position(
         distance * math.cos(alpha) * math.cos(theta),
         distance * math.cos(alpha) * math.sin(theta),
         disc.disc_speed * (1.0 - distance / disc.contact_radius * math.sin(alpha)),
@@ -178,7 +178,7 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
     return math.copysign(angle, disc.disc_speed * disc.offset)
 
 
-def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, ...]:
+def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
     The corrected (26) gives the equilibria of (23). These are :func:`reference_model.self_centred_equilibria` with
@@ -205,7 +205,7 @@ def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, 
             for root in zeros_between(excess, left, right):
                 alpha = math.copysign(root, difference)
                 distance = math.sqrt(max(squared(disc, alpha), 0.0))
-                places.append(place_of(disc, distance, alpha, polar_angle(disc, distance, alpha)))
+                places.append(position_of(disc, distance, alpha, polar_angle(disc, distance, alpha)))
     return tuple(places)
 
 

@@ -17,7 +17,7 @@ from reference_model.formulas.pin import (
     whirl_frequency,
     whirl_radius,
 )
-from reference_model.formulas.torque_balance import circles, least_load_with_whirl, resting_places
+from reference_model.formulas.torque_balance import circles, least_load_with_whirl, resting_positions
 from reference_model.steady.stability import equilibrium_eigenvalues, whirl_eigenvalues
 from reference_model.steady.steady_motions import (
     SelfCentredEquilibrium,
@@ -107,7 +107,7 @@ def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
 
 def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
     found = []
-    for z, spin in resting_places(disc, law):
+    for z, spin in resting_positions(disc, law):
         eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
         found.append(
             SpinningEquilibrium(

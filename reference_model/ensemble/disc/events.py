@@ -27,7 +27,7 @@ from reference_model.ensemble.core.records import fill
 from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.core.stepping.dense_output import (
     outward,
-    place_on,
+    position_on,
     velocity_on,
     where_radius_turns,
     where_rightmost,
@@ -144,7 +144,7 @@ def record_extreme(
     centred = law.offset == 0.0
     ended = False
     if turns <= 1.0:
-        z, v = place_on(step, turns), velocity_on(step, turns)
+        z, v = position_on(step, turns), velocity_on(step, turns)
         radius = abs(z)
         see_radius(memory.window, radius)
         if centred and outward(step, 0.0) > 0.0:
@@ -159,7 +159,7 @@ def record_extreme(
             ended = met and record_turn(lanes, memory, lane, OF_PEAK, turns, radius, law, settings)
     if flag & RIGHTMOST and not centred and not ended:
         u = where_rightmost(step)
-        z, v = place_on(step, u), velocity_on(step, u)
+        z, v = position_on(step, u), velocity_on(step, u)
         values = (z.real, z.imag, v.imag, spin_at(lanes, lane, u, step.span), 0.0)
         met = compared(memory.turns, values, abs(v))
         ended = met and record_turn(lanes, memory, lane, OF_TURN, u, abs(z), law, settings)
@@ -203,7 +203,7 @@ def check_due(
         return False
     step = last_step(lanes, lane)
     u = (due - lanes.now.state.time[lane]) / step.span
-    z, v, r = place_on(step, u), velocity_on(step, u), spin_at(lanes, lane, u, step.span)
+    z, v, r = position_on(step, u), velocity_on(step, u), spin_at(lanes, lane, u, step.span)
     if law.offset == 0.0:
         radius = max(abs(z), 1e-300)
         along = (1.0 / radius) * v * z.conjugate()

@@ -17,7 +17,7 @@ from reference_model.ensemble.core.laws import (
 from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
-    place_on,
+    position_on,
     velocity_on,
     way_along,
     where_radius_turns,
@@ -25,7 +25,7 @@ from reference_model.ensemble.core.stepping.dense_output import (
 )
 from reference_model.ensemble.core.window import NO_WINDOW, open_window, see_radius
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
-from reference_model.ensemble.pin.end_states import Well, depth
+from reference_model.ensemble.pin.end_states import EquilibriumRegion, depth
 from reference_model.ensemble.pin.lanes import (
     EXTREME,
     IS_DUE,
@@ -41,8 +41,8 @@ from reference_model.ensemble.pin.lanes import (
     landed,
     last_step,
     law_of,
-    place_at,
-    put_place,
+    position_at,
+    put_position,
     put_slipping,
     slip_at,
 )
@@ -105,17 +105,17 @@ def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Setting
         if flag & RIGHTMOST:
             u = where_rightmost(step)
         if turns <= u:
-            see_radius(memory.window, abs(place_on(step, turns)))
+            see_radius(memory.window, abs(position_on(step, turns)))
         if flag & RIGHTMOST:
-            z, v = place_on(step, u), velocity_on(step, u)
+            z, v = position_on(step, u), velocity_on(step, u)
             if record_crossing(lanes, memory, lane, step, u, law, settings):
-                put_place(lanes.trial, lane, z, v - 1j * law.disc_speed * z)
+                put_position(lanes.trial, lane, z, v - 1j * law.disc_speed * z)
                 lanes.trial.state.time[lane] = lanes.now.state.time[lane] + u * step.span
                 return True
             if check_region(lanes, memory, lane, later, law, settings):
                 return True
         if u < turns <= 1.0:
-            see_radius(memory.window, abs(place_on(step, turns)))  # of a window that opened at u
+            see_radius(memory.window, abs(position_on(step, turns)))  # of a window that opened at u
     if flag & REST:
         return maybe_rest(lanes, memory, lane, law, settings)
     return False
@@ -145,8 +145,8 @@ def in_region(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> boo
     level = memory.level
     if level <= 0.0:
         return False
-    well = Well(memory.equilibrium, memory.form, level)
-    return depth(place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
+    well = EquilibriumRegion(memory.equilibrium, memory.form, level)
+    return depth(position_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
 
 
 @written_out
@@ -162,7 +162,7 @@ def record_crossing(
     """Record a crossing of the section at u in a step; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
-    z, speed = place_on(step, u), velocity_on(step, u).imag
+    z, speed = position_on(step, u), velocity_on(step, u).imag
     t = lanes.now.state.time[lane] + u * step.span
     if settings.once:
         if t < AFTER_START:
@@ -226,7 +226,7 @@ def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings:
 @written_out
 def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, settings: Settings) -> bool:
     """Bring the pin to rest if the end of slip is known; return whether the trajectory ends."""
-    z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     t, s = lanes.trial.state.time[lane], abs(w)
     creeps = creeps_steadily(z, w, law)
     if creeps:
@@ -301,7 +301,7 @@ def rest(
             lanes.trial.state.way[lane] += way
     lanes.trial.state.time[lane] = min(t, end)
     if w == 0j:
-        put_place(lanes.trial, lane, z, w)
+        put_position(lanes.trial, lane, z, w)
     else:
         put_slipping(lanes, lane, z, w, law)
     return t >= end  # a pin that begins to slip at the very end has ended too
@@ -358,7 +358,7 @@ def released(
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     """Decide the end state at the very end, also of a pin whose slip is not yet slow enough for a closed form."""
-    z = place_at(lanes.trial, lane)
+    z = position_at(lanes.trial, lane)
     if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
         radius = sticking_radius(law)
         memory.end = STUCK

@@ -15,7 +15,7 @@ from reference_model.ensemble.core.records import LANES, clear, fill, layout, pu
 from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
 from reference_model.ensemble.parameters import Task
-from reference_model.ensemble.pin.end_states import well_of
+from reference_model.ensemble.pin.end_states import equilibrium_region
 from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
     LANDING,
@@ -29,7 +29,7 @@ from reference_model.ensemble.pin.lanes import (
     advance_alone,
     idle,
     law_of,
-    place_at,
+    position_at,
     put_slipping,
     slip_at,
 )
@@ -132,7 +132,7 @@ def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Set
 @inlined
 def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
     """Store the trapping region of the equilibrium, if known, and the time of the first check."""
-    well, regions = well_of(law), settings.regions
+    well, regions = equilibrium_region(law), settings.regions
     memory.equilibrium, memory.level = well.place, well.level
     fill(memory.form, well.form)
     if regions.level > 0.0:
@@ -145,7 +145,7 @@ def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
 def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> None:
     """Write the result of a lane in SI units."""
     number, length, found = memory.number, memory.length, memory.found
-    z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     put_state(results.states[number], memory, z, w, law_of(lanes, lane))
     results.times[number] = lanes.trial.state.time[lane] / memory.rate
     results.ends[number] = memory.end

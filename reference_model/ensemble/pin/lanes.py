@@ -171,7 +171,7 @@ def rates_at(moment: Moment, lane: int) -> PinState:
 
 
 @inlined
-def place_at(moment: Moment, lane: int) -> complex:
+def position_at(moment: Moment, lane: int) -> complex:
     """Return z."""
     return complex(moment.state.x[lane], moment.state.y[lane])
 
@@ -196,12 +196,12 @@ def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw
 @inlined
 def put_motion(moment: Moment, lane: int, z: complex, w: complex, law: PinLaw) -> None:
     """Write a slipping pin and its rates to a lane."""
-    put_place(moment, lane, z, w)
+    put_position(moment, lane, z, w)
     put(moment.rates, lane, pin_rates((z.real, z.imag, w.real, w.imag), law))
 
 
 @inlined
-def put_place(moment: Moment, lane: int, z: complex, w: complex) -> None:
+def put_position(moment: Moment, lane: int, z: complex, w: complex) -> None:
     """Write position and slip velocity to a lane."""
     state = moment.state
     state.x[lane], state.y[lane], state.wx[lane], state.wy[lane] = z.real, z.imag, w.real, w.imag
@@ -248,6 +248,6 @@ def motion(z: complex, w: complex, law: PinLaw) -> Motion:
 def last_step(lanes: PinLanes, lane: int, law: PinLaw) -> DenseOutput:
     """Return the motion in the last step."""
     now, trial = lanes.now, lanes.trial
-    first = motion(place_at(now, lane), slip_at(now, lane), law)
-    last = motion(place_at(trial, lane), slip_at(trial, lane), law)
+    first = motion(position_at(now, lane), slip_at(now, lane), law)
+    last = motion(position_at(trial, lane), slip_at(trial, lane), law)
     return dense_output(trial.state.time[lane] - now.state.time[lane], first, last)

@@ -15,7 +15,7 @@ from reference_model.ensemble.core.records import Record, fill, layout
 from reference_model.ensemble.core.requested_times import mark_requested
 from reference_model.ensemble.core.window import NO_WINDOW, Measures, Window, measured, see_radius
 from reference_model.ensemble.pin.end_states import Form
-from reference_model.ensemble.pin.lanes import Moment, PinLanes, place_at, slip_at
+from reference_model.ensemble.pin.lanes import Moment, PinLanes, position_at, slip_at
 from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray
 
@@ -170,7 +170,7 @@ def record_requested(
 ) -> None:
     """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
     if mark_requested(lanes, moment, memory, lane, until, settings):
-        t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
+        t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
         take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)
 
 

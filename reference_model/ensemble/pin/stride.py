@@ -17,7 +17,7 @@ from reference_model.ensemble.core.stepping.implicit import (
 from reference_model.ensemble.pin.lanes import (
     PinLanes,
     flags_of,
-    place_at,
+    position_at,
     put_motion,
     rates_at,
     slip_at,
@@ -32,7 +32,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     now, trial = lanes.now, lanes.trial
     t, share = now.state.time[lane], now.rates.time[lane]
     short = now.step[lane] * share
-    z, w = place_at(now, lane), slip_at(now, lane)
+    z, w = position_at(now, lane), slip_at(now, lane)
     left = memory.duration - t
     least = min(WORTH * short, left)
     span = first_try(memory.span, least, left)

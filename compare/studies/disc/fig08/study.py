@@ -18,7 +18,7 @@ from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
-from reference_model.formulas.disc import places_by_26, semicircle_residual
+from reference_model.formulas.disc import positions_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
@@ -46,7 +46,7 @@ def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     """Return the means of x, y and spin of the steady motion found from (26), which deviates by a few per cent."""
-    place, *_ = places_by_26(disc)
+    place, *_ = positions_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
 

@@ -94,7 +94,9 @@ def collocate_with(
             s = math.sqrt(ux * ux + uy * uy + r * r)
             apart = APART * s
             fx, fy, fr, power[j] = friction(ux, uy, r, turned, law)
-            a = pull(_place(z, w, step, j, turns), complex(ux, uy), law) + law.friction * complex(fx, fy)
+            a = pull(_position_at_node(z, w, step, j, turns), complex(ux, uy), law) + law.friction * complex(
+                fx, fy
+            )
             f[j, 0], f[j, 1] = a.real, a.imag
             if d == 3:
                 f[j, 2] = -law.shaft_rate * (r + law.lag) + law.friction * fr
@@ -285,7 +287,7 @@ def stride_with(
                 turned += law.curling * span * INTEGRAL[NODES - 1, j] * w[j, 2]
         last = w[NODES - 1]
         r = last[2] if d == 3 else 0.0
-        there = place_after(z, w, span, law)
+        there = position_after(z, w, span, law)
         return there, last[0], last[1], r, turned, span, way, span * min(factor, GROWTH)
     return z, 0.0, 0.0, 0.0, angle, 0.0, 0.0, span
 
@@ -310,13 +312,13 @@ def patience(planned: float) -> float:
 
 
 @scalar
-def place_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
+def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
     """Return the position of the centre at the end of a step."""
-    return _place(z, w, step, NODES - 1, _turns(law.disc_speed, step))
+    return _position_at_node(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 
 @inlined
-def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
+def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
     """Return the position of the centre at a node; relative to the master disc it depends on slip only."""
     way = 0j
     for j in range(NODES):
