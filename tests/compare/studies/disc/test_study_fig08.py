@@ -14,7 +14,7 @@ from reference_model.formulas.disc import positions_by_26
 
 def test_the_printed_equation_26_differs(monkeypatch):
     printed = functools.partial(positions_by_26, as_printed=True)
-    monkeypatch.setattr(theory, "places_by_26", lambda disc, as_printed=True: printed(disc))
+    monkeypatch.setattr(theory, "positions_by_26", lambda disc, as_printed=True: printed(disc))
     findings = STUDY.measure_theory(only=("corrected_26", "printed_26", "end_of_26"))
     assert sentences(findings, Verdict.DIFFERS) == {
         one.sentence for one in STUDY.declared if one.function.__name__ in ("corrected_26", "printed_26")
