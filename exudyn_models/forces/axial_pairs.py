@@ -135,6 +135,9 @@ class Mode(IntEnum):
     """Transmits nothing because load or coefficient is zero."""
 
 
+SLIDING = (Mode.BACKWARD, Mode.FORWARD)
+
+
 @dataclass(eq=False)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
@@ -221,7 +224,7 @@ class AxialStick:
     @property
     def slides(self) -> bool:
         """True if the contact slides under a load."""
-        return self.mode == 1 or self.mode == -1  # called at every evaluation
+        return self.mode in SLIDING
 
     def moment(self, t: float, spin: float) -> float:
         """Return the moment in N m on the disc, but for that of the constraint while the contact is locked."""
@@ -275,11 +278,12 @@ class AxialStick:
         """Return the derivatives of minus the moments on the nodes, as the user function of the connector."""
         gradient = np.array(self.gradient(q))
         slope = 0.0
-        spin = float(gradient @ q_t)
-        if self.factors.depends_on_motion and self.slides and int(self.mode or 0) * spin > 0.0:
-            radius = self.mean_radius
-            _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
-            slope = int(self.mode or 0) * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
+        if self.factors.depends_on_motion and self.slides:
+            spin, direction = float(gradient @ q_t), int(self.mode or 0)
+            if direction * spin > 0.0:  # ``moment`` is constant beyond zero slip
+                radius = self.mean_radius
+                _, by_speed, by_spin = self.factors.friction_force_slopes(t, 0.0, radius * abs(spin), spin)
+                slope = direction * radius * float(by_speed * math.copysign(radius, spin) + by_spin)
         return velocity_factor * slope * np.outer(gradient, gradient)
 
 

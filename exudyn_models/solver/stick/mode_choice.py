@@ -17,7 +17,6 @@ from exudyn_models.solver.stick.locked_contacts import LockedContacts
 from exudyn_models.solver.stick.sliding_steps import SlidingSteps
 from exudyn_models.solver.stick.slip_motion import RESOLVED, SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact, StickingContact
-from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 ROUNDING = 1e-12
@@ -63,8 +62,6 @@ class ModeChoice:
         self._step, self._at_start = step, at_start
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._locked = LockedContacts(mbs, t, contacts)
-        #: Accelerations and constraint forces, and whether no load of a contact changes with them.
-        self._starting = np.empty(0), np.empty(0), True
 
     def survey(self, t: float) -> None:
         """Find the directions of slip that joints and locks hold at the time t (s) and the initial values.
@@ -96,18 +93,13 @@ class ModeChoice:
             self._locked.share_directions()
             for planar in self._planar:
                 planar.stick.idle = planar.stick.slides and self._locked.is_held(planar)
-            chosen = self._contradiction()
-            accelerations, forces, loads_settled = self._starting
-            data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
-            data.SetODE2Coordinates_tt(accelerations, initial)
-            data.SetAECoordinates(forces, initial)
-            if not loads_settled:
-                continue
-            if chosen is None:
+            settled, chosen = self._examined()
+            if chosen is not None:
+                self.leave(*chosen)
+            elif settled:
                 for contact in self._contacts:
                     contact.stick.idle = contact.stick.slides and self._locked.is_held(contact)
                 return
-            self.leave(*chosen)
         raise SimulationError(
             f"found no modes of the friction contacts that satisfy Coulomb's law at t = {t:.9g} s"
         )
@@ -143,44 +135,53 @@ class ModeChoice:
         assert found is not None
         return found
 
-    def _contradiction(self) -> tuple[StickingContact, Mode] | None:
-        """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
+    def _examined(self) -> tuple[bool, tuple[StickingContact, Mode] | None]:
+        """Compute the initial forces, and return whether the loads have settled and a contact that changes its mode.
 
-        Contacts that open or close come first, because a load may depend on forces that are known only now. The most
-        overloaded locked contact follows, then sliding contacts that reverse.
+        The contact is None unless they have settled and a contact violates Coulomb's law.
         """
-        found: tuple[StickingContact, Mode] | None = None
+        settled, found = False, None
 
         def look(t: float) -> None:
-            nonlocal found
-            mbs = self._mbs
+            nonlocal settled, found
             self._locked.correct()
-            self._starting = self._initial_forces(t)
-            for contact in self._contacts:
-                if contact.opens_or_closes(contact.holding(t)):
-                    found = contact, contact.following(mbs, t)
-                    return
-            most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
-            if most.overload(mbs, t) > 1.0 + ROUNDING:
-                found = most, most.driven(mbs)
-            for contact in self._contacts:
-                reversing = found is None and contact.reverses(mbs, contact.rest_share * self._step)
-                if reversing and not self._locked.is_held(contact):
-                    found = contact, Mode.LOCKED
-            self._slides.survey()
+            settled = self._start_with_forces(t)
+            if settled:
+                found = self._contradiction(t)
+                self._slides.survey()
 
         self._at_start(look)
-        return found
+        return settled, found
 
-    def _initial_forces(self, t: float) -> tuple[FloatArray, FloatArray, bool]:
-        """Return accelerations, constraint forces, and whether the loads that led to both agree with them.
+    def _contradiction(self, t: float) -> tuple[StickingContact, Mode] | None:
+        """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
+
+        Contacts that open or close come first. The most overloaded locked contact follows, then sliding contacts that
+        reverse.
+        """
+        mbs = self._mbs
+        for contact in self._contacts:
+            if contact.opens_or_closes(contact.holding(t)):
+                return contact, contact.following(mbs, t)
+        most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
+        if most.overload(mbs, t) > 1.0 + ROUNDING:
+            return most, most.driven(mbs)
+        for contact in self._contacts:
+            if contact.reverses(mbs, contact.rest_share * self._step) and not self._locked.is_held(contact):
+                return contact, Mode.LOCKED
+        return None
+
+    def _start_with_forces(self, t: float) -> bool:
+        """Make accelerations and constraint forces initial values; return whether the loads agree with them.
 
         A load may be a function of constraint forces, such as the reaction of a joint.
         """
-        data = self._mbs.systemData
-        accelerations, forces = np.array(data.GetODE2Coordinates_tt()), np.array(data.GetAECoordinates())
+        data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
+        forces = np.array(data.GetAECoordinates())
         loads = [contact.holding(t) for contact in self._contacts]
-        data.SetAECoordinates(data.GetAECoordinates(exu.ConfigurationType.Initial))
+        data.SetAECoordinates(data.GetAECoordinates(initial))
         before = [contact.holding(t) for contact in self._contacts]
         data.SetAECoordinates(forces)
-        return accelerations, forces, np.allclose(loads, before, rtol=SETTLED, atol=0.0)
+        data.SetAECoordinates(forces, initial)
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt(), initial)
+        return np.allclose(loads, before, rtol=SETTLED, atol=0.0)

@@ -21,6 +21,32 @@ PIVOT, COEFFICIENT = 0.02, 0.3
 COORDINATES_T = exu.OutputVariableType.Coordinates_t
 
 
+def sensed(mbs, item, kind=exu.OutputVariableType.Force):
+    """Return a function for the magnitude (N or N m) of the force of a connector."""
+    sensor = mbs.AddSensor(items.SensorObject(objectNumber=item, outputVariableType=kind, writeToFile=False))
+    return lambda: float(np.linalg.norm(mbs.GetSensorValues(sensor)))
+
+
+def coupled(mbs, nodes, connector=items.CoordinateConstraint, **law):
+    """Return the item of a connector between the first coordinates of two nodes."""
+    ends = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]
+    return mbs.AddObject(connector(markerNumbers=ends, **law))
+
+
+def one_way_clutch(mbs, speed):
+    """Return a driving and a driven rotor of 1 and 0.5 kg m² at one speed (rad/s), and the clutch between them."""
+    driver, driven = rotor(mbs, 1.0, speed), rotor(mbs, 0.5, speed)
+    clutch = add_ring_friction(
+        mbs,
+        driver,
+        driven,
+        contact_radius=0.1,
+        friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
+        normal_load=1e4,
+    )
+    return driver, driven, clutch
+
+
 def pendulum(reaction):
     """Return a pendulum with 1 rad/s at its lowest position; the load of its dry pivot is the ``reaction`` or m·g."""
     mbs = new_model()
@@ -34,12 +60,7 @@ def pendulum(reaction):
         for body, place in ((mbs.AddObject(items.ObjectGround()), 0.0), (rod, -LENGTH))
     ]
     joint = mbs.AddObject(items.GenericJoint(markerNumbers=pins, constrainedAxes=[1, 1, 0, 0, 0, 0]))
-    force = mbs.AddSensor(
-        items.SensorObject(
-            objectNumber=joint, outputVariableType=exu.OutputVariableType.ForceLocal, writeToFile=False
-        )
-    )
-    load = (lambda: float(np.linalg.norm(mbs.GetSensorValues(force)))) if reaction else MASS * GRAVITY
+    load = sensed(mbs, joint, exu.OutputVariableType.ForceLocal) if reaction else MASS * GRAVITY
     add_ring_friction(mbs, *pins, contact_radius=PIVOT, friction_coefficient=COEFFICIENT, normal_load=load)
     mbs.Assemble()
     return mbs
@@ -103,12 +124,7 @@ def test_a_load_from_a_spring_acts_without_delay():
     swing = mbs.AddNode(items.Node1D(initialCoordinates=[deflection]))
     mbs.AddObject(items.ObjectMass1D(nodeNumber=swing, mass=mass))
     frame = mbs.AddNode(items.NodePointGround())
-    ends = [
-        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in (frame, swing)
-    ]
-    spring = mbs.AddObject(items.CoordinateSpringDamper(markerNumbers=ends, stiffness=stiffness))
-    kind = exu.OutputVariableType.Force
-    force = mbs.AddSensor(items.SensorObject(objectNumber=spring, outputVariableType=kind, writeToFile=False))
+    spring = coupled(mbs, [frame, swing], items.CoordinateSpringDamper, stiffness=stiffness)
     wheel = rotor(mbs, 0.5, speed)
     add_ring_friction(
         mbs,
@@ -116,7 +132,7 @@ def test_a_load_from_a_spring_acts_without_delay():
         wheel,
         contact_radius=0.1,
         friction_coefficient=0.5,
-        normal_load=lambda: abs(float(mbs.GetSensorValues(force))),
+        normal_load=sensed(mbs, spring),
     )
     mbs.Assemble()
     rate = math.sqrt(stiffness / mass)
@@ -133,12 +149,7 @@ def self_energising_brake(gain):
     """
     mbs = new_model()
     wheel, flywheel = rotor(mbs, 0.5, 20.0), rotor(mbs, 0.5, 20.0)
-    ends = [
-        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in (wheel, flywheel)
-    ]
-    shaft = mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends))
-    kind = exu.OutputVariableType.Force
-    moment = mbs.AddSensor(items.SensorObject(objectNumber=shaft, outputVariableType=kind, writeToFile=False))
+    moment = sensed(mbs, coupled(mbs, [wheel, flywheel]))
     grows = 2.0 * gain / (0.1 * 0.5)
     add_ring_friction(
         mbs,
@@ -146,7 +157,7 @@ def self_energising_brake(gain):
         wheel,
         contact_radius=0.1,
         friction_coefficient=0.5,
-        normal_load=lambda: 40.0 + grows * abs(float(mbs.GetSensorValues(moment))),
+        normal_load=lambda: 40.0 + grows * moment(),
     )
     mbs.Assemble()
     return mbs, wheel
@@ -289,17 +300,9 @@ def test_a_one_way_clutch_overruns_and_engages_at_the_exact_times(solver):
     errors = []
     for step in (2e-3, 1e-3):
         mbs = new_model()
-        driver, driven = rotor(mbs, 1.0, 4.0), rotor(mbs, 0.5, 4.0)
+        driver, driven, clutch = one_way_clutch(mbs, 4.0)
         drive(mbs, driver, lambda t: 8.0 * math.sin(5.0 * t))
         drive(mbs, driven, -1.0)
-        clutch = add_ring_friction(
-            mbs,
-            driver,
-            driven,
-            contact_radius=0.1,
-            friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
-            normal_load=1e4,
-        )
         moment, mode = clutch.add_sensor("transmitted_moment"), clutch.add_sensor("mode")
         mbs.Assemble()
         changes = solve_dynamic(mbs, settings_of(1.6, round(1.6 / step)), solver)
@@ -315,15 +318,7 @@ def test_a_one_way_clutch_overruns_and_engages_at_the_exact_times(solver):
 def test_a_one_way_clutch_without_a_load_rests():
     """Rounding errors of the moment do not release it."""
     mbs = new_model()
-    driver, driven = rotor(mbs, 1.0, 3.0), rotor(mbs, 0.5, 3.0)
-    add_ring_friction(
-        mbs,
-        driver,
-        driven,
-        contact_radius=0.1,
-        friction_coefficient=lambda relative_spin: 0.3 if relative_spin < 0.0 else 0.0,
-        normal_load=1e4,
-    )
+    driver, driven, _ = one_way_clutch(mbs, 3.0)
     mbs.Assemble()
     assert solve_dynamic(mbs, settings_of(10.0, 1000), TRAPEZOIDAL) == []
     assert rate_of(mbs, driver) == rate_of(mbs, driven) == 3.0
@@ -336,14 +331,10 @@ def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solv
     mbs = new_model()
     shafts = [rotor(mbs, 1.0, 0.0), rotor(mbs, 0.5, 0.0)]
     drive(mbs, shafts[0], lambda t: drives if t < 1.0 else brakes)
-    ends = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in shafts]
-    gear = mbs.AddObject(items.CoordinateConstraint(markerNumbers=ends, factor1=ratio))
-    kind = exu.OutputVariableType.Force
-    moment = mbs.AddSensor(items.SensorObject(objectNumber=gear, outputVariableType=kind, writeToFile=False))
+    moment = sensed(mbs, coupled(mbs, shafts, factor1=ratio))
 
     def loss(time):
-        share = 1.0 / efficiency - 1.0 if time < 1.0 else 1.0 - efficiency
-        return share * abs(float(mbs.GetSensorValues(moment)))
+        return moment() * (1.0 / efficiency - 1.0 if time < 1.0 else 1.0 - efficiency)
 
     add_ring_friction(mbs, None, shafts[0], contact_radius=1.0, friction_coefficient=1.0, normal_load=loss)
     speed = mbs.AddSensor(

@@ -77,6 +77,7 @@ def lost_energy(mbs, nodes, contacts, step):
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
+@pytest.mark.filterwarnings("ignore:the energy balance is off")  # the steps are too long on purpose
 def test_rotors_in_a_row_lose_energy_beyond_the_limit_and_none_below(count):
     """Of equal inertias in a row the fastest decay is (μN/ε)·(R²/J)·(2 + 2cos(π/n)), as of a chain of masses."""
     mbs, *_ = row_of_rotors(count)
