@@ -32,11 +32,11 @@ class OnePoint:
 
     Parameters
     ----------
-    motion
+    motion : DiscMotion
         Equations of motion of the disc.
-    contact
+    contact : PointsOnRing
         Friction law.
-    point
+    point : int
         Index of the point.
 
     """
