@@ -83,7 +83,6 @@ def growth(disc: DiscOnDisc) -> float:
 
 
 def curves() -> Data:
-    """Return the ends, and the curves by kind."""
     return {
         f"{kind}/{i}": boundary.parameters
         for kind in KINDS

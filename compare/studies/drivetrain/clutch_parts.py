@@ -202,7 +202,6 @@ def heating(
 
 
 def curves() -> Data:
-    """Return the closed forms for the figures."""
     falls, slips, later = np.linspace(-1.0, 4.0, 50), np.linspace(SLIP, 0.0, 100), np.linspace(0.0, 40.0, 100)
     return {
         "falls": falls,

@@ -117,7 +117,6 @@ def exact_whirl() -> Orbit:
 
 
 def curves() -> Data:
-    """Return the motion to rest, at the sampling times of the engines and between them."""
     exact = exact_motion()
     path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
     return {

@@ -55,12 +55,10 @@ class Motion:
 
 
 def all_motions() -> dict[str, Motion]:
-    """Return all motions by their names in the claims."""
     return motions_of_the_pin() | motions_of_the_disc()
 
 
 def motions_of_the_pin() -> dict[str, Motion]:
-    """Return the motions of a pin."""
     radius = whirl_radius(CENTRED)
     sticky = FIG4
     stuck = 0.98 * sticking_radius(sticky)
@@ -99,7 +97,6 @@ def motions_of_the_pin() -> dict[str, Motion]:
 
 
 def motions_of_the_disc() -> dict[str, Motion]:
-    """Return the motions of a friction disc, on the continuous ring and on six points."""
     near_axis, thrown = (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), (0.0, 0.0, 0.0, 0.5, 0.2, 3.0)
     sticky = replace(FIG11, friction_force=0.1)
     table = replace(

@@ -69,7 +69,6 @@ GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin of this study with μN = ``load`` in N."""
     return replace(PIN, friction_force=load)
 
 
@@ -244,7 +243,6 @@ def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, loads: Sequence[float]) -> Rates:
-    """Return the eigenvalues at the positions of rest."""
     pins = [with_load(load) for load in loads]
     return measured_rates(
         engine,
@@ -340,7 +338,6 @@ def draw_semicircle(data: ByEngine) -> Figure:
 
 
 def _label(plane: Axes) -> None:
-    """Mark the axis and the relaxed point, and label the positions of rest with the friction forces."""
     X0 = PIN.offset
     small: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9.5}
     plane.plot([0.0, X0], [0.0, 0.0], color="black", marker="+", linestyle="none", markersize=9.0)

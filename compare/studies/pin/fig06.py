@@ -56,7 +56,6 @@ ON_THE_WAY = 1e-8
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin with μN = ``load`` in N."""
     return replace(FIG6, friction_force=float(load))
 
 
@@ -136,8 +135,7 @@ STUDY = Study.beside(
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
-    """Compare the positions of rest with (3) at several late times; a single state may be right by chance."""
-    times = np.linspace(590.0, 600.0, 11)
+    times = np.linspace(590.0, 600.0, 11)  # a single state may be right by chance
     found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
     # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).

@@ -65,7 +65,6 @@ def parameters_of(
 
 
 def facings(car: Drivetrain, rings: int = 16) -> Annulus:
-    """Return the reference's friction law for the clutch."""
     return Annulus(car.inner_radius, car.outer_radius, rings)
 
 
@@ -186,12 +185,10 @@ RINGS = 16
 
 
 def rest_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningEquilibrium:
-    """Return the reference's equilibrium."""
     (equilibrium,) = self_centred_equilibria(operation.reduced(car), facings(car, rings))
     return equilibrium
 
 
 def whirl_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningWhirl:
-    """Return the reference's whirl."""
     (whirl,) = whirls(operation.reduced(car), facings(car, rings))
     return whirl

@@ -36,7 +36,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def laws(data: ByEngine) -> Figure:
-    """Draw force and moment of the laws."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
         if "theory" in data:

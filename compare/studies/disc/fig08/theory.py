@@ -109,7 +109,7 @@ def last_load_by_26(disc: DiscOnDisc) -> float:
 
 
 def curves(count: int = 121) -> Data:
-    """Return spins and positions over ``count`` values of μN, for Fig. 8 and all offsets, and their ends over X0."""
+    """Return spins and positions over ``count`` values of μN, and their ends over X0."""
     data: Data = {"offset": np.array(OFFSETS)}
     for offset in OFFSETS:
         disc = replace(RING, offset=offset)

@@ -88,7 +88,6 @@ def _whirls(panel: Axes, found: Data) -> None:
 
 
 def _near_axis(panel: Axes, found: Data) -> None:
-    """Draw the inner whirl, the equilibrium and sticking."""
     load, least, greatest, _ = found["orbits"].T
     inner = slice(int(np.argmin(load)), None)
     panel.plot(load[inner], least[inner], label="unstable", **UNSTABLE)

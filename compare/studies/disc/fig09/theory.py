@@ -102,7 +102,6 @@ DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
 def on_six_points(disc: DiscOnDisc) -> DiscOnDisc:
-    """Return ``disc`` on six contact points, as in the paper's simulations."""
     return replace(disc, contact_points=6)
 
 
@@ -251,12 +250,11 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return the branches of all motions over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
+    """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
     return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
-    """Return friction force, radius and spin of whirls without offset on the ring and by (23), largest first."""
     angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
     data: Data = {}
     laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}

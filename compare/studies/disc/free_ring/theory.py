@@ -152,7 +152,6 @@ def expected_approach(throw: Throw, near: float = NEAR) -> float:
 
 
 def curves() -> Data:
-    """Return the terminal ratio over J/(mR²) between 1/2 and 2."""
     inertias = 0.5 * 4.0 ** np.linspace(0.002, 0.998, 101)
     ratios = [math.exp(Slowing(float(inertia)).terminal) for inertia in inertias]
     return {"inertia": inertias, "ratio": np.array(ratios)}
@@ -175,7 +174,6 @@ def roughly_rest(engine: Engine, throw: Throw) -> float:
 
 @functools.cache
 def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
-    """Return the trajectory of a throw at all sample times."""
     rest = roughly_rest(engine, throw)
     times = [
         *uniform_times(engine, throw),

@@ -161,7 +161,6 @@ def coexist(
 
 
 def starts_in_regions() -> tuple[theory.Start, ...]:
-    """Return motions in all regions of the map, with the ends expected from the ring's curves."""
     at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)

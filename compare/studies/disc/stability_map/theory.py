@@ -107,7 +107,6 @@ Traced = Mapping[tuple[str, str, Kind], tuple[Boundary, ...]]
 
 @functools.cache
 def traced() -> Traced:
-    """Trace all curves of the map."""
     return {
         (plane, law, kind): curves_in(plane, kind, law) for plane in PLANES for law in LAWS for kind in KINDS
     }
@@ -210,7 +209,6 @@ def nearest(values: Sequence[float], to: float) -> list[float]:
 
 
 def curves() -> Data:
-    """Return the curves of the map, and the whirls at the speeds of Fig. 11."""
     data: Data = {}
     for (plane, law, kind), found in traced().items():
         for i, curve in enumerate(found):

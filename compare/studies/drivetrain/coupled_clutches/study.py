@@ -64,7 +64,6 @@ OF_ORDER = (
 
 
 def curves() -> Data:
-    """Return the exact speeds and the deviations of the published ones, for the figure."""
     t = np.linspace(0.0, UNTIL, 1501)
     record = published()
     off = record.speeds - first_and_slips(exact().states(record.times)[1])
@@ -365,7 +364,6 @@ def _draw(data: ByEngine) -> Figure:
 
 
 def _error(panel: Axes, t: np.ndarray, off: np.ndarray, label: str, colour: str) -> None:
-    """Draw the largest error of the speeds."""
     panel.plot(t, np.maximum(np.max(np.abs(off), axis=1), EXACT), color=colour, linewidth=1.0, label=label)
 
 

@@ -109,7 +109,6 @@ NOTHING = Harmonic()
 
 
 def chain() -> Chain:
-    """Return the rotors with their clutches."""
     capacity = RADIUS * COEFFICIENT * LOAD
     falling = Harmonic(capacity, 2.0 * math.pi * OPENS)
     drive = Harmonic(TORQUE, 2.0 * math.pi * FREQUENCY, 0.0)
@@ -126,7 +125,6 @@ def chain() -> Chain:
 
 @functools.cache
 def exact() -> Motion:
-    """Return the exact motion."""
     return chain().motion([SPEED, 0.0, 0.0, 0.0], UNTIL)
 
 

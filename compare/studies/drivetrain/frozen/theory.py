@@ -45,7 +45,6 @@ if TYPE_CHECKING:
 
 
 def balanced_car() -> Drivetrain:
-    """Return the passenger car without unbalance."""
     return replace(passenger_car(), unbalance=0.0)
 
 
@@ -253,7 +252,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return the curves of steady motions and the maps of modulation, at one point in ``every``."""
+    """Compute the maps of modulation at one point in ``every``."""
     return _lines_of_reference(balanced_car(), every) | _maps_of_modulation(centred_car(), every)
 
 

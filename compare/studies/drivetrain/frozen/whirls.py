@@ -32,7 +32,6 @@ Matrix = Callable[[theory.CarWhirl], FloatArray]
 
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
-    """Return the state matrix from Exudyn's linearisation."""
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 

@@ -170,7 +170,6 @@ def draw_pictures(data: ByEngine) -> Figure:
 
 
 def show(panel: Axes, image: Any, title: str) -> None:
-    """Show a picture without axes."""
     panel.imshow(image)
     panel.set_axis_off()
     panel.set_title(title, loc="center")

@@ -190,7 +190,6 @@ def _run_ups(engine: Engine, top: float) -> tuple[DrivetrainMotion, DrivetrainMo
 
 
 def _shown(motion: DrivetrainMotion) -> Data:
-    """Return the data of the spectrum and the figures."""
     return {
         "times": motion.times,
         "engine": np.column_stack((motion.engine_angle, motion.engine_speed)),

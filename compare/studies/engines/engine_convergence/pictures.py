@@ -131,7 +131,6 @@ def _marks(engine: str, *, line: bool = False) -> dict[str, Any]:
 
 
 def _legend_below(figure: Figure, panels: tuple[Axes, ...]) -> None:
-    """Put one legend for all panels below them."""
     found: dict[str, Any] = {}
     for panel in panels:
         handles, labels = panel.get_legend_handles_labels()

@@ -128,7 +128,6 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
 
 @of_every_order
 def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
-    """Compare the order of one of Exudyn's solvers at a fixed step with its declared order."""
     if engine.name != "exudyn":
         return None
     import exudyn_models  # deferred, because the command line must start without it

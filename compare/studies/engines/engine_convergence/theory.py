@@ -107,7 +107,6 @@ SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are our c
 
 
 def root_mean_square(values: FloatArray) -> float:
-    """Return √⟨values²⟩."""
     return float(np.sqrt(np.mean(values**2)))
 
 

@@ -195,7 +195,6 @@ def _damped(system: System, start: complex, velocity: complex, t: float) -> tupl
 
 
 def oscillator(random: Generator) -> Problem:
-    """Draw a damped oscillation of a pin about the offset, without friction."""
     pin = replace(any_pin(random), friction_force=0.0)
     place = vector(random, abs(pin.offset))
     velocity = vector(random, abs(pin.offset) * pin.natural_frequency)
@@ -329,17 +328,14 @@ def _generic(random: Generator, system: System) -> Problem:
 
 
 def pin(random: Generator) -> Problem:
-    """Draw a motion of a pin with slip and possibly stick."""
     return _generic(random, any_pin(random))
 
 
 def ring(random: Generator) -> Problem:
-    """Draw a slipping disc on a continuous ring."""
     return _generic(random, any_disc(random, None))
 
 
 def points(random: Generator) -> Problem:
-    """Draw a slipping disc on three to six points."""
     return _generic(random, any_disc(random, int(random.integers(3, 7))))
 
 

@@ -49,7 +49,6 @@ LAW = (
 
 
 def curves() -> Data:
-    """Return computing time and error of each recorded run."""
     return {
         f"{recording.name}: {case}": runs[:, [SECONDS, ERROR]]
         for recording in ladders.recorded()

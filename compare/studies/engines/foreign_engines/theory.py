@@ -209,7 +209,6 @@ IN_SHORT = {
 
 
 def recorded_settings() -> tuple[Recorded, ...]:
-    """Return the results of each setting for the matrix of the report."""
     return tuple(recorded_claims(recording) for recording in recorded())
 
 
@@ -279,7 +278,6 @@ def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> l
 
 
 def tables() -> tuple[Table, ...]:
-    """Return the tables of errors, costs and settings."""
     titles = tuple(case.title for case in CASES.values())
     finest = tuple((recording.name, *_of_each_case(recording, _finest)) for recording in recorded())
     cost = tuple(

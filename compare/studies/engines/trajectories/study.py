@@ -120,7 +120,6 @@ NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
 
 
 def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
-    """Return single motions with given parameters, and groups of random motions by kind."""
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
@@ -341,7 +340,6 @@ def of_stick(
 
 
 def started(motion: parameters.Motion) -> str:
-    """Return the start and the duration of a motion as text."""
     return f"To t = {motion.until:g} s from {motion.start}."
 
 
@@ -349,7 +347,6 @@ def started(motion: parameters.Motion) -> str:
 
 
 def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
-    """Measure the claims of the study for the given motions instead of its own."""
     declared = []
     for one in STUDY.declared:
         (like,) = next(iter(one.each.values()))
