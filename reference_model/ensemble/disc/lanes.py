@@ -68,10 +68,10 @@ UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """Degrees of watching: attention when x is largest, when the radius is largest or smallest, or both."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip may be about to end; the due time has come; x was largest.
+"""Flags, which add up.
 
-The radius was largest or smallest; step size or number of steps are out of bounds; an implicit step may be
-worthwhile.
+Slip may be about to end; the due time has come; x was largest; the radius was largest or smallest; step size or
+number of steps are out of bounds; an implicit step may be worthwhile.
 """
 
 SHORT_STEP, MANY = 0.1, 40.0

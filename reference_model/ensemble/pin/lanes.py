@@ -56,10 +56,10 @@ UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 """Degrees of watching: attention also when x is largest, and when the radius is largest or smallest too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip is about to end; the due time has come; x was largest.
+"""Flags, which add up.
 
-The radius was largest or smallest; step size or number of steps are out of bounds; an implicit step may be
-worthwhile.
+Slip is about to end; the due time has come; x was largest; the radius was largest or smallest; step size or number of
+steps are out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
