@@ -52,7 +52,7 @@ def modulated_cycle(
     ----------
     guess
         Start of the iteration: a simulation that ends close to the cycle and covers more than a period of the
-            modulation, at times close enough to resolve a revolution; or the cycle for nearby parameters.
+        modulation, at times close enough to resolve a revolution; or the cycle for nearby parameters.
     simulate, at_crossing, tolerance, samples, precision
         As in :func:`whirl_orbit`.
 

@@ -103,7 +103,7 @@ def equilibrium_eigenvalues(
     ----------
     state : array of shape (6,) or None
         State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
-            pin.
+        pin.
     contact
         Friction law of a disc; None for the law of the parameters.
 
@@ -111,7 +111,7 @@ def equilibrium_eigenvalues(
     ------
     ValueError
         If a pin has no such equilibrium, or has it on the axis, where it does not slide; if a disc rests on single
-            points, whose friction depends on the angle; as :func:`sliding_jacobian`.
+        points, whose friction depends on the angle; as :func:`sliding_jacobian`.
 
     """
     if isinstance(system, DiscOnDisc):
