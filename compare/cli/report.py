@@ -300,7 +300,7 @@ def _failures(result: Run) -> dict[str, Failure]:
     return {name: value for name, value in work.items() if isinstance(value, Failure)}
 
 
-# --- A single claim of a study.
+# --- A single claim of a study
 
 
 def with_claim(studies: Sequence[Study], identity: str) -> Study:

@@ -16,7 +16,7 @@ from compare.studies.toolkit.fig11 import KINDS, curves_in
 from reference_model import onset_load, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the plane, the simulations and the checks.
+# --- Parameters
 
 SIDE = 60
 """Discs along each side of the plane."""
@@ -46,7 +46,7 @@ UNDECIDED_IS_OPEN = 2.0
 """Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
 
 
-# --- Final motions by the compiled ensemble, and the curves of the stability map.
+# --- Final motions by the compiled ensemble, and the curves of the stability map
 
 Ends = NDArray[np.uint8]
 
@@ -150,7 +150,7 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
     )
 
 
-# --- Figure.
+# --- Figure
 
 DARK = "#3d3d3d"
 

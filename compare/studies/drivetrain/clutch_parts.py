@@ -334,7 +334,7 @@ def balance(engine: Engine) -> Measured:
     )
 
 
-# --- Figures of judder and of a clutch that warms up
+# --- Figures
 
 
 def draw(data: ByEngine) -> Figures:

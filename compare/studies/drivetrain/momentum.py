@@ -238,7 +238,7 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
     return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)
 
 
-# --- Figure of the angular momenta and of their drift
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -21,7 +21,7 @@ from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-# --- The paper's systems at the scale of a clutch: the same dimensionless numbers in other units
+# --- The paper's systems at the scale of a clutch
 
 
 @dataclass(frozen=True)
@@ -342,7 +342,7 @@ def shares(starts: int = ENSEMBLE) -> Measured:
     )
 
 
-# --- Figure of the motion to rest at both scales
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -237,7 +237,7 @@ def _drawn(balance: PowerBalance) -> Data:
     }
 
 
-# --- Figure of the energies and of the residual
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -304,7 +304,7 @@ def stable_on_a_grid() -> Measured:
     )
 
 
-# --- Figures of the semicircle of Fig. 3 and of the eigenvalues of its positions
+# --- Figures
 
 
 def draw(data: ByEngine) -> Figures:

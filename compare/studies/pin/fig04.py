@@ -237,7 +237,7 @@ def _complex(point: FloatArray) -> complex:
     return complex(point[0], point[1])
 
 
-# --- Figure: Fig. 4 redrawn, and the errors of both formulas over the offset
+# --- Figure
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (

@@ -59,7 +59,7 @@ def with_load(load: float) -> PinOnDisc:
     return replace(FIG6, friction_force=float(load))
 
 
-# --- The branches of Fig. 6: equilibria and stick by formulas, whirls and cycles by continuation with the reference
+# --- The branches of Fig. 6
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
@@ -322,7 +322,7 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
     return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
 
 
-# --- Figure of the branches of Fig. 6
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

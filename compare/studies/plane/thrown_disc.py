@@ -17,7 +17,7 @@ from reference_model import simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of discs and throws, and closed forms of their deceleration.
+# --- Parameters
 
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
 
@@ -121,7 +121,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times of a full disc, which a regularised law need not bring to rest."""
 
 
-# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part.
+# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part
 
 EPSILON = 100.0
 """Regularisation ε of the part over tolerance and speed; its effect on a sliding disc is of order ε²."""
@@ -271,7 +271,7 @@ def on_full_disc(engine: Engine) -> Measured:
     return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
 
 
-# --- Figure of the thrown discs: speeds of centre and rim over time.
+# --- Figure
 
 TAKEN = {
     "ring": (r"slides: $\mu N$", r"spins: $\mu NR$", r"both: $\frac{2}{\pi}$ of each"),

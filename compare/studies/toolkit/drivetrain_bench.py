@@ -178,7 +178,7 @@ def centre(disc: FloatArray) -> ComplexArray:
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
-# --- Equilibrium and whirl of the reference's equivalent disc.
+# --- Equilibrium and whirl of the reference's equivalent disc
 
 RINGS = 16
 """Number of rings of the reference's annulus."""

@@ -196,7 +196,7 @@ def mode_growth(
     return complex(growth[1] - growth[0], turn[1] - turn[0]) / duration
 
 
-# --- The self-centred equilibrium of a disc against the friction force, and its end.
+# --- The self-centred equilibrium of a disc against the friction force, and its end
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:

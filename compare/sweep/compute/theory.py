@@ -17,7 +17,7 @@ from reference_model.formulas.pin import largest_load_with_equilibrium
 from reference_model.steady.bifurcation_curves import Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-# --- Steady and periodic motions along one parameter.
+# --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
 """Number of samples of an orbit for its radii; between two, the radius of a nearly circular orbit varies by 1e-3."""
@@ -64,7 +64,7 @@ def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
     return TheoryMotion(meaning, radius, radius, stable)
 
 
-# --- Boundaries between motions according to formulas, as curves in the plane of a map.
+# --- Boundaries between motions according to formulas, as curves in the plane of a map
 #
 # All except (5) hold without offset; a disc is treated as a continuous ring.
 

@@ -53,7 +53,7 @@ STUDY = Study.beside(
 STUDY.provides(curves=curves)
 
 
-# --- Friction on a disc in an engine, from its acceleration.
+# --- Friction on a disc in an engine, from its acceleration
 
 NOTE = (
     "F_x, F_y over μN and M over μN·R. Measured: the initial acceleration, from the velocities in the first "
@@ -132,7 +132,7 @@ def friction_on(
     )
 
 
-# --- Contact laws against the integral, each other and the textbook, without an engine.
+# --- Contact laws against the integral, each other and the textbook, without an engine
 
 OF_EXPANSION = (
     "Predicted: the integral (20), and the integral with the three terms of (22). Measured: the closed forms. Error: "

@@ -21,7 +21,7 @@ from reference_model.formulas.disc import (
 )
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, friction forces and offsets; the paper does not print the offset.
+# --- Parameters
 
 RING = FIG8
 """Disc of Fig. 8 on the continuous ring (20)."""

@@ -20,7 +20,7 @@ from reference_model import Trajectory, simulate
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The self-centred equilibrium, and small deviations from it and from the whirl.
+# --- The self-centred equilibrium, and small deviations from it and from the whirl
 
 FOLLOWED = (
     f"Half the difference of two simulations that start {theory.DISPLACED:g} of the distance from the axis to either "
@@ -128,7 +128,7 @@ def _growth(
     return Measurement(found.value, with_larger.rows + unseen)
 
 
-# --- Discs that stick to the master disc: permanently inside the radius (9), outside until the release time (7).
+# --- Discs that stick to the master disc
 
 REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
 """Period in s of the force that holds a sticking disc."""
@@ -234,7 +234,7 @@ def coexist(engine: Engine) -> Measured:
     return answers_of(*asked(sticks_and_slides, theory.TOLERANCE), system=orbit.system)
 
 
-# --- The disc on six points, as the paper simulated it.
+# --- The disc on six points, as the paper simulated it
 
 REFERENCE = Engine("reference", simulate, ("points",))
 

@@ -25,7 +25,7 @@ from reference_model.steady.stability import turning_frame_jacobian, whirl_eigen
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, the measured motions and the branches.
+# --- Parameters
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
@@ -180,7 +180,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
 
 
-# ---------------------------------------------------------------- where the motions end
+# --- Where the motions end
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
@@ -246,7 +246,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
     return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
 
 
-# ---------------------------------------------------------------- curves
+# --- Curves
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
@@ -347,7 +347,7 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     }
 
 
-# --- The study; the other modules of this package add its claims.
+# --- The study
 
 STUDY = Study.beside(
     __file__,

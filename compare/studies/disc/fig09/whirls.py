@@ -19,7 +19,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps.
+# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps
 
 
 @functools.lru_cache(maxsize=4)
@@ -89,7 +89,7 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
     return order, known(order, numerical), float(np.nan_to_num(np.max(np.abs(step))))
 
 
-# --- The whirl without offset: a circle.
+# --- The whirl without offset
 
 LOADS = [load for load, _ in theory.CIRCLES]
 
@@ -183,7 +183,7 @@ def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[flo
     )
 
 
-# --- Whirls with an offset: periodic orbits, shifted and changed by the offset.
+# --- Whirls with an offset
 
 EXTRAPOLATED = (
     f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated. Model error: the change "

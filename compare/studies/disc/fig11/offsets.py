@@ -26,7 +26,7 @@ from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
 from reference_model import Orbit, Trajectory, simulate
 from reference_model.systems import FloatArray
 
-# --- Ends of the motion over the offset: modulated cycle, steady whirl or self-centred equilibrium.
+# --- Ends of the motion over the offset
 
 
 @STUDY.claim(
@@ -128,7 +128,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, where single points come to rest.
+# --- The modulated motion on six points, where single points come to rest
 
 NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 

@@ -180,7 +180,7 @@ def departure(
     return np.asarray(times, dtype=float), np.asarray(sizes)
 
 
-# --- The modulated cycle on the continuous ring: period, turn about the axis and extremes.
+# --- The modulated cycle on the continuous ring
 
 CYCLE_NOTE = (
     f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "

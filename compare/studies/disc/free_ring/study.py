@@ -24,7 +24,7 @@ STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
-# --- The end of sliding and spinning: at the same time, in a ratio independent of the start.
+# --- The end of sliding and spinning
 
 
 @STUDY.claim(
@@ -237,7 +237,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     )
 
 
-# --- Time and position of rest, and the energy balance.
+# --- Time and position of rest, and the energy balance
 
 
 @STUDY.claim(
@@ -319,7 +319,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     )
 
 
-# --- Existence of a terminal ratio, and the published ratio of a disc.
+# --- Existence of a terminal ratio, and the published ratio of a disc
 
 
 @STUDY.claim(

@@ -28,7 +28,7 @@ from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the ring, the throws and the samples.
+# --- Parameters
 
 TABLE = replace(
     FIG8,
@@ -157,7 +157,7 @@ def curves() -> Data:
     return {"inertia": inertias, "ratio": np.array(ratios)}
 
 
-# --- Simulated throws and their samples.
+# --- Simulated throws and their samples
 
 
 @functools.cache

@@ -24,7 +24,7 @@ from reference_model.steady.stability import equilibrium_eigenvalues, onset_load
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
-# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11.
+# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11
 
 CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
     f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
@@ -241,7 +241,7 @@ def jumps() -> Measured:
     return answers_of(on_ring, data=data)
 
 
-# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin.
+# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin
 
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 

@@ -21,7 +21,7 @@ from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Small deviations from the whirl on both sides of the Hopf curves.
+# --- Small deviations from the whirl on both sides of the Hopf curves
 
 Lines = Sequence[tuple[str, str, float]]
 """Plane, fixed parameter and its value, for each line."""
@@ -135,7 +135,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     return found, math.hypot(*error) + abs(rate(2.0 * theory.DEVIATION, theory.FLOW_TOLERANCE) - found)
 
 
-# --- Final motions in each region of the map and next to its borders.
+# --- Final motions in each region of the map and next to its borders
 
 
 @STUDY.claim(

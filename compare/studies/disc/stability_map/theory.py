@@ -28,7 +28,7 @@ from reference_model.steady.stability import (
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, the simulations and the checks.
+# --- Parameters
 
 DISC = FIG11
 K = DISC.natural_frequency
@@ -230,7 +230,7 @@ def section() -> Data:
     return data
 
 
-# --- Final motions of the centred disc.
+# --- Final motions of the centred disc
 
 SETTLED = 600.0
 WATCHED = 350.0
@@ -308,7 +308,7 @@ def changes(disc: DiscOnDisc) -> str:
     return ", ".join(differing) or "Fig. 11"
 
 
-# --- The study; the other modules of this package add its claims.
+# --- The study
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

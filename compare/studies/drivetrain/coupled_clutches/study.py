@@ -321,7 +321,7 @@ def published_switches() -> Measured:
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
-# --- Figure of the coupled clutches: speeds and errors of the runs
+# --- Figure
 
 EXACT = 1e-7
 """In rad/s: lower end of the axis of errors."""

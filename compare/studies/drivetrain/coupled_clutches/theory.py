@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
-# --- Parameters of Modelica.Mechanics.Rotational.Examples.CoupledClutches, from its sources, and of the runs
+# --- Parameters
 
 INERTIAS = (1.0, 1.0, 1.0, 1.0)
 """Inertias of the rotors in kg m²."""

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 
-# --- Onset speed, where the disc leaves the engine's axis: closed form, reference and Exudyn
+# --- Onset speed, where the disc leaves the engine's axis
 
 IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
 

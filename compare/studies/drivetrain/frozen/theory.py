@@ -322,7 +322,7 @@ def build(
     return model
 
 
-# --- The study of all claims
+# --- The study
 
 STUDY = Study.beside(
     __file__,

@@ -29,7 +29,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 )
 from reference_model.systems import FloatArray
 
-# --- The run-up: torque of the engine and control of the slip
+# --- The run-up
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -68,7 +68,7 @@ def transmitted(car: Drivetrain) -> float:
     return TORQUE * behind / (car.engine_inertia + behind)
 
 
-# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up: rest, unbalance and whirl
+# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain

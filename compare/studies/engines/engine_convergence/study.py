@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("reference", "exudyn"), seconds=3.0)
 
 
-# ---------------------------------------------------------------- with the tolerance
+# --- With the tolerance
 
 
 @STUDY.claim(
@@ -107,7 +107,7 @@ def _exact_events() -> tuple[FloatArray, float]:
     return exact, theory.root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
 
-# ---------------------------------------------------------------- with the step
+# --- With the step
 
 
 def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Measured | None]:
@@ -157,7 +157,7 @@ def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Meas
     )
 
 
-# ---------------------------------------------------------------- with the slip speed that regularises friction
+# --- With the slip speed that regularises friction
 
 HOW = (
     f"Compared with the reference at tolerance {TRUTH:g}. Least squares with a next term smaller by ε. Numerical "

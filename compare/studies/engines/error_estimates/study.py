@@ -102,7 +102,7 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     )
 
 
-# --- Figures of estimates and true errors for each kind of motion
+# --- Figures
 
 SMALLEST, LARGEST = 0.3, 3e3
 """Range of the ratios in the figure; an arrow stands for larger ones."""

@@ -243,7 +243,7 @@ def creeps() -> Measured:
     )
 
 
-# --- Figures of the study of foreign engines
+# --- Figures
 
 COLOURS = {
     "MuJoCo": PURPLE,

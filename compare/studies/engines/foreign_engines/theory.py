@@ -87,7 +87,7 @@ def halvings(runs: FloatArray) -> FloatArray:
     return runs[strange[-1] + 1 :] if strange.size else runs
 
 
-# --- Deviations from Coulomb's law in engines: friction that depends on two axes, and stick along tangents
+# --- Deviations from Coulomb's law in engines
 
 Law = Callable[[complex, float], complex]
 """Friction as a function of the slip in m/s and the smoothing slip speed ε in m/s, as a fraction of μN."""
@@ -192,7 +192,7 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
     return float(value), float(error)
 
 
-# --- Claims of each recorded engine and case: does its motion converge to the exact one?
+# --- Claims of each recorded engine and case
 
 OUR_FORCE = "our force"
 """Setting with our force instead of the engine's own friction."""
@@ -248,7 +248,7 @@ def recorded_claims(recording: Recording) -> Recorded:
     )
 
 
-# --- Tables of all recorded settings: error, cost and setting
+# --- Tables of all recorded settings
 
 
 def _finest(runs: FloatArray) -> str:

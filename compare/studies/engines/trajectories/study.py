@@ -99,7 +99,7 @@ def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float 
     return found
 
 
-# --- The study and its motions
+# --- The study
 
 STUDY = Study.beside(
     __file__,
@@ -157,7 +157,7 @@ def of_bodies(
     return declare
 
 
-# ---------------------------------------------------------------- the claims
+# --- The claims
 
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
@@ -343,7 +343,7 @@ def started(motion: parameters.Motion) -> str:
     return f"To t = {motion.until:g} s from {motion.start}."
 
 
-# ---------------------------------------------------------------- other motions
+# --- Other motions
 
 
 def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:

@@ -259,7 +259,7 @@ def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measure
     )
 
 
-# --- Figure of the basins of Fig. 5
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

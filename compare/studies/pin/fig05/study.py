@@ -57,7 +57,7 @@ CRITICAL_TOLERANCE = WORKING / 5.0
 """The error of the critical velocity of a regularised law is about a hundred times larger."""
 
 
-# --- The motions of Fig. 5 without an engine: simple events, the polar form and the map of stick phases
+# --- The motions of Fig. 5 without an engine
 
 
 @functools.cache

@@ -295,7 +295,7 @@ def disc_whirl(engine: Engine) -> Measured:
     )
 
 
-# --- Figure of the whirl's radius over the friction force on each support, and of growth without damping
+# --- Figure
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}
 """Label and dashes of each support."""

@@ -316,7 +316,7 @@ def shrinks() -> Measured:
     )
 
 
-# --- Figure of the sticking radius over the disc speed, and of the release of pins outside
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

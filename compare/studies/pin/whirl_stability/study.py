@@ -38,7 +38,7 @@ STUDY = Study.beside(
 STUDY.provides(curves=theory.curves)
 
 
-# --- Eq. 12 to 16 compared with each other: the conditions of stability
+# --- Eq. 12 to 16 compared with each other
 
 BoolArray = NDArray[np.bool_]
 
@@ -136,7 +136,7 @@ def incompatible() -> Measured:
     return counted(~(in_14() & in_15))
 
 
-# --- Eq. 11 and 12: the whirl without offset in the engines, and the evolution of deviations from it
+# --- Eq. 11 and 12
 
 SETTLING = (
     f"Starts on a circle {theory.DISPLACED:g} times as large; state after {theory.DURATION:g} s. Error: the "

@@ -17,7 +17,7 @@ from compare.claims.parameters import at_each
 from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- Parameters of the block, its throws and pulls, and the sample times.
+# --- Parameters
 
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
@@ -91,7 +91,7 @@ def state_of(place: complex, velocity: complex = 0j) -> FloatArray:
     return np.array([place.real, place.imag, velocity.real, velocity.imag])
 
 
-# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip.
+# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip
 # Lengths are in m, speeds in m/s, times in s; s is the distance along a line, and v = ds/dt.
 
 STOPPING_TIME = SPEED / DECELERATION
