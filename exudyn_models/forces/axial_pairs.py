@@ -200,7 +200,7 @@ class AxialStick:
 
     def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
         """Return S = φ̇ − ω in rad/s."""
-        return float(sum(map(mul, self.gradient(q), q_t)))
+        return float(np.dot(self.gradient(q), q_t))
 
     @cached_property
     def mean_radius(self) -> float:
@@ -216,10 +216,20 @@ class AxialStick:
 
         They differ if the coefficient does, as in a one-way clutch.
         """
+        if self.factors.contact is not None:  # constant, asked for after every step
+            limit = self.static_ratio * self.mean_radius * self.factors.contact[2]
+            return limit, limit
         forward = self.static_ratio * self.sliding_moment(t, AT_REST)
         if not self.factors.depends_on_direction:
             return forward, forward
         return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
+
+    @property
+    def constant_forces(self) -> FloatArray | None:
+        """Moments on the nodes in N m in the present mode, or None if they change with time or motion."""
+        if self.factors.contact is None or self._rotors is None:
+            return None
+        return self.moment(0.0, 0.0) * np.array(self._rotors)
 
     @property
     def slides(self) -> bool:

@@ -76,6 +76,20 @@ class StickingContact:
         """Switch to a mode."""
         self.stick.mode = mode
         mbs.SetObjectParameter(self.stick.locks[0], "activeConnector", mode == Mode.LOCKED)
+        if (forces := self.stick.constant_forces) is not None:
+            mbs.SetObjectParameter(self.item, "forceVector", forces)
+
+    def omit_user_functions(self, mbs: Any) -> None:
+        """Let Exudyn evaluate constant moments without calls of Python in a run."""
+        if self.stick.constant_forces is not None:
+            for name in ("forceUserFunction", "jacobianUserFunction"):
+                mbs.SetObjectParameter(self.item, name, 0)
+
+    def restore_user_functions(self, mbs: Any) -> None:
+        """Undo ``omit_user_functions``."""
+        mbs.SetObjectParameter(self.item, "forceVector", np.zeros(len(self.places)))
+        mbs.SetObjectParameter(self.item, "forceUserFunction", self.stick.force)
+        mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.stick.jacobian)
 
     def enter_first(self, mbs: Any, t: float) -> None:
         """Switch to the mode that load and initial slip suggest."""
@@ -149,14 +163,15 @@ class StickingContact:
         It is the slip in the direction of sliding (rad/s), the unused share of the capacity of a locked contact, or
         ±1 if load or coefficient is zero.
         """
-        limits = self.stick.limits(t)
+        stick, mode = self.stick, self.mode
+        limits = stick.limits(t)
         if self.opens_or_closes(max(limits)):
             return -1.0
-        if self.mode == Mode.OPEN or self.stick.idle:
+        if mode == Mode.OPEN or stick.idle:
             return 1.0
-        if self.mode == Mode.LOCKED:
-            return self.stick.unused(limits, self.stick.held_moment(mbs))
-        return int(self.mode) * self.slip(mbs)
+        if mode == Mode.LOCKED:
+            return stick.unused(limits, stick.held_moment(mbs))
+        return int(mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:
         """Return the share of its capacity that a locked contact holds, or 0 if the contact is not locked."""
@@ -297,6 +312,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
     try:
         for contact in contacts:
             contact.stick.running = True
+            contact.omit_user_functions(mbs)
         found = list(contacts)
         if any(isinstance(contact.stick, PlanarStick) for contact in contacts):
             joints, _ = joints_and_mass(mbs, t, contacts)
@@ -307,6 +323,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
     finally:
         for contact in contacts:
             contact.stick.running = False
+            contact.restore_user_functions(mbs)
 
 
 def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
