@@ -29,7 +29,7 @@ from exudyn_models import (
     add_energy_balance,
     add_ring_friction,
     add_thermal_node,
-    build_pin_on_disc,
+    build_model,
     simulate,
 )
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
@@ -124,7 +124,7 @@ def in_python(function: Any) -> Callable[..., Any]:
 def pin_without_friction() -> tuple[Any, Any, Any]:
     """Return a model with native springs only, and its nodes."""
     without = replace(FIG5, friction_force=0.0)
-    model = build_pin_on_disc(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
+    model = build_model(without, np.array([1.3, 0.0, 0.0, -1.3]), regularisation=1e-6)
     return model.mbs, exu.NodeIndex(0), exu.NodeIndex(1)
 
 

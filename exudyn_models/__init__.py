@@ -14,15 +14,14 @@ All public names are exported here. They come from these packages:
   ``DrivetrainModel``.
 - ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference;
   ``simulate_fixed_step`` is for convergence studies; ``simulate_with_native_contact`` uses Exudyn's contact;
-  ``build_pin_on_disc`` and ``build_disc_on_disc`` return the models; ``eigenvalues`` linearises about a state.
+  ``build_model`` returns their model; ``eigenvalues`` linearises about a state.
 - ``forces``: the compiled force laws.
 """
 
 from exudyn_models.drivetrain.model import DrivetrainModel, build_drivetrain
 from exudyn_models.drivetrain.parameters import PASSENGER_CAR, Drivetrain, four_cylinder
 from exudyn_models.paper.linearisation import eigenvalues
-from exudyn_models.paper.models.disc_on_disc import build_disc_on_disc
-from exudyn_models.paper.models.pin_on_disc import build_pin_on_disc
+from exudyn_models.paper.model import build_model
 from exudyn_models.paper.native_contact import simulate_with_native_contact
 from exudyn_models.paper.simulate import simulate, simulate_fixed_step
 from exudyn_models.parts import create_functions as _create_functions  # noqa: F401  registers methods of mbs
@@ -50,9 +49,8 @@ __all__ = [
     "add_radial_support",
     "add_ring_friction",
     "add_thermal_node",
-    "build_disc_on_disc",
     "build_drivetrain",
-    "build_pin_on_disc",
+    "build_model",
     "eigenvalues",
     "four_cylinder",
     "largest_stable_step",

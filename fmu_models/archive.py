@@ -42,11 +42,11 @@ class Exported:
 
     Parameters
     ----------
-    file : Path
+    file
         Path of the unit.
-    platform : str
+    platform
         Platform of its library, "" if the unit does not contain one.
-    remark : str
+    remark
         Reason for a missing library, otherwise "".
 
     """

@@ -59,9 +59,9 @@ def simulate(
 
     """
     if compiled is None:
-        from reference_model.ensemble.simulate import is_known
+        from reference_model.ensemble.simulate import is_supported
 
-        compiled = contact is None and is_known(system)
+        compiled = contact is None and is_supported(system)
     if compiled:
         # Imported here so that simulations in NumPy start without loading the compiler.
         from reference_model.ensemble.single_run import simulate_compiled

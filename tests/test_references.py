@@ -146,14 +146,14 @@ def test_each_change_has_one_place():
 
 
 @pytest.fixture(scope="module")
-def floors():
-    spec = importlib.util.spec_from_file_location("draw_floors", ROOT / "docs" / "draw_floors.py")
+def layers():
+    spec = importlib.util.spec_from_file_location("draw_layers", ROOT / "docs" / "draw_layers.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-def test_the_picture_of_the_floors_is_drawn_from_these_imports(floors):
+def test_the_picture_of_the_layers_is_drawn_from_these_imports(layers):
     description = "{http://purl.org/dc/elements/1.1/}description"
-    (found,) = ElementTree.parse(floors.PICTURE).iter(description)
-    assert found.text == floors.drawn_from(), f"run {Path(sys.executable).name} docs/draw_floors.py"
+    (found,) = ElementTree.parse(layers.PICTURE).iter(description)
+    assert found.text == layers.drawn_from(), f"run {Path(sys.executable).name} docs/draw_layers.py"

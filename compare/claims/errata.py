@@ -20,7 +20,7 @@ from reference_model.formulas.disc import (
     inverse_slip_speed,
     inverse_slip_speed_as_printed,
     pin_of,
-    places_by_26,
+    positions_by_26,
 )
 from reference_model.formulas.pin import (
     characteristic_coefficients,
@@ -150,8 +150,8 @@ def _moment_of_the_expansion() -> Evidence:
 
 def _spin_of_the_self_centred_disc() -> Evidence:
     (equilibrium,) = self_centred_equilibria(FIG8, ThreeTermRing(FIG8.contact_radius))
-    (printed,) = places_by_26(FIG8, as_printed=True)
-    (corrected,) = places_by_26(FIG8)
+    (printed,) = positions_by_26(FIG8, as_printed=True)
+    (corrected,) = positions_by_26(FIG8)
     return Evidence(
         f"spin in rad/s of Fig. 8's disc at μN = {FIG8.friction_force:g} N, X0 = {FIG8.offset:g} m; exact: the "
         "steady state of (19) with (23)",

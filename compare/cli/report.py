@@ -170,12 +170,7 @@ def report(
             progress=progress,
         )
     matrix = _write(result, output)
-    with printing():
-        if claim is not None:
-            _print_numbers(matrix)
-        _print_summary(result, matrix, output / "index.html")
-    if not result.interrupted:
-        _print_diagnoses(chosen, matrix)
+    _print_results(result, matrix, chosen, output / "index.html", with_numbers=claim is not None)
     return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
 
 
@@ -225,6 +220,17 @@ def _write(result: Run, output: Path) -> Matrix:
 
     with interrupts_ignored():
         return write_report(result, output)
+
+
+def _print_results(
+    result: Run, matrix: Matrix, engines: Iterable[Engine], index: Path, with_numbers: bool
+) -> None:
+    with printing():
+        if with_numbers:
+            _print_numbers(matrix)
+        _print_summary(result, matrix, index)
+    if not result.interrupted:
+        _print_diagnoses(engines, matrix)
 
 
 def _print_numbers(matrix: Matrix) -> None:
@@ -329,7 +335,7 @@ def _failures(result: Run) -> dict[str, Failure]:
     return {name: value for name, value in work.items() if isinstance(value, Failure)}
 
 
-# --- A single claim of a study.
+# --- A single claim of a study
 
 
 def with_claim(studies: Sequence[Study], identity: str) -> Study:

@@ -59,11 +59,11 @@ class Group:
 
     Parameters
     ----------
-    files : Files
+    files
         Files of the store.
-    description : str
+    description
         Checksum of the store's description, because another machine may have another store at the same path.
-    name : str
+    name
         Name in the store.
 
     """
@@ -216,7 +216,7 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-# --- Trajectories of a round in the store; the worker that simulates a chunk writes its regions.
+# --- Trajectories of a round in the store
 #
 # Two workers that write the same chunk write the same bits.
 

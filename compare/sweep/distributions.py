@@ -75,11 +75,11 @@ class Uncertain:
 
     Parameters
     ----------
-    name : str
+    name
         The parameter or component.
-    kind : str
+    kind
         One of ``KINDS``.
-    numbers : tuple of float
+    numbers
         Numbers of the distribution in the order of its arguments, in the quantity's SI unit.
 
     Raises

@@ -190,11 +190,11 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
     """Draw the distribution of the largest radius by end, and the sensitivities."""
     figure, (left, right) = new_figure(ncols=2, width=11.5, height=4.6)
     radii, ends = (result[name][:MOST_DRAWS].values for name in ("largest_radius", "end"))
-    known = np.isfinite(radii)
-    there = [end for end in EndState if np.any(ends[known] == end)]
+    finite = np.isfinite(radii)
+    there = [end for end in EndState if np.any(ends[finite] == end)]
     if there:
         left.hist(
-            [radii[known & (ends == end)] for end in there],
+            [radii[finite & (ends == end)] for end in there],
             bins=BINS,
             stacked=True,
             color=[COLOURS[end] for end in there],
@@ -240,10 +240,10 @@ def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -
         left.plot(values, share, color=colour, marker=".")
         for which in ("least", "largest"):
             right.plot(values, result[f"motion_{which}"].values[j], ".", color=colour, markersize=7.0)
-    for j, meaning in enumerate(branches["known"].values):
-        stable = branches["known_stable"].values[j]
+    for j, meaning in enumerate(branches["theory"].values):
+        stable = branches["theory_stable"].values[j]
         for which in ("least", "largest"):
-            radius = branches[f"known_{which}"].values[j]
+            radius = branches[f"theory_{which}"].values[j]
             for kind, dashes in ((1.0, "-"), (0.0, "--")):
                 right.plot(
                     values,

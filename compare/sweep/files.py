@@ -144,7 +144,7 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
         raise StoreError(f"cannot {action} {url!r}: {reason}") from error
 
 
-# --- A small finished store as one ZIP archive, which Zarr opens directly.
+# --- A small finished store as one ZIP archive, which Zarr opens directly
 
 PARTIAL = ".partial"
 """Suffix of files that Zarr was writing when its process was killed."""

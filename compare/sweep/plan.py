@@ -39,13 +39,13 @@ class Plan(ABC):
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         Parameters that are not swept.
-    duration : float
+    duration
         Longest duration of a trajectory, in s; it ends earlier once its end is certain.
-    tolerance : float
+    tolerance
         Requested relative accuracy.
-    seed : int
+    seed
         Random seed.
 
     """
@@ -72,11 +72,11 @@ class Basin(Plan):
 
     Parameters
     ----------
-    start : tuple of float
+    start
         Initial state; the grid replaces two of its components.
-    x, y : Axis
+    x, y
         Axes of these components.
-    coarse : int
+    coarse
         Least number of points along each axis of the first grid.
 
     """
@@ -107,7 +107,7 @@ class RandomBasin(Plan):
     ----------
     start, x, y
         See :class:`Basin`; the axes' numbers of points are not used.
-    samples : int
+    samples
         Number of starts.
 
     """
@@ -141,7 +141,7 @@ class Map(Plan):
     ----------
     starts : tuple of tuple of float
         Initial states, each combined with all parameters.
-    x, y : Axis
+    x, y
         Axes of the parameters.
 
     """
@@ -177,11 +177,11 @@ class Uncertainty(Plan):
 
     Parameters
     ----------
-    start : tuple of float
+    start
         Initial state, for components that are not uncertain.
-    varied : tuple of Uncertain
+    varied
         Uncertain quantities.
-    samples : int
+    samples
         Number of rows.
 
     """
@@ -224,13 +224,13 @@ class Continuation(Plan):
 
     Parameters
     ----------
-    start : tuple of float
+    start
         Initial state, for components that are not random.
-    x : Axis
+    x
         Axis of the parameter.
-    varied : tuple of Uncertain
+    varied
         Random components of the initial state.
-    samples : int
+    samples
         Number of starts.
 
     """

@@ -12,7 +12,7 @@ import numpy as np
 from compare.engines import one_of
 from reference_model.systems import COLUMNS, FloatArray, System, finite_number
 
-# --- Names, units and symbols.
+# --- Names, units and symbols
 
 _PARAMETERS = {
     "mass": ("m", "kg"),
@@ -76,7 +76,7 @@ def symbol(name: str) -> str:
     return _COMPONENTS[name] if name in _COMPONENTS else _PARAMETERS[name][0]
 
 
-# --- Axes.
+# --- Axes
 
 MOST_POINTS = 100_000
 
@@ -87,11 +87,11 @@ class Axis:
 
     Parameters
     ----------
-    name : str
+    name
         Component or parameter.
-    low, high : float
+    low, high
         First and last value, in its SI unit; low < high.
-    points : int
+    points
         Number of values, from 2 to 100,000.
 
     Raises

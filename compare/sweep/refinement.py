@@ -1,10 +1,10 @@
 """Refinement of a basin's boundary: only points of a fine grid near the boundary are simulated.
 
 All points of a coarse grid are simulated. A cell is mixed if its corners end differently. Mixed cells are halved and
-their new points simulated; new points of other cells are assumed to end like the corners. If this assumption is
-wrong, the boundary continues into a mixed cell with corners that were not simulated. They are simulated until no such
-cell remains, so *all corners of every mixed cell of the finest grid were simulated*. Structures that lie entirely
-between points of the coarse grid are not detected.
+their new points simulated; new points of other cells are assumed to end like the corners. If this is wrong, the
+boundary continues into a mixed cell with corners that were not simulated. They are simulated until no such cell
+remains, so *all corners of every mixed cell of the finest grid were simulated*. Structures that lie entirely between
+points of the coarse grid are not detected.
 """
 
 from __future__ import annotations
@@ -73,9 +73,9 @@ def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Gr
 
     Parameters
     ----------
-    shape : tuple of int
+    shape
         Number of points of the finest grid along y and x.
-    coarse : int
+    coarse
         Least number of points along each axis of the first grid.
 
     Returns

@@ -5,9 +5,8 @@
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
 A group is valid once it is sealed (:meth:`compare.sweep.arrays.Group.seal`). The attributes of the store contain the
-plan, the digest of the code and their checksum; the first process to write them creates the store. Damaged groups and
-chunks are recomputed, and ``SweepStore.broken`` lists them. A finished store of few trajectories in a local folder
-becomes one file (:meth:`SweepStore.pack`).
+plan, the digest of the code and their checksum. Damaged groups and chunks are recomputed. A finished store of few
+trajectories in a local folder becomes one file (:meth:`SweepStore.pack`).
 """
 
 from __future__ import annotations
@@ -54,15 +53,15 @@ class SweepStore:
 
     Parameters
     ----------
-    files : Files
+    files
         Files of the store.
-    plan : Plan
+    plan
         Plan of the sweep.
-    chunk : int
+    chunk
         Number of trajectories that are computed and written together.
-    stamp : str
+    stamp
         Digest of the code that computes them.
-    place : str, optional
+    place
         Requested URL, if ``files`` belong to an unpacked archive.
 
     """

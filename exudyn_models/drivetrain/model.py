@@ -48,7 +48,7 @@ class DrivetrainMotion:
         Angles in rad and speeds in rad/s.
     disc, disc_velocity : array
         x, y in m and the angle in rad; their rates in m/s and rad/s.
-    energy : EnergyBalance
+    energy
         Energy balance at the same times.
 
     """
@@ -76,15 +76,15 @@ class DrivetrainModel:
     ----------
     container, mbs : SystemContainer, MainSystem
         ``container`` owns ``mbs`` and must live as long.
-    engine, disc, vehicle : NodeIndex
+    engine, disc, vehicle
         Nodes of the three bodies.
-    friction : RingFriction
+    friction
         The clutch. ``friction.change(normal_load=...)`` engages it.
-    support : RadialSupport
+    support
         Support of the disc on its shaft.
     sensors : tuple of SensorIndex
         Sensors of coordinates and velocities of engine, disc and vehicle.
-    balance : callable
+    balance
         Returns the energy balance after a run.
 
     """
@@ -113,11 +113,7 @@ class DrivetrainModel:
         It is computed by DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad,
         m/s, rad/s and ``ENERGY_UNIT``.
 
-        Raises
-        ------
-        SimulationError
-            If Exudyn fails or a state is not finite.
-
+        Raises ``SimulationError`` if Exudyn fails or a state is not finite.
         """
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
@@ -160,17 +156,17 @@ def build_drivetrain(
 
     Parameters
     ----------
-    drivetrain : Drivetrain
+    drivetrain
         Parameters of the drivetrain.
     normal_load : float or callable
         Load as in ``add_ring_friction``; all facings carry it.
-    regularisation : float
+    regularisation
         ε in m/s, > 0.
-    engine_speed, gearbox_speed : float
+    engine_speed, gearbox_speed
         Initial speeds in rad/s.
-    engine_torque, vehicle_torque : callable, optional
+    engine_torque, vehicle_torque
         Torques on engine and vehicle.
-    shaft_torque : float
+    shaft_torque
         Initial torque of the torsional spring in N m.
 
     Raises

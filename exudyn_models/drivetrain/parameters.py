@@ -19,27 +19,27 @@ class Drivetrain:
 
     Parameters
     ----------
-    engine_inertia : float
+    engine_inertia
         Inertia of crankshaft, flywheel and clutch cover in kg m², > 0.
-    disc_mass, disc_inertia : float
+    disc_mass, disc_inertia
         Mass in kg and inertia in kg m² of the clutch disc, > 0.
-    unbalance : float
+    unbalance
         Distance in m of the disc's centre of mass from the centre of its facings, >= 0.
-    inner_radius, outer_radius : float
+    inner_radius, outer_radius
         Radii of the facings in m; equal for a ring.
-    faces : int
+    faces
         Number of facings, >= 1.
-    friction_coefficient : float
+    friction_coefficient
         μ of a facing, >= 0.
-    offset : float
+    offset
         X0 in m: the shaft's axis is at (X0, 0), the engine's at (0, 0).
-    radial_stiffness, radial_damping : float
+    radial_stiffness, radial_damping
         C in N/m and β in N s/m of the disc on its shaft, >= 0.
-    hardening, stop_gap, stop_stiffness : float
+    hardening, stop_gap, stop_stiffness
         C₃ in N/m³, clearance in m and C_s in N/m of that support, as in ``add_radial_support``.
-    torsional_stiffness, torsional_damping : float
+    torsional_stiffness, torsional_damping
         Between disc and gearbox, in N m/rad and N m s/rad, >= 0.
-    vehicle_inertia : float
+    vehicle_inertia
         Inertia of gearbox, wheels and vehicle in kg m², reduced to the input shaft, > 0.
 
     Raises

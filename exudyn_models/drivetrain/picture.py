@@ -58,13 +58,13 @@ def draw_drivetrain(
 
     Parameters
     ----------
-    drivetrain : Drivetrain
+    drivetrain
         Parameters of the drivetrain.
-    engine_angle : float
+    engine_angle
         Angle of the engine in rad.
     disc : three floats
         x, y in m and the angle in rad of the disc.
-    magnification : float
+    magnification
         Factor for x and y, the offset and the clearance of the shaft.
     size : two ints
         Width and height in pixels.

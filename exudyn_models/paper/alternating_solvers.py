@@ -1,4 +1,4 @@
-"""Motions that alternate between slip and creep, each solved by the solver and in the axes that suit it."""
+"""Motions that alternate between slip and creep, each with its own solver and axes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from exudyn_models.paper.creep import RELAXATIONS, WHOLE, RegularisedContact
 from exudyn_models.paper.dense_output import creep_between, creep_until
-from exudyn_models.paper.models.build import build
+from exudyn_models.paper.model import build_model
 from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.scales import time_scale
 from exudyn_models.paper.turning_axes import FIXED, Axes
@@ -48,11 +48,11 @@ Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 
 @dataclass(frozen=True)
 class Friction:
-    """A kind of friction between two discs.
+    """A kind of friction between two discs, in the units and the axes of a run.
 
     ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping``, like ``RegularisedContact.creeping``,
     returns the part of the contact that creeps and may be modelled with unlimited viscosity. For single points the
-    argument ``held`` of ``add`` makes such a model. Both use the units and the axes of a run.
+    argument ``held`` of ``add`` makes such a model.
     """
 
     add: Callable[..., Any]
@@ -60,7 +60,7 @@ class Friction:
 
 
 def nothing_creeps(contact: RegularisedContact, state: list[float]) -> None:
-    """Return None: nothing creeps, so that one solver follows the whole motion."""
+    """Return None, so that one solver follows the whole motion."""
 
 
 RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
@@ -85,10 +85,9 @@ def solve_in_turns(
 ) -> Recording:
     """Solve up to the last of ``times``, with ``solver`` in slip and generalised-α in creep.
 
-    In creep an explicit method would need steps of 3·mε/μN. The implicit one is of second order. In axes that turn
-    with the master disc a creeping body almost rests, and its creep changes as the ground turns. So steps need not
-    resolve ω: steps of a fraction of a turn have an error of a small fraction of the creep, and the creep is the
-    error of the regularisation itself.
+    In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
+    almost rests, and its creep changes as the ground turns. So steps of a fraction of a turn have an error of a small
+    fraction of the creep, and the creep is the error of the regularisation itself.
 
     A creeping part, the whole contact or one of several points, feels only the viscous part of the law. Meanwhile the
     model extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
@@ -96,17 +95,17 @@ def solve_in_turns(
 
     Parameters
     ----------
-    contact : RegularisedContact
+    contact
         Contact of the system. This and all other numbers are in units that make the motion of order one.
     state : array of shape (4,) or (6,)
         Initial state.
     times : array of shape (n,)
         Times from 0 on.
-    solver : SlipSolver
+    solver
         Solver for slip.
-    friction : Friction
+    friction
         Friction between the discs.
-    seconds : float
+    seconds
         Unit of time in s, for messages.
 
     """
@@ -139,11 +138,11 @@ class _Turns:
     def slip(self, state: FloatArray, start: float, first_step: float) -> tuple[Steps, Part | None]:
         """Solve from ``state`` until something has settled to creep, and record the run.
 
-        Returns the steps and the creeping part, or None if this part of the run ends before.
+        Return the steps and the creeping part, or None if this part of the run ends before.
         """
         watch = _Slip(self)
         run = solve(
-            build(
+            build_model(
                 self.contact.system, state, regularisation=self.contact.epsilon, friction=self.friction.add
             ),
             start,
@@ -161,8 +160,8 @@ class _Turns:
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
         """Solve from the last of the steps ``before`` while ``part`` creeps, and record the run.
 
-        Returns the steps, and ``part`` if it still creeps. ``began`` is the start of its creep. A release starts so
-        gently that it must be found in time, so the steps before it become smaller.
+        Return the steps, and ``part`` if it still creeps. ``began`` is the start of its creep. A release starts so
+        gently that the steps before it become smaller.
         """
         state, start = before.states[-1], float(before.times[-1])
         step, until = self._creep_step(before, part, began)
@@ -201,8 +200,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed; None if they are not.
 
-        Smaller steps are needed for a release at ``crossing``, and where the load comes so close to the friction
-        limit that the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
+        They are needed for a release at ``crossing``, and where the load comes so close to the friction limit that
+        the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -243,7 +242,7 @@ class _Turns:
             system = replace(system, friction_force=viscous * system.friction_force)
         else:
             add = partial(add, held=part)
-        return build(
+        return build_model(
             system,
             axes.start(state),
             regularisation=viscous * self.contact.epsilon,
@@ -291,10 +290,7 @@ PARTS = 16
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
-    """Return the indices of the maxima of creep above ``above``·ε among the steps of ``run``.
-
-    They may include the first and the last step, because the maximum may lie shortly after or before.
-    """
+    """Return the indices of the maxima of creep above ``above``·ε among the steps, possibly including the ends."""
     ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 
@@ -352,8 +348,8 @@ class _Creep:
 def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
     """Return the step for a disc on points that pivots about one of them, from the last of ``steps``.
 
-    Its centre moves about the point at the distance R with its spin relative to the master disc. This direction
-    turns, the ground turns with the speed of the master, and the slip P changes in a time P/|dP/dt|.
+    The direction of its centre about the point turns, the ground turns with the speed of the master, and the slip P
+    changes in a time P/|dP/dt|.
     """
     system, epsilon = contact.system, contact.epsilon
     ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]

@@ -26,9 +26,7 @@ class RegularisedContact:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    epsilon : float
+    epsilon
         ε > 0 of the contact as a whole, in the system's unit of speed.
 
     """
@@ -50,9 +48,9 @@ class RegularisedContact:
     def relaxation_times(self) -> tuple[float, float]:
         """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
-        The viscous part of the law resists slip of a pin with μN/ε per m/s, that of a disc or its rim on a continuous
-        ring with at least half of it, and that of one resting point of n with 1/n of it. The inertia of the rim,
-        J/R², may be far larger than the mass. Without friction both times are infinite.
+        Slip of a pin is resisted with μN/ε per m/s, that of a disc or its rim on a continuous ring with at least half
+        of it, and that of one resting point of n with 1/n of it. The inertia of the rim, J/R², may be far larger than
+        the mass. Without friction both times are infinite.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -83,8 +81,7 @@ class RegularisedContact:
     def slip_ratios(self, states: FloatArray) -> FloatArray:
         """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
 
-        The first column is the (mean) slip speed of the contact over ε, the others are the slip speeds of the points
-        over δ.
+        The first column is the (mean) slip speed of the contact over ε, the others are those of the points over δ.
         """
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         if not isinstance(system, DiscOnDisc):
@@ -117,11 +114,10 @@ class RegularisedContact:
         return np.asarray([growths.mean() / epsilon, *(growths / self.point_epsilon)])
 
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
-        """Return the load on friction over the friction limit, shape (n,), for a system that creeps as a whole.
+        """Return the load at rest over the friction limit, shape (n,), for a system that creeps as a whole.
 
-        This is the load at rest. The viscous friction of the creep, P/ε of the limit, lacks the forces that change
-        and damp the creep. Along the slip (u, φ̇ − ω), which is normal to the limit surface, these are the power that
-        goes into both over μN·P.
+        The viscous friction of the creep, P/ε of the limit, lacks the forces that change and damp the creep. Along
+        the slip, which is normal to the limit surface, these are the power that goes into both over μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)

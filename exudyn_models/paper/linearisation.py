@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from exudyn_models.paper.creep import RegularisedContact
-from exudyn_models.paper.models.build import build
+from exudyn_models.paper.model import build_model
 from exudyn_models.solver.linear_matrices import state_matrix
 from reference_model.systems import ANGLE, DiscOnDisc, System, checked_state
 
@@ -18,14 +18,11 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
     """Return the eigenvalues in 1/s of the motion about ``state`` with a sliding contact.
 
     There are four for a pin, five for a disc on a continuous ring, where nothing depends on the angle, and six for a
-    disc on points. They are the λ of (λ²M + λD + K)v = 0 with the mass matrix M and the derivatives −K and −D of the
-    forces by coordinates and velocities, which Exudyn computes. Exudyn's ``ComputeODE2Eigenvalues`` includes the
-    master disc and other free motions, and cannot omit coordinates of complex eigenvalues.
+    disc on points. They are the λ of (λ²M + λD + K)v = 0, with the derivatives −K and −D of the forces by coordinates
+    and velocities. Exudyn's own ``ComputeODE2Eigenvalues`` includes the master disc and other free motions.
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         State as in ``simulate``, usually an equilibrium.
 
@@ -41,7 +38,7 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
         raise ValueError(
             f"state = {start.tolist()}: the contact, or a point of it, is at rest, where friction has no derivative"
         )
-    model = build(system, start, regularisation=REGULARISATION)
+    model = build_model(system, start, regularisation=REGULARISATION)
     matrix = state_matrix(model.mbs, slice(model.first, model.first + model.size))
     if isinstance(system, DiscOnDisc) and system.contact_points is None:
         matrix = np.delete(np.delete(matrix, ANGLE, 0), ANGLE, 1)

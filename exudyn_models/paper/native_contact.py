@@ -32,9 +32,7 @@ def simulate_with_native_contact(
 ) -> Trajectory:
     """Return the motion like ``simulate``, with Exudyn's built-in contact of a pin or of a disc on points.
 
-    Steps, ε and errors follow ``tolerance`` in the same way, with one exception: a disc on points is released gently,
-    like t², and its stick phase ends when its slip reaches ε, late by about √ε.
-
+    A disc on points is released gently, like t², and its stick phase ends when its slip reaches ε, late by about √ε.
     Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
     """
     state = checked_state(system, initial_state)

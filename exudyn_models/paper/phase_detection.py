@@ -25,8 +25,7 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
     Under the regularised law a sticking part creeps, slower than ε as long as Coulomb friction could hold it. While
     the contact creeps as a whole the system sticks; while one of several points does, the disc pivots about it. There
     are three exceptions: friction cannot hold the load, so that slip passes through zero; the creep of a point ends
-    before it has settled; and after a release the slip speed stays near ε for a while and may cross it several times
-    by step errors, so it must first reach 2ε.
+    before it has settled; and slip after a release, which may cross ε several times, must first reach 2ε.
 
     A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
     load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All these times have
@@ -143,7 +142,7 @@ def _time_of_rest(
 def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
     """Return whether friction can hold a creeping system, according to all steps with slip.
 
-    When slip passes through zero the load is first against the slip, then along it; either counts together with
+    If slip passes through zero the load is first against the slip, then along it; either counts together with
     friction.
     """
     moving = ratio > 0.0

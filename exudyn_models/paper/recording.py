@@ -21,7 +21,7 @@ class Recording:
 
     Parameters
     ----------
-    contact : RegularisedContact
+    contact
         Contact of the moving system.
     times : array of shape (n,)
         Requested times, the first of them the start.

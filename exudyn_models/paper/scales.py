@@ -20,13 +20,13 @@ class Scales:
 
     Parameters
     ----------
-    time : float
+    time
         Time scale of the motion, see ``time_scale``.
-    motion : float
+    motion
         Scale of DOPRI5's error, in m and m/s: 1, or the size of the motion if that is larger.
-    angle_rounding : float
+    angle_rounding
         Rounding error in rad of the angle of a disc after the span; 0 for a pin.
-    force : float
+    force
         Scale of the residual of Newton's method, > 0: the forces on the body in N or the moments in N m, whichever
         are smaller.
 
@@ -52,8 +52,7 @@ def time_scale(system: System, state: FloatArray, span: float) -> float:
     """Return the time scale of the motion in s: the shortest of 1/k, 1/|ω|, m/β and ``span``.
 
     A disc adds its spin, that of its shaft, and J/b. For a hardening support k is that at the largest deflection that
-    the initial energy allows; friction may increase it further, until the whirl turns with ω. A stop counts as
-    touched.
+    the initial energy allows. A stop counts as touched.
     """
     stiffest = hardened_stiffness(system, state) + system.stop_stiffness
     rates = [math.sqrt(stiffest / system.mass), abs(system.disc_speed), system.damping / system.mass]

@@ -73,17 +73,15 @@ def simulate(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     initial_state : array of shape (4,) or (6,)
         x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
     times : array of shape (n,)
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
-    tolerance : float
+    tolerance
         Accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``. While the contact
         slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
-    regularisation : float, optional
+    regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance of the motion's own speed, reported as
         ``solution.regularisation``. It should stay well above the tolerance. For very soft springs pass ε explicitly,
         because μN over √(mass·stiffness) then counts as the speed, however slow the motion.
@@ -92,7 +90,7 @@ def simulate(
         regularised law is stiff. In axes that turn with the master disc stick takes some 40 steps per turn; pivoting
         about a point takes steps ~ √ε. "implicit" is generalised-α throughout: second order, with steps ~ √tolerance
         and an error proportional to the tolerance but about a thousand times larger.
-    friction : Friction, optional
+    friction
         Adds the friction between the discs to the model, which is built in the motion's own units.
 
     Raises
@@ -124,11 +122,11 @@ def simulate_fixed_step(
     step: float,
     regularisation: float = 1e-6,
 ) -> Trajectory:
-    """Return the motion computed by one Exudyn integrator with the constant step ``step`` (s).
+    """Return the motion by one Exudyn integrator with the constant step ``step`` (s), for convergence studies.
 
-    This is for convergence studies. ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha"
-    or "TrapezoidalIndex2" (implicit, order 2). An explicit integrator needs a step below about 2·mε/μN while the pin
-    sticks. ``solution.tolerance`` is nan. Raises as ``simulate``.
+    ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha" or "TrapezoidalIndex2" (implicit,
+    order 2). An explicit integrator needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is
+    nan. Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -154,17 +152,17 @@ class Run:
     ----------
     given : tuple
         System, initial state and times as given.
-    tolerance : float
+    tolerance
         Accuracy to aim at; nan for fixed steps.
-    units : Units
+    units
         Units of the motion.
-    contact : RegularisedContact
+    contact
         Contact of the system in these units, with ε.
     state, times : array
         Initial state and times in these units.
-    scales : Scales
+    scales
         Scales of the run in these units.
-    began : float
+    began
         Start of the computation, by ``time.perf_counter``.
 
     """

@@ -1,9 +1,8 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the last checkpoint before it, which is the start
-of the step that contains the time. This trajectory continues with the pace of the whole, so it takes only that step,
-cut short. The trajectories for all times run side by side in lanes. So the motion does not depend on the requested
-times, and its error is the same at all of them.
+The state at a requested time is the end of a short trajectory from the start of the step that contains the time. It
+continues with the pace of the whole, so it takes only that step, cut short. The trajectories for all times run side
+by side in lanes. So the motion does not depend on the requested times, and its error is the same at all of them.
 """
 
 from __future__ import annotations
@@ -18,8 +17,8 @@ from reference_model.ensemble.checkpoints import (
     ON_THE_WAY,
     SLIPS,
     Checkpoints,
+    empty_checkpoints,
     from_the_start,
-    room_for,
 )
 from reference_model.ensemble.end_states import HANDED_OVER, Results
 from reference_model.motion.stepper import Kind
@@ -52,11 +51,11 @@ class Recording:
         Requested times in s, >= 0.
     states : array of shape (n, 4) or (n, 6)
         States at these times, as far as computed.
-    duration, unit : float
+    duration, unit
         Duration and unit of time in s.
     phases : list of (kind, start, state)
         Phases so far.
-    steps, evaluations : int
+    steps, evaluations
         Counts so far, as in ``Solution``, including rejected steps and stick phases.
 
     """
@@ -80,10 +79,10 @@ class Recording:
         """
         # The kernel is compiled for writable arrays only.
         start, left = state.copy()[np.newaxis], np.array([self.duration - since])
-        asked = self.times[self.times >= since] - since
-        room = len(asked) + ROOM_TO_SPARE
+        requested = self.times[self.times >= since] - since
+        room = len(requested) + ROOM_TO_SPARE
         while True:
-            checkpoints = room_for(room, len(state), asked)
+            checkpoints = empty_checkpoints(room, len(state), requested)
             end = one(start, from_the_start(), left, checkpoints)
             taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
@@ -104,23 +103,23 @@ class Recording:
 
     def take(self, motion: Trajectory) -> None:
         """Insert a part of the motion computed by the plain reference, at all requested times in its span."""
-        asked = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
-        self.states[asked] = motion.states[np.searchsorted(motion.times, self.times[asked])]
+        requested = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
+        self.states[requested] = motion.states[np.searchsorted(motion.times, self.times[requested])]
         for phase in motion.phases:
             self._enter(phase.kind, phase.start, phase.initial_state)
         self.steps += motion.solution.steps
         self.evaluations += motion.solution.evaluations
 
     def _sample(self, many: Runs, checkpoints: Checkpoints, until: float) -> None:
-        asked = (self.times >= checkpoints["time"][0]) & (self.times <= until)
-        if not np.any(asked):
+        requested = (self.times >= checkpoints["time"][0]) & (self.times <= until)
+        if not np.any(requested):
             return
-        before = checkpoints[np.searchsorted(checkpoints["time"], self.times[asked], side="right") - 1]
-        durations = self.times[asked] - before["time"]
+        before = checkpoints[np.searchsorted(checkpoints["time"], self.times[requested], side="right") - 1]
+        durations = self.times[requested] - before["time"]
         starts, paces = np.ascontiguousarray(before["state"]), np.ascontiguousarray(before["pace"])
         ends = many(starts, paces, durations, checkpoints[:0])
         self._require_end(ends, durations, until)
-        self.states[asked] = ends.states
+        self.states[requested] = ends.states
         self.evaluations += STAGES * int(np.sum(ends.steps))
 
     def _require_end(self, results: Results, durations: FloatArray, since: float) -> None:

@@ -20,7 +20,7 @@ from reference_model.systems import (
     require_system,
 )
 
-NOT_TAKEN = ("hardening", "stop_gap", "stop_stiffness")
+UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
 """Parameters of a nonlinear support."""
 
 MOST_POINTS = 24
@@ -44,21 +44,21 @@ def simulate_ensemble(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
         Initial states as in ``reference_model.simulate``, one per trajectory or one for all.
-    duration : float
+    duration
         Duration in s, > 0.
-    tolerance : float
+    tolerance
         Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. The tolerance of steps is
         a tenth of it (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s
         half have errors below 4e-9, 99 % below 1e-8, and one, of Fig. 9, has 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Parameters that differ between trajectories.
-    early_end : bool
+    early_end
         Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
-    threads : int, optional
+    threads
         Number of threads; by default one per processor.
 
     Raises
@@ -68,7 +68,7 @@ def simulate_ensemble(
 
     """
     require_system(system)
-    require_known(system)
+    require_supported(system)
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     n = _number_of(len(starts), varied)
@@ -88,21 +88,21 @@ def simulate_ensemble(
     return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
 
 
-def require_known(system: System) -> None:
+def require_supported(system: System) -> None:
     """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
-    unknown = _what_is_unknown(system)
+    unknown = _unsupported(system)
     if unknown:
         raise ValueError(unknown)
 
 
-def is_known(system: System) -> bool:
+def is_supported(system: System) -> bool:
     """Return whether compiled code supports a system."""
-    return not _what_is_unknown(system)
+    return not _unsupported(system)
 
 
-def _what_is_unknown(system: System) -> str:
+def _unsupported(system: System) -> str:
     """Return the reason why compiled code cannot simulate ``system``, or ""."""
-    for name in NOT_TAKEN:
+    for name in UNSUPPORTED:
         value = getattr(system, name)
         if value != 0.0 and name != "stop_gap":
             return (
@@ -130,7 +130,7 @@ def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
 
 
 def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArray:
-    allowed = [field.name for field in fields(system) if field.name not in (*NOT_TAKEN, "contact_points")]
+    allowed = [field.name for field in fields(system) if field.name not in (*UNSUPPORTED, "contact_points")]
     if name not in allowed:
         raise ValueError(
             f"parameters: {name!r} cannot differ between trajectories, only {', '.join(allowed)}"

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from reference_model.contact.contact_law import Contact, contact_of
 from reference_model.ensemble.recording import Recording
-from reference_model.ensemble.simulate import require_known
+from reference_model.ensemble.simulate import require_supported
 from reference_model.motion.nondimensional import Units
 from reference_model.systems import PinOnDisc, System, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import SimulationError, Solution, Trajectory, phases_of
@@ -35,7 +35,7 @@ def simulate_compiled(
             f"contact = {contact}: compiled runs support only the law of the system's parameters, "
             f"{contact_of(system)}; omit compiled=True"
         )
-    require_known(system)
+    require_supported(system)
     delays, unit = times - times[0], Units.of(system, state).time
     # For a single time only the phase that begins is needed.
     duration = float(delays[-1]) if len(times) > 1 else unit

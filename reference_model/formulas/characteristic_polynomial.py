@@ -45,11 +45,9 @@ def characteristic_coefficients(
 
     Parameters
     ----------
-    disc : DiscOnDisc
-        Parameters of the system.
-    slip, rim : float
+    slip, rim
         Positive numbers whose ratio is U : R|ω − φ̇|.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

@@ -44,11 +44,11 @@ def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
 
     Parameters
     ----------
-    slip : complex
+    slip
         (ẋ + ωy) + i(ẏ − ωx), in m/s.
-    rim_speed : float
+    rim_speed
         R(ω − φ̇) in m/s, of either sign.
-    place : float
+    place
         φ + χ in rad.
 
     """
@@ -68,11 +68,8 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     on the limit surface at that moment takes the place of μN in (7) to (9):
     ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
 
-    Raises
-    ------
-    ValueError
-        If friction cannot supply the moment, so that the disc never sticks, or if the disc rests on single points.
-
+    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests on
+    single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
     centre = stuck_centre(DiscMotion.of(disc, law), law)
@@ -85,7 +82,7 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     return replace(pin_of(disc), friction_force=centre.friction * disc.mass)
 
 
-class Place(NamedTuple):
+class Position(NamedTuple):
     """Position of a self-centred disc, x and y in m, and its spin in rad/s."""
 
     x: float
@@ -109,12 +106,12 @@ def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatAr
     return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
-def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Place:
+def position_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> Position:
     """Return position and spin by (24) from A in m and the angles α and θ in rad.
 
     The slip speeds of centre and rim are U = |ω|A·cos α and R(ω − φ̇) = ωA·sin α.
     """
-    return Place(
+    return Position(
         distance * math.cos(alpha) * math.cos(theta),
         distance * math.cos(alpha) * math.sin(theta),
         disc.disc_speed * (1.0 - distance / disc.contact_radius * math.sin(alpha)),
@@ -124,11 +121,7 @@ def place_of(disc: DiscOnDisc, distance: float, alpha: float, theta: float) -> P
 def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
     """Return μ₀, b₀ and δ of (25).
 
-    Raises
-    ------
-    ValueError
-        If stiffness or disc speed is zero, or the support is not linear.
-
+    Raises ``ValueError`` if stiffness or disc speed is zero, or the support is not linear.
     """
     require_linear_support(disc)
     _require_not_zero(disc, "stiffness", "disc_speed")
@@ -142,11 +135,7 @@ def reduced_parameters(disc: DiscOnDisc) -> ReducedParameters:
 def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> float:
     """Return the right side of the first line of (26), whose left side is δ, at A in m and α in rad.
 
-    Raises
-    ------
-    ValueError
-        As :func:`reduced_parameters`, and if the shaft damping is zero.
-
+    Raises ``ValueError`` as :func:`reduced_parameters`, and if the shaft damping is zero.
     """
     _require_not_zero(disc, "shaft_damping")
     load, shaft_damping, _ = reduced_parameters(disc)
@@ -177,11 +166,7 @@ def squared_distance_as_printed(disc: DiscOnDisc, alpha: float) -> float:
 def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
     """Return θ of the third line of (26) in rad, at A in m and α in rad, in the sense of ω.
 
-    Raises
-    ------
-    ValueError
-        If the offset is zero, which leaves no direction, or if A·cos α > |X0|.
-
+    Raises ``ValueError`` if the offset is zero, which leaves no direction, or if A·cos α > |X0|.
     """
     _require_not_zero(disc, "offset")
     cosine = distance * math.cos(alpha) / disc.offset
@@ -193,17 +178,13 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
     return math.copysign(angle, disc.disc_speed * disc.offset)
 
 
-def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, ...]:
+def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
     The corrected (26) gives the equilibria of (23). These are :func:`reference_model.self_centred_equilibria` with
     :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
 
-    Raises
-    ------
-    ValueError
-        If stiffness, disc speed, shaft damping or offset is zero.
-
+    Raises ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
     """
     _require_not_zero(disc, "shaft_damping", "offset")
     squared = squared_distance_as_printed if as_printed else squared_distance
@@ -224,7 +205,7 @@ def places_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Place, 
             for root in zeros_between(excess, left, right):
                 alpha = math.copysign(root, difference)
                 distance = math.sqrt(max(squared(disc, alpha), 0.0))
-                places.append(place_of(disc, distance, alpha, polar_angle(disc, distance, alpha)))
+                places.append(position_of(disc, distance, alpha, polar_angle(disc, distance, alpha)))
     return tuple(places)
 
 
@@ -248,11 +229,11 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system; ``friction_force`` is ignored.
-    alpha : float
+    alpha
         α in rad, 0 < α < π/2.
-    contact : IsotropicContact or None
+    contact
         Friction law, :class:`reference_model.contact.contact_law.ThreeTermRing` for (23); None for the law of the
         parameters.
 
@@ -292,11 +273,8 @@ def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, f
 
     It is M + b(|ω| − k)/(βkR)·F·rim/slip. At slip = 0 it is the limit, b|ω − Ω| over the onset load.
 
-    Raises
-    ------
-    ValueError
-        If there is no whirl at any load (zero stiffness or damping, or |ω| <= k), or if the support is not linear.
-
+    Raises ``ValueError`` if there is no whirl at any load (zero stiffness or damping, or |ω| <= k), or if the support
+    is not linear.
     """
     require_linear_support(disc)
     per_load = pin_formulas.whirl_radius(pin_of(disc, friction_force=1.0))

@@ -33,11 +33,11 @@ class BalancedWhirl:
 
     Parameters
     ----------
-    radius : float
+    radius
         ρ in m.
-    frequency : float
+    frequency
         κ in rad/s, negative if clockwise.
-    mean : complex
+    mean
         z_m in m.
 
     """
@@ -54,7 +54,7 @@ def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
 
     Parameters
     ----------
-    pin : PinOnDisc
+    pin
         Parameters of the system, without a stop.
 
     Raises

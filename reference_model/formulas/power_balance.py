@@ -81,9 +81,9 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
 
     Parameters
     ----------
-    trajectory : Trajectory
+    trajectory
         Trajectory with times close enough to resolve the motion.
-    contact : Contact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises

@@ -30,7 +30,7 @@ ROUNDING = 8.0 * sys.float_info.epsilon
 """Relative residual of a balance that rounding may cause."""
 
 
-def resting_places(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
+def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
     """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact.
 
     They come by increasing W : U. Nothing is yielded if every position or every spin is an equilibrium.

@@ -101,7 +101,7 @@ class Body(ABC):
         held = self.holds_for(y)
         if held > 0.0:
             return self.stick(t, y, held)
-        return self.let_go(t, y)
+        return self.begin_to_slip(t, y)
 
     def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """Follow fast or slow slip as long as its description is valid."""
@@ -167,7 +167,7 @@ class Body(ABC):
         y = self.turned(y, np.array([release - t]))[:, 0].tolist()
         if release < self.run.end:
             self.run.enter("slip", release, y)
-            return self.let_go(release, y)
+            return self.begin_to_slip(release, y)
         return release, y
 
     @abstractmethod
@@ -187,7 +187,7 @@ class Body(ABC):
         """
 
     @abstractmethod
-    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+    def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
         """Follow slip as it grows from rest."""
 
 
@@ -229,8 +229,8 @@ class PinBody(Body):
         w = slip * w * turn
         return np.array((z.real, z.imag, w.real, w.imag))
 
-    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`Body.let_go`; on a linear support by the series as long as it is accurate."""
+    def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Like :meth:`Body.begin_to_slip`; on a linear support by the series as long as it is accurate."""
         run = self.run
         if not self.motion.support.linear:
             pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
@@ -285,8 +285,8 @@ class DiscBody(Body):
         u = slip * u * np.exp(1j * turn)
         return np.array((z.real, z.imag, angle, u.real, u.imag, slip * y[5]))
 
-    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`Body.let_go`."""
+    def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Like :meth:`Body.begin_to_slip`."""
         return self.begin_slip(t, y[:3], self.coordinates, self.drift(y), self.direction(y))
 
     def begin_slip(

@@ -26,17 +26,17 @@ class DiscMotion:
 
     Parameters
     ----------
-    centre : SlipMotion
+    centre
         Equations for a pin at the centre; its ``friction`` is g = μN/m.
-    gyration : float
+    gyration
         κ = √(J/m) in m.
-    shaft_rate : float
+    shaft_rate
         b/J in 1/s.
-    lag : float
+    lag
         κ(ω − Ω) in m/s, the speed of the master disc relative to the shaft.
-    contact : Contact
+    contact
         Friction law.
-    length : float
+    length
         Unit of length of the other parameters, in the unit of length of ``contact``.
 
     """

@@ -28,7 +28,7 @@ from reference_model.motion.stepper import Run
 from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
-LOOKS = 360
+SAMPLES_PER_TURN = 360
 """Samples per turn of the margin of a stuck disc; minima between them are searched."""
 
 
@@ -133,7 +133,7 @@ class PointsBody(DiscBody):
         slowly = motion.speed(own) < motion.slow(own) and own[3] * motion.rates(own)[3] < 0.0
         end = (slide_slowly if slowly else slide)(self.run, motion, t, own, self.leaving(motion))
         y = motion.standard(np.array([end.y]).T)[:, 0].tolist()
-        if end.let_go and motion.speed(end.y) > 0.0:
+        if end.released and motion.speed(end.y) > 0.0:
             self.pivot = None
             self.run.enter("slip", end.t, y)
             return self._slip_from(i, end.t, y)
@@ -171,11 +171,11 @@ class PointsBody(DiscBody):
             return 0.0
         if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
             return math.inf  # relative to the disc, nothing turns
-        delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), LOOKS + 1)
+        delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), SAMPLES_PER_TURN + 1)
         margins = self.limit.margins(*self._share(y, delays))
         if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
             return 0.0  # already at the limit
-        for k in range(1, LOOKS + 1):
+        for k in range(1, SAMPLES_PER_TURN + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
                 # Next to a local minimum of the samples the margin may dip by as much as it changes to the next
@@ -183,7 +183,7 @@ class PointsBody(DiscBody):
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue
-                ends = (float(delays[k - 1]), float(delays[min(k + 1, LOOKS)]))
+                ends = (float(delays[k - 1]), float(delays[min(k + 1, SAMPLES_PER_TURN)]))
                 dip = minimize_scalar(margin, bounds=ends, method="bounded", options={"xatol": 1e-9})
                 if dip.fun >= -GRAZING:
                     continue
@@ -194,11 +194,11 @@ class PointsBody(DiscBody):
             return float(brentq(margin, held, given_way, xtol=1e-15, rtol=1e-14))
         return math.inf
 
-    def let_go(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`DiscBody.let_go`: the disc slips, or pivots about one of its points."""
+    def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
+        """Like :meth:`DiscBody.begin_to_slip`: the disc slips, or pivots about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
-            return super().let_go(t, y)
+            return super().begin_to_slip(t, y)
         i, sense = pivot
         self.run.enter("pivot", t, y)
         self.pivot = i

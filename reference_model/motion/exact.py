@@ -119,7 +119,7 @@ class _Frame:
 
     Parameters
     ----------
-    disc_speed : float
+    disc_speed
         ω in rad/s.
     lengths : array of shape (2,) or (3,)
         Units of the positions: m for x and y, rad for the angle of a disc, which is not scaled.

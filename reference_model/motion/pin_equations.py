@@ -24,13 +24,13 @@ class SlipMotion:
 
     Parameters
     ----------
-    damping : float
+    damping
         β/m in 1/s.
-    support : Support
+    support
         The support divided by the mass, with k² = C/m in 1/s² and X0 in m.
-    friction : float
+    friction
         g = μN/m in m/s², the largest acceleration that friction can cause.
-    disc_speed : float
+    disc_speed
         ω in rad/s.
 
     """
@@ -72,13 +72,11 @@ def simulate_polar_form(
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
     initial_state : array of shape (4,)
         x, y, vx, vy at ``times[0]``, away from the centre.
     times : array of shape (n,)
         Times in s.
-    tolerance : float
+    tolerance
         Relative tolerance of the integrator, at least SciPy's smallest.
 
     Raises

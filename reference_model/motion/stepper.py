@@ -60,20 +60,20 @@ class Thresholds:
 
     Parameters
     ----------
-    slow_slip : float
+    slow_slip
         Upper limit of slow slip, in g·T (T: unit of time), which is described in slip-polar coordinates.
-    stretching : float
+    stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
-    rest_time : float
+    rest_time
         Largest error, in units of T, of the closed form for the time of coming to rest.
-    reversal_slip : float
+    reversal_slip
         Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
-    common_rest : float
+    common_rest
         Slip speed, in units of length per T, below which all points of a disc come to rest together. A point at rest
         slips only if it can gain this speed before the disc rests.
-    series : float
+    series
         Size of the last terms of the initial series of slip.
-    safety : float
+    safety
         The integrator's tolerance as a fraction of the requested one.
 
     """
@@ -95,17 +95,17 @@ class Run:
     ----------
     times : array of shape (n,)
         Requested times, the first of them 0.
-    unknowns : int
+    unknowns
         Number of unknowns of the body, half of them its relative velocities.
-    seconds : callable
+    seconds
         Converts a scaled time to s.
-    thresholds : Thresholds
+    thresholds
         Thresholds between descriptions of the motion.
-    tolerance : float
+    tolerance
         Requested tolerance.
-    springs : float
+    springs
         Natural frequency in 1/T.
-    slipping : float
+    slipping
         Longest duration of a slip phase: the run ends when it is reached.
 
     """
@@ -178,9 +178,9 @@ class SwitchingSurface(NamedTuple):
 
     Parameters
     ----------
-    value : callable
+    value
         Takes the unknowns and changes sign on the surface.
-    trend : callable or None
+    trend
         Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. It detects
         steps that cross the surface and come back.
 
@@ -202,15 +202,15 @@ class Stepper:
 
     Parameters
     ----------
-    run : Run
+    run
         The simulation, which counts steps and evaluations.
-    rates : callable
+    rates
         Right-hand side: for one state if explicit, vectorised if implicit.
     y : sequence
         Initial unknowns.
     span : (float, float)
         Initial and final time.
-    tolerated : callable
+    tolerated
         Takes the unknowns and returns the allowed errors of a step.
     surfaces : sequence of SwitchingSurface
         The surfaces.

@@ -176,9 +176,9 @@ class SlipStart:
     ----------
     positions, slip : complex arrays of shape (terms,)
         Coefficients of z and of w.
-    duration : float
+    duration
         Range of accuracy in s.
-    rest : float
+    rest
         Time in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull
         exceeds friction only slightly and briefly.
 

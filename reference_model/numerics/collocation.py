@@ -71,8 +71,6 @@ def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes:
 
     Parameters
     ----------
-    rates : RatesAt
-        Right-hand side.
     values, found : array of shape (NODES, n)
         Unknowns and their rates.
     changes : array of shape (NODES, n)
@@ -91,7 +89,7 @@ class Scales(NamedTuple):
 
     Parameters
     ----------
-    differences : callable
+    differences
         Takes unknowns (k, n) and returns their changes for numerical derivatives, of the same shape.
     most : array of shape (n,)
         Largest change of each unknown in one Newton iteration.
@@ -107,7 +105,7 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 
     Parameters
     ----------
-    first, last : float
+    first, last
         Limits of the integration variable.
     coefficients : array of shape (NODES + 1, n)
         Coefficients of the Legendre series.
@@ -135,17 +133,15 @@ class Radau:
 
     Parameters
     ----------
-    rates : RatesAt
-        Right-hand side.
     t, y : float, array of shape (n,)
         Initial time and unknowns.
-    end : float
+    end
         Final time.
-    first_step : float
+    first_step
         First step to try.
-    tolerated : callable
+    tolerated
         Takes the unknowns and returns the allowed errors of a step.
-    scales : Scales
+    scales
         Scales for differences and for Newton's method.
 
     """

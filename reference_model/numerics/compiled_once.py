@@ -37,7 +37,7 @@ UNUSED = 86_400.0
 config: Any = numba.config  # built from the environment, so type checkers do not know its names
 
 _one_at_a_time = threading.Lock()
-_told_already = threading.Lock()
+_announced = threading.Lock()
 
 
 class CompiledOnce:
@@ -45,9 +45,9 @@ class CompiledOnce:
 
     Parameters
     ----------
-    function : callable
+    function
         A function that numba can compile. It runs without the global interpreter lock.
-    package : Path
+    package
         Folder of all sources that are compiled into the function.
 
     Attributes
@@ -76,13 +76,13 @@ def compiled_for(
 ) -> Any:
     """Return numba's dispatcher of a function for these argument types, compiled or loaded from disk.
 
-    Threads and processes that need it at the same time wait for the first one and load its result.
+    Threads and processes that need it at the same time wait for the first one.
     """
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
         if folder:
             stack.enter_context(_locked(Path(folder) / f"{function.__name__}.lock"))
-        stack.enter_context(_told())
+        stack.enter_context(_announcement())
         stack.enter_context(_without_garbage_collection())
         stack.enter_context(_cached_in(folder))
         compiling = numba.njit(kind, error_model="numpy", nogil=nogil, cache=bool(folder))
@@ -118,8 +118,7 @@ def digest_of(package: Path) -> str:
 def folder_of(package: Path) -> str:
     """Return the folder of compiled functions for the present sources, or "" if none is writable.
 
-    It lies in the folder given by ``NUMBA_CACHE_DIR``, else next to the sources, or in the user's cache if the
-    sources are read-only.
+    It lies in ``NUMBA_CACHE_DIR`` if set, else next to the sources, or in the user's cache if these are read-only.
     """
     for place in _places(package):
         folder = place / f"{package.name}-{digest_of(package)}"
@@ -160,9 +159,9 @@ def _locked(lock: Path) -> Iterator[None]:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _announcement() -> Iterator[None]:
     """Print a line, once per process, if compiling takes long; worker processes are silent."""
-    timer = threading.Timer(LONG, _tell)
+    timer = threading.Timer(LONG, _announce)
     timer.daemon = True
     timer.start()
     try:
@@ -171,8 +170,8 @@ def _told() -> Iterator[None]:
         timer.cancel()
 
 
-def _tell() -> None:
-    if multiprocessing.parent_process() is None and _told_already.acquire(blocking=False):
+def _announce() -> None:
+    if multiprocessing.parent_process() is None and _announced.acquire(blocking=False):
         text = "Compiling for this machine, once for each kind of system (about 20 s of processor time) ..."
         print(text, file=sys.stderr, flush=True)
 

@@ -47,7 +47,7 @@ class Curve:
     ----------
     points : array of shape (n, d)
         Points in order along the curve. A closed curve repeats its first point at the end.
-    ends : tuple of int
+    ends
         Indices of the limits that the first and the last point lie on; empty for a closed curve.
 
     """
@@ -68,16 +68,16 @@ def follow(
 
     Parameters
     ----------
-    equations : callable
+    equations
         Takes the d unknowns, shape (d,), and returns the d − 1 residuals that are zero on the curve.
-    limits : callable
+    limits
         Takes the unknowns and returns numbers, shape (m,), that are positive in the region of interest. Both
         functions must be defined a little beyond it.
     start : array of shape (d,)
         A point near the curve, within the limits.
     scales : array of shape (d,)
         Changes of the unknowns that count as equally large.
-    step : float
+    step
         Largest distance between neighbouring points in units of ``scales``.
 
     Raises

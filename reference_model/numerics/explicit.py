@@ -40,17 +40,15 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
 
     Parameters
     ----------
-    rates : callable
-        Right-hand side.
     t, y : float, array of shape (n,)
         Initial time and unknowns.
-    end : float
+    end
         Final time, > t.
-    first_step : float or None
+    first_step
         First step to try; None for an automatic choice.
-    tolerated : callable
+    tolerated
         Takes the unknowns and returns the allowed errors of a step, shape (n,).
-    most : float
+    most
         Longest step.
 
     """

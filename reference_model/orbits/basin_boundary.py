@@ -44,9 +44,9 @@ class Separatrix:
 
     Parameters
     ----------
-    orbit : StickSlipOrbit
+    orbit
         The saddle.
-    releases : ReleaseMap
+    releases
         The release map of the pin.
 
     """
@@ -129,7 +129,7 @@ def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -
 
     Parameters
     ----------
-    orbit : StickSlipOrbit
+    orbit
         The saddle whose stable set is the boundary. Its tolerance is that of the point.
     first, second : array-like of shape (4,)
         Starts that lead to different motions.
@@ -160,7 +160,7 @@ def basin_boundary(
 
     Parameters
     ----------
-    orbit : StickSlipOrbit
+    orbit
         The saddle whose stable set is the boundary. Its tolerance is that of the points.
     components : (str, str)
         State components that vary in the rectangle: two of "x", "y", "vx", "vy".
@@ -168,7 +168,7 @@ def basin_boundary(
         Their ranges in m or m/s.
     others : array-like of shape (4,)
         State that supplies the other components.
-    cells : int
+    cells
         Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
         that no grid edge crosses exactly once.
 

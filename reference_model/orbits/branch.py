@@ -21,21 +21,21 @@ BRANCH_STEP = 0.08
 def whirl_branch(
     orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
 ) -> Iterator[Orbit]:
-    """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing x.
+    """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
 
-    x is where the orbits cross the axis. Each orbit is predicted by extrapolation from the two before it, for a
-    relative decrease of x by ``step``. If Newton's method fails, the step is halved. The load may rise or fall along
-    the branch, and stick phases may appear.
+    Each orbit is predicted by extrapolation from the two before it, for a relative decrease of x by ``step``. If
+    Newton's method fails, the step is halved. The load may rise or fall along the branch, and stick phases may
+    appear.
 
     Parameters
     ----------
-    orbit : Orbit
+    orbit
         First orbit; its engine and tolerance are used for all.
-    until : float
+    until
         Smallest crossing x in m, > 0.
-    step : float
+    step
         Largest relative change of x between neighbours.
-    samples : int
+    samples
         Number of intervals of each trajectory.
 
     Raises
@@ -86,24 +86,18 @@ def last_whirl(
     system: System,
     *,
     simulate: Simulate = REFERENCE,
-    guess: Orbit | None = None,
     tolerance: float = 1e-12,
     precision: float = 0.0,
 ) -> Orbit:
     """Return the whirl at the smallest load with a whirl: the fold of the branch.
 
-    There the whirl meets the unstable whirl that separates it from the other motions, and below it neither exists.
-    The paper does not give this load. The branch is followed from the load of ``system``, or from ``guess``, towards
-    the axis. The fold is the minimum of the load over the crossing x. All arguments are those of :func:`whirl_orbit`.
-
-    Raises
-    ------
-    ValueError, RuntimeError
-        As ``whirl_orbit``, if there is no whirl to start from or the branch ends before it folds.
-
+    There the whirl meets the unstable whirl that separates it from the other motions. The paper does not give this
+    load. The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the
+    crossing x. All arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` is also raised if the
+    branch ends before it folds.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
-    orbit = guess or seek(samples=2)
+    orbit = seek(samples=2)
 
     def load(x: float) -> float:
         nonlocal orbit

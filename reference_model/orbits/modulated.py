@@ -45,15 +45,12 @@ def modulated_cycle(
 ) -> Orbit:
     """Return the cycle of a whirl whose radius oscillates, X0 = 0 only, by shooting (Fig. 11).
 
-    It contains two frequencies, the modulation and the carrier. Without offset it is periodic up to a rotation: after
-    the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts where
-    the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts
+    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    guess : Trajectory or Orbit
+    guess
         Start of the iteration: a simulation that ends close to the cycle and covers more than a period of the
         modulation, at times close enough to resolve a revolution; or the cycle for nearby parameters.
     simulate, at_crossing, tolerance, samples, precision
@@ -64,8 +61,7 @@ def modulated_cycle(
     ValueError
         If the offset is not zero, a disc rests on single points, or ``guess`` does not recur.
     RuntimeError
-        If Newton's method does not converge or finds a whirl of constant radius, because there is no such cycle near
-        the guess.
+        If Newton's method does not converge or finds a whirl of constant radius.
 
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)

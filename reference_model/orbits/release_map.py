@@ -1,10 +1,9 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pin rests on the disc and its pull equals friction, (7) with equality. These positions lie on half a
-circle, so one number summarises the motion before: the lag α of the pull behind that of the offset, between 0 and π.
-The map from one α to the next is a function of one variable. Its fixed points are the orbits, and its slope there is
-their multiplier. Of the other three multipliers one belongs to a shift in time, and two are zero, because stick
-forgets the time and the velocity of the stop.
+At a release the pin rests on the disc and its pull equals friction, (7) with equality. So one number summarises the
+motion before: the lag α of the pull behind that of the offset, between 0 and π. The fixed points of the map from one
+α to the next are the orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a
+shift in time, and two are zero, because stick forgets the time and the velocity of the stop.
 
 The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
@@ -30,7 +29,7 @@ from reference_model.support import require_linear_support
 from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, require_system, require_whole
 from reference_model.trajectory import Trajectory
 
-LOOKS = (1.5, 16.0)
+SEARCH_TIMES = (1.5, 16.0)
 """Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
 
 Most pins stick again within the first time. One that does not within the second is taken never to stick again.
@@ -75,9 +74,9 @@ class ReleaseMap:
 
     Parameters
     ----------
-    pin : PinOnDisc
+    pin
         Parameters of the system, with friction, an offset and a turning disc.
-    tolerance : float
+    tolerance
         Tolerance for ``simulate``.
 
     """
@@ -127,7 +126,7 @@ class ReleaseMap:
 
     def first(self, state: ArrayLike, wanted: Callable[[Release], bool]) -> tuple[Release | None, FloatArray]:
         """Return the first ``wanted`` release after ``state``, shape (4,), or None, and the last state reached."""
-        for turns in LOOKS:
+        for turns in SEARCH_TIMES:
             times = [0.0, turns * self.turn]
             trajectory = REFERENCE(self.pin, state, times, tolerance=self.tolerance)
             release = next(filter(wanted, self.along(trajectory)), None)
@@ -213,15 +212,13 @@ class StickSlipOrbit(Orbit):
 
     Parameters
     ----------
-    system : PinOnDisc
-        Parameters of the system.
     release : array of shape (4,)
         State at the release.
-    release_angle : float
+    release_angle
         α in rad, the lag of the pull behind that of the offset at the release.
-    stick_time : float
+    stick_time
         Duration of stick in s.
-    multiplier : float
+    multiplier
         Growth factor per period of a small deviation of the release angle.
 
     """
@@ -253,11 +250,11 @@ def stick_slip_orbits(
 
     Parameters
     ----------
-    pin : PinOnDisc
+    pin
         Parameters of the system. There are no such motions without offset or friction, or on a disc at rest.
-    tolerance : float
+    tolerance
         Tolerance for ``simulate``.
-    samples : int
+    samples
         Number of intervals of the returned trajectories.
 
     Raises

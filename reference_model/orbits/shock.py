@@ -47,9 +47,7 @@ class Shock:
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
-    vx, vy : float
+    vx, vy
         Change of the velocity in m/s.
 
     """
@@ -119,11 +117,7 @@ def by_bisection(shock: Shock) -> float:
 
     The relative error is ``FINE``. The search covers 0.9 to 1.15 times the size of ``shock``.
 
-    Raises
-    ------
-    ValueError
-        If the end state does not change in this range.
-
+    Raises ``ValueError`` if the end state does not change in this range.
     """
     pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
     low, high = (

@@ -3,10 +3,9 @@
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
 offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
-Newton's method is written out here. ``scipy.optimize.root`` (hybr, in the same units) finds the whirls of Figs. 4, 6
-and 11 equally well, with 17 to 20 return maps compared with 14 to 20. But without an orbit near the guess it needs 51
-to 63 return maps, each a simulation, to fail, compared with 10 to 16 here. It cannot know that an orbit is far from
-the guess or has collapsed onto the axis.
+Newton's method is written out here. ``scipy.optimize.root`` (hybr) finds the whirls of Figs. 4, 6 and 11 equally
+well. But without an orbit near the guess it needs 51 to 63 return maps, each a simulation, to fail, compared with 10
+to 16 here, because it cannot know that an orbit is far from the guess or has collapsed onto the axis.
 """
 
 from __future__ import annotations
@@ -48,10 +47,9 @@ PERIOD, LOAD, TURN = -3, -2, -1
 CENTRAL = 3e-4
 """Relative step of the fourth-order central differences for multipliers.
 
-It was measured against the eigenvalues of the turning frame and the variational equations. For the whirl of Fig. 11
-with an offset, the worst case, the noise of the flow over the step equals the step's fourth power. The error of
-multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it is 1e-7 by the reference, and
-1e-5 by engines with more noise at a tolerance of 1e-12.
+For the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's fourth
+power. The measured error of multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it
+is 1e-7 by the reference, and 1e-5 by engines with more noise at a tolerance of 1e-12.
 """
 
 MOST_ITERATIONS = 25
@@ -145,20 +143,18 @@ class Orbit:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         Initial state of the orbit. It lies on the x axis, y = 0, unless the guess started elsewhere. The angle of a
         disc is zero.
-    period : float
+    period
         Period in s.
-    residual : float
+    residual
         Distance between start and end of the orbit, relative to its size.
-    trajectory : Trajectory
+    trajectory
         One period at equally spaced times, both ends included.
-    problem : ShootingProblem
+    problem
         Its return map.
-    turn : float
+    turn
         Rotation of the motion about the axis in a period, in rad, including whole turns; 0 if it recurs without
         rotation.
 

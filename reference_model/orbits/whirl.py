@@ -39,23 +39,23 @@ def whirl_orbit(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         Parameters of a system with a whirl without offset: |ω| > k on a linear support.
-    simulate : callable
+    simulate
         The engine; by default the reference, compiled if possible. Use ``functools.partial(simulate, contact=...)``
         for a disc with another friction law.
-    guess : Orbit or Whirl, optional
+    guess
         Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset.
         With a large offset the whirl of a disc no longer crosses the x axis: then use :meth:`Orbit.from_the_right` of
         the orbit for a nearby offset.
-    at_crossing : float, optional
+    at_crossing
         Fixed value of x at y = 0, in m; the load μN becomes unknown in its place. So a branch can be followed around
         its folds, where two whirls of the same load meet.
-    tolerance : float
+    tolerance
         Tolerance for ``simulate``.
-    samples : int
+    samples
         Number of intervals of the returned trajectory.
-    precision : float
+    precision
         Relative noise of the engine's states, whatever the tolerance, for example 1e-6 in single precision.
 
     Raises

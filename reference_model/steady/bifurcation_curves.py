@@ -1,10 +1,9 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-The paper stops at "the existence region of this complex limit cycle can be investigated analytically by a stability
-analysis for the basic limit cycle with large amplitudes similar to that performed on the pin". This is that analysis,
-for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl up to its
-torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes
-three unknowns, and a boundary has two equations, the balance and one of
+The paper suggests this analysis of the whirl but does not carry it out. It is for X0 = 0 and any isotropic friction
+law. The ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
+:func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes three unknowns, and a
+boundary has two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -67,13 +66,13 @@ class Boundary:
 
     Parameters
     ----------
-    kind : str
+    kind
         "Hopf", "fold" or "onset".
     parameters : array of shape (n, 2)
         Points of the curve, in the units of the two parameters.
     alpha : array of shape (n,)
         Angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a whirl of zero radius.
-    closed : bool
+    closed
         Whether the last point equals the first one.
 
     """
@@ -94,13 +93,13 @@ def boundaries(
 
     Parameters
     ----------
-    plane : ParameterPlane
+    plane
         The parameters and their ranges.
-    kind : str
+    kind
         "Hopf", "fold" or "onset".
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
-    step : float
+    step
         Largest distance of neighbouring points, in units of the ranges.
 
     Raises
@@ -123,9 +122,9 @@ def crossings(
     ----------
     plane, kind, contact
         As in :func:`boundaries`.
-    name : str
+    name
         Name of the parameter that is constant along the line.
-    value : float
+    value
         Its value.
 
     Returns

@@ -39,11 +39,11 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system, without offset.
     state : array of shape (6,)
         A state on the whirl, with the centre on the x axis.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

@@ -27,11 +27,11 @@ class ParameterPlane:
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         The disc with all other parameters.
-    names : tuple of str
+    names
         Names of the two parameters, as in ``DiscOnDisc``; all except those of contact, offset and nonlinear support.
-    lower, upper : tuple of float
+    lower, upper
         Limits of their ranges.
 
     Raises

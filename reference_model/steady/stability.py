@@ -31,11 +31,9 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,)
         x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
-    contact : Contact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Returns
@@ -96,21 +94,17 @@ def equilibrium_eigenvalues(
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
     For a pin (3) they are known in closed form. It slips along the circumference, so friction resists its radial
-    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. The tangential motion drives the radial
-    one, but not vice versa. So the eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the
-    equilibrium is always stable if β > 0, as the paper says below (5).
-
-    For a disc, and for a pin on a nonlinear support, they are the eigenvalues of :func:`sliding_jacobian` without the
+    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So the eigenvalues are the roots of mλ²
+    + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the equilibrium is always stable if β > 0, as the paper says below
+    (5). For a disc, and for a pin on a nonlinear support, they are those of :func:`sliding_jacobian` without the
     angle.
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (6,) or None
         State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
         pin.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -155,11 +149,9 @@ def turning_frame_jacobian(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
     state : array of shape (4,) or (6,), or None
         A state on the whirl, with the centre on the x axis: y = vx = 0. None for a pin, which has at most one whirl.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -210,9 +202,9 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system, without offset; ``friction_force`` is ignored.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

@@ -15,11 +15,11 @@ class SelfCentredEquilibrium:
 
     Parameters
     ----------
-    x, y : float
+    x, y
         Position in m.
-    eigenvalues : tuple of complex
+    eigenvalues
         Eigenvalues in 1/s, slowest decay first: four for a pin, five for a disc, whose angle drops out.
-    stable : bool
+    stable
         Whether all small deviations decay.
 
     """
@@ -41,7 +41,7 @@ class SpinningEquilibrium(SelfCentredEquilibrium):
 
     Parameters
     ----------
-    spin : float
+    spin
         φ̇ in rad/s.
 
     """
@@ -60,14 +60,14 @@ class Whirl:
 
     Parameters
     ----------
-    radius : float
+    radius
         Radius in m.
-    frequency : float
+    frequency
         Angular frequency in rad/s, negative if clockwise.
-    eigenvalues : tuple of complex
+    eigenvalues
         Eigenvalues in 1/s in the frame that turns with the whirl: first the exact zero of the free phase, then the
         others, slowest decay first: three for a pin, four for a disc, whose angle drops out.
-    stable : bool
+    stable
         Whether all small deviations decay, apart from a shift in phase.
 
     """
@@ -89,7 +89,7 @@ class SpinningWhirl(Whirl):
 
     Parameters
     ----------
-    spin : float
+    spin
         φ̇ in rad/s, constant.
 
     """

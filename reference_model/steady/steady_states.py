@@ -17,7 +17,7 @@ from reference_model.formulas.pin import (
     whirl_frequency,
     whirl_radius,
 )
-from reference_model.formulas.torque_balance import circles, least_load_with_whirl, resting_places
+from reference_model.formulas.torque_balance import circles, least_load_with_whirl, resting_positions
 from reference_model.steady.stability import equilibrium_eigenvalues, whirl_eigenvalues
 from reference_model.steady.steady_motions import (
     SelfCentredEquilibrium,
@@ -80,9 +80,7 @@ def self_centred_equilibria(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -109,7 +107,7 @@ def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
 
 def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
     found = []
-    for z, spin in resting_places(disc, law):
+    for z, spin in resting_positions(disc, law):
         eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
         found.append(
             SpinningEquilibrium(
@@ -148,9 +146,7 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    contact : IsotropicContact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
 
     Raises
@@ -258,9 +254,9 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
 
     Parameters
     ----------
-    disc : DiscOnDisc
+    disc
         Parameters of the system; ``friction_force`` is ignored.
-    contact : IsotropicContact or None
+    contact
         Friction law; None for the law of the parameters.
 
     Raises

@@ -22,7 +22,6 @@ WHIRL = FIG5_STARTS["whirl"]
 
 
 def started(instance, system, start, **more):
-    """Return the initialised unit of a system."""
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     states = dict(zip([name for name, _ in COLUMNS[type(system)]], start, strict=True))
     return instance(MODEL[type(system)], **parameters, **states, **more).started()

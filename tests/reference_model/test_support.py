@@ -132,7 +132,7 @@ OF_A_DISC = {
     "26, first line": lambda disc: disc_formulas.speed_difference_at(disc, 0.1, 0.2),
     "26, second line": lambda disc: disc_formulas.squared_distance(disc, 0.2),
     "26 as printed": lambda disc: disc_formulas.squared_distance_as_printed(disc, 0.2),
-    "places by 26": lambda disc: disc_formulas.places_by_26(replace(disc, offset=0.1)),
+    "places by 26": lambda disc: disc_formulas.positions_by_26(replace(disc, offset=0.1)),
     "whirl at a ratio": lambda disc: disc_formulas.whirl_at(disc, 0.7),
     "smallest load": smallest_load,
     "least load": lambda disc: disc_balance.least_load_with_whirl(disc, Ring(0.12)),

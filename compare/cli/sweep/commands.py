@@ -292,7 +292,7 @@ def _check_varied(names: Sequence[str]) -> None:
             raise ValueError(f"--vary {name} is given more than once; give it once")
 
 
-# --- Smallest shock that leads to the whirl.
+# --- Smallest shock that leads to the whirl
 
 AGREEMENT = 1e-6
 """Largest relative difference between the orbit's result and the bisection."""

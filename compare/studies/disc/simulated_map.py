@@ -16,7 +16,7 @@ from compare.studies.toolkit.fig11 import KINDS, curves_in
 from reference_model import onset_load, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the plane, the simulations and the checks.
+# --- Parameters
 
 SIDE = 60
 """Discs along each side of the plane."""
@@ -46,7 +46,7 @@ UNDECIDED_IS_OPEN = 2.0
 """Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
 
 
-# --- Final motions by the compiled ensemble, and the curves of the stability map.
+# --- Final motions by the compiled ensemble, and the curves of the stability map
 
 Ends = NDArray[np.uint8]
 
@@ -83,7 +83,6 @@ def growth(disc: DiscOnDisc) -> float:
 
 
 def curves() -> Data:
-    """Return the ends, and the curves by kind."""
     return {
         f"{kind}/{i}": boundary.parameters
         for kind in KINDS
@@ -111,7 +110,6 @@ STUDY = Study.beside(
     swept=("damping", "shaft_damping"),
 )
 def leaves_axis(ends: Ends | None = None) -> Measured:
-    """Check that motions leave the axis above the onset and return to it below."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends
@@ -133,7 +131,6 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
     swept=("damping", "shaft_damping"),
 )
 def no_unstable_whirl(ends: Ends | None = None) -> Measured:
-    """Check that no motion ends as an unstable whirl."""
     from reference_model.ensemble import EndState
 
     ends = simulated() if ends is None else ends
@@ -153,7 +150,7 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
     )
 
 
-# --- Figure.
+# --- Figure
 
 DARK = "#3d3d3d"
 
@@ -173,7 +170,6 @@ CURVES: dict[str, tuple[str, Any]] = {
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the final motions under the curves."""
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap

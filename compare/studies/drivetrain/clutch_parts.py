@@ -202,7 +202,6 @@ def heating(
 
 
 def curves() -> Data:
-    """Return the closed forms for the figures."""
     falls, slips, later = np.linspace(-1.0, 4.0, 50), np.linspace(SLIP, 0.0, 100), np.linspace(0.0, 40.0, 100)
     return {
         "falls": falls,
@@ -232,7 +231,6 @@ STUDY = Study.beside(
     f"periods each, after a push of {PERTURBED:g} rad/s. Numerical error: the change with the tolerance.",
 )
 def onset(engine: Engine) -> Measured:
-    """Compare the slope for zero measured growth with the closed form."""
     growths = [np.array([_growth(gradient, tolerance) for gradient in GRADIENTS]) for tolerance in BOTH]
     lines = [np.polyfit(GRADIENTS, growth, 1) for growth in growths]
     first, second = (-np.atleast_1d(growth) / slope for slope, growth in lines)
@@ -264,7 +262,6 @@ def _growth(gradient: float, tolerance: float) -> float:
     "error: the change with the tolerance, plus the change if the interpolation omits every other step.",
 )
 def takes_longer(engine: Engine) -> Measured:
-    """Compare the time of the engagement with the closed form."""
     runs = [heating(INERTIAS, SLIP, 0.0, tolerance, np.append(ENGAGED, UNTIL)) for tolerance in BOTH]
     cold = cold_slipping_time(NEARLY_HOLDS)
     found, finer, sparse = (_time_of_slip(run) / cold for run in (*runs, runs[0][::2]))
@@ -293,7 +290,6 @@ def _time_of_slip(run: FloatArray) -> float:
     "skips at each of these times.",
 )
 def settles(engine: Engine) -> Measured:
-    """Compare the temperature with the closed form."""
     runs = [heating((HEAVY, HEAVY), SLOW_SLIP, CONDUCTANCE, tolerance, HELD) for tolerance in BOTH]
     # The last step before a break ends slightly before it.
     found, finer = (run[np.searchsorted(run[:, 0], HELD - 1e-9), 3] for run in runs)
@@ -318,7 +314,6 @@ def settles(engine: Engine) -> Measured:
     "tolerance, plus rounding, which grows like the square root of the number of steps.",
 )
 def balance(engine: Engine) -> Measured:
-    """Compare the energy after each step with the energy at the start."""
     start = 0.5 * INERTIAS[0] * SLIP**2
     runs = [heating(INERTIAS, SLIP, CONDUCTANCE, tolerance, np.array([UNTIL])) for tolerance in BOTH]
     found, finer = (
@@ -339,11 +334,10 @@ def balance(engine: Engine) -> Measured:
     )
 
 
-# --- Figures of judder and of a clutch that warms up
+# --- Figures
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw growth against the slope of friction, and slip and temperature over time."""
     if not data:
         return {}
     judder, (growth,) = new_figure(width=5.5, height=3.6)

@@ -106,7 +106,7 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Compare the drift of every drivetrain with zero; runs with half the steps yield the error."""
+    """Estimate the error by runs with half the steps."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []
@@ -238,11 +238,10 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
     return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)
 
 
-# --- Figure of the angular momenta and of their drift
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the angular momenta of the bodies of one drivetrain, and the drift of the sum in all of them."""
     found = next((values for values in data.values() if "each" in values), None)
     if found is None:
         return {}

@@ -21,7 +21,7 @@ from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-# --- The paper's systems at the scale of a clutch: the same dimensionless numbers in other units
+# --- The paper's systems at the scale of a clutch
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,6 @@ def exact_whirl() -> Orbit:
 
 
 def curves() -> Data:
-    """Return the motion to rest, at the sampling times of the engines and between them."""
     exact = exact_motion()
     path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
     return {
@@ -173,7 +172,6 @@ def to_rest(engine: Engine, tolerance: float) -> Trajectory:
     "tolerance, plus the rest of the slowest transient.",
 )
 def rests(engine: Engine) -> Measured:
-    """Compare the position of rest with (3)."""
     # The positions cover the last 40 s in the paper's units.
     places, error = refined(
         lambda tolerance: (
@@ -205,7 +203,6 @@ def rests(engine: Engine) -> Measured:
     "at the paper's scale. A missing or additional stick phase makes all numbers missing.",
 )
 def sticks(engine: Engine) -> Measured:
-    """Compare all stick and release times with exact friction at the paper's scale."""
     predicted = exact_motion().stick_times
 
     def measured(tolerance: float) -> FloatArray:
@@ -230,7 +227,6 @@ def sticks(engine: Engine) -> Measured:
     note="1 if the end is farther from the axis than 2·X0, otherwise 0; vx(0) at the paper's scale.",
 )
 def ends(engine: Engine) -> Measured:
-    """Compare the ends of several starts with those at the paper's scale."""
     times = np.array([0.0, ENDS_UNTIL])
     starts = [(FIG5.offset, 0.0, velocity, 0.0) for velocity in VELOCITIES]
 
@@ -254,7 +250,6 @@ def ends(engine: Engine) -> Measured:
     "X0 is part of the error.",
 )
 def whirls(engine: Engine) -> Measured:
-    """Compare the state after one period of the whirl with the state at its start."""
     orbit = exact_whirl()
     unit = np.array([1.0, 1.0, WHIRLING.disc_speed, WHIRLING.disc_speed]) * FIG5.offset
     states = states_of(engine, WHIRLING, tuple(orbit.state), np.array([0.0, orbit.period]))
@@ -276,7 +271,6 @@ def whirls(engine: Engine) -> Measured:
     note=f"A disc that starts in this state, after {CLUTCH.time * REST_OF_DISC:g} s. Rounding of the start: 1e-9.",
 )
 def spins(engine: Engine) -> Measured:
-    """Compare position and spin of a resting disc with the balance of forces and moments at the paper's scale."""
     rest = self_centred_equilibria(FIG8)[0]
     unit = (FIG8.offset, FIG8.offset, FIG8.disc_speed)
     start = (rest.x, rest.y, 0.0, 0.0, 0.0, rest.spin)
@@ -303,7 +297,6 @@ def spins(engine: Engine) -> Measured:
     each=DISCS,
 )
 def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
-    """Compare the motion of Fig. 11 with an integration of (19) at the paper's scale."""
     times = np.linspace(0.0, CYCLE_UNTIL, CYCLE_SAMPLES)
     predicted, rougher = (
         integrated(disc, CYCLE_START, CYCLE_UNTIL, CYCLE_SAMPLES, tolerance)[1:]
@@ -327,7 +320,6 @@ def cycles(engine: Engine, disc: DiscOnDisc) -> Measured:
     note="Random starts with |x|, |y| < 3·X0 and |vx|, |vy| < 2·ω·X0, by the compiled ensemble at both scales.",
 )
 def shares(starts: int = ENSEMBLE) -> Measured:
-    """Compare the ends of random starts at both scales."""
     from reference_model.ensemble import EndState, simulate_ensemble
 
     drawn = np.random.default_rng(SEED).uniform(-1.0, 1.0, (starts, 4)) * [0.3, 0.3, 0.3, 0.3]
@@ -350,11 +342,10 @@ def shares(starts: int = ENSEMBLE) -> Measured:
     )
 
 
-# --- Figure of the motion to rest at both scales
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the motion to rest at both scales, and their distance over time."""
     figure, (plane, history) = new_figure(ncols=2, width=11.0)
     exact = data.get("theory", {})
     micrometres = 1e6 * CLUTCH.length

@@ -33,13 +33,13 @@ class Motion:
     ----------
     system, start, source
         Parameters, initial state, and their origin.
-    until, step : float
+    until, step
         Duration and sampling interval in s.
-    tolerance : float
+    tolerance
         Tolerance of the measurement.
-    drawn : bool
+    drawn
         True if the figure shows the motion.
-    contact_alone : bool
+    contact_alone
         True if engines that only provide the contact take part, see ``Engine.contact_only``.
 
     """
@@ -55,12 +55,10 @@ class Motion:
 
 
 def all_motions() -> dict[str, Motion]:
-    """Return all motions by their names in the claims."""
     return motions_of_the_pin() | motions_of_the_disc()
 
 
 def motions_of_the_pin() -> dict[str, Motion]:
-    """Return the motions of a pin."""
     radius = whirl_radius(CENTRED)
     sticky = FIG4
     stuck = 0.98 * sticking_radius(sticky)
@@ -99,7 +97,6 @@ def motions_of_the_pin() -> dict[str, Motion]:
 
 
 def motions_of_the_disc() -> dict[str, Motion]:
-    """Return the motions of a friction disc, on the continuous ring and on six points."""
     near_axis, thrown = (0.02, 0.0, 0.0, 0.0, 0.0, 1.3), (0.0, 0.0, 0.0, 0.5, 0.2, 3.0)
     sticky = replace(FIG11, friction_force=0.1)
     table = replace(
@@ -167,7 +164,6 @@ Motions = Callable[[], Mapping[str, Motion]]
     each=tuple(motions_of_the_pin()),
 )
 def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Measured | None:
-    """Compare the largest residual of the balance of a pin's motion with zero."""
     return _residual(engine, name, motions()[name])
 
 
@@ -181,7 +177,6 @@ def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Mea
     each=tuple(motions_of_the_disc()),
 )
 def disc(engine: Engine, name: str, motions: Motions = motions_of_the_disc) -> Measured | None:
-    """Compare the largest residual of the balance of a disc's motion with zero."""
     return _residual(engine, name, motions()[name])
 
 
@@ -242,11 +237,10 @@ def _drawn(balance: PowerBalance) -> Data:
     }
 
 
-# --- Figure of the energies and of the residual
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the energies on the way to the whirl, and the residual of each engine."""
     figure, (energies, residuals) = new_figure(ncols=2)
     looks: dict[str, dict[str, Any]] = {
         "drive work": {"color": BLACK, "linestyle": "-"},

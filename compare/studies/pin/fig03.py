@@ -69,7 +69,6 @@ GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin of this study with μN = ``load`` in N."""
     return replace(PIN, friction_force=load)
 
 
@@ -134,7 +133,6 @@ DECAYS = "The position of rest is stable at every friction force within (5)"
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the final positions with (3)."""
     places, error = resting_places(engine, loads)
     return Measured(
         predicted=positions(loads),
@@ -180,7 +178,6 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
     swept=("friction_force",),
 )
 def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Evaluate (4) at the positions of rest."""
     places, error = resting_places(engine, loads)
     x, y = places.T
     # ∂(4)/∂(x, y) is twice the vector from the circle's centre, so its length on the circle is X0.
@@ -202,7 +199,6 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the friction force of the equilibrium on the axis, by extrapolation, with (5)."""
     limit, error = vanishing_load(loads, *resting_places(engine, loads))
     return Measured(predicted=LIMIT, value=limit, error=error)
 
@@ -216,7 +212,6 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
-    """Compare the final angular speed of the pin about the axis with 0 and ω, for friction forces near (5)."""
     x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:
@@ -248,7 +243,6 @@ def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, loads: Sequence[float]) -> Rates:
-    """Return the eigenvalues at the positions of rest."""
     pins = [with_load(load) for load in loads]
     return measured_rates(
         engine,
@@ -268,7 +262,6 @@ def rates(engine: Engine, loads: Sequence[float]) -> Rates:
     swept=("friction_force",),
 )
 def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare all four eigenvalues with those of the linearised (1)."""
     found = rates(engine, loads)
     return found.compared({"μN in N": loads}, data={"eigenvalue": real_and_imaginary(found.measured)})
 
@@ -281,7 +274,6 @@ def eigenvalues(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Check that all measured deviations decay."""
     return rates(engine, loads).decaying()
 
 
@@ -295,7 +287,6 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force", "disc_speed", "damping"),
 )
 def stable_on_a_grid() -> Measured:
-    """Check that all eigenvalues on the grid decay."""
     pins = [
         replace(PIN, friction_force=share * LIMIT, disc_speed=speed, damping=damping)
         for share in GRID_SHARES
@@ -313,11 +304,10 @@ def stable_on_a_grid() -> Measured:
     )
 
 
-# --- Figures of the semicircle of Fig. 3 and of the eigenvalues of its positions
+# --- Figures
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the semicircle with the errors, and the eigenvalues over the friction force."""
     figures = {"fig03-semicircle": draw_semicircle(data)}
     if "theory" in data:
         figures["fig03-eigenvalues"] = draw_eigenvalues(data)
@@ -325,7 +315,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_semicircle(data: ByEngine) -> Figure:
-    """Draw the positions of rest on the semicircle, and their distance from (3) over μN."""
     figure, (plane, distance) = new_figure(ncols=2, width=9.6, height=3.9)
     if "theory" in data:
         plane.plot(*data["theory"]["position"].T, **curve("theory", "eq. (3)"))
@@ -349,7 +338,6 @@ def draw_semicircle(data: ByEngine) -> Figure:
 
 
 def _label(plane: Axes) -> None:
-    """Mark the axis and the relaxed point, and label the positions of rest with the friction forces."""
     X0 = PIN.offset
     small: dict[str, Any] = {"textcoords": "offset points", "fontsize": 9.5}
     plane.plot([0.0, X0], [0.0, 0.0], color="black", marker="+", linestyle="none", markersize=9.0)
@@ -377,7 +365,6 @@ def _label(plane: Axes) -> None:
 
 
 def draw_eigenvalues(data: ByEngine) -> Figure:
-    """Draw real and imaginary parts of the eigenvalues over the friction force."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]
     for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):

@@ -85,7 +85,6 @@ AT_SPEEDS = {f"{speed:g}": speed for speed in CLAIM_SPEEDS}
     each=AT_SPEEDS,
 )
 def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Measured:
-    """Compare the mean of the whirl with (18) as printed, within the theoretical error."""
     pin = pin_at(speed)
     means = over_speed(engine, speeds)
     share = 100.0 * error_of_eq18(pin) / float(np.hypot(*first_order_whirl_shift(pin)))
@@ -111,7 +110,6 @@ def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Mea
     each=AT_SPEEDS,
 )
 def response(engine: Engine, speed: float) -> Measured:
-    """Compare mean and second harmonic over X0, extrapolated to X0 = 0, with the solution of the linear problem."""
     pin = pin_at(speed, OFFSETS[-1])
     found = over_offset(engine, speed)
     coarser, extrapolated = towards_zero(found.value / np.array(OFFSETS)[:, np.newaxis])
@@ -134,7 +132,6 @@ def response(engine: Engine, speed: float) -> Measured:
     each=AT_SPEEDS,
 )
 def order(engine: Engine, speed: float) -> Measured:
-    """Compare the observed order of the error of the exact first-order response with 3."""
     means = over_offset(engine, speed)
     gaps = np.array(
         [
@@ -167,7 +164,6 @@ def order(engine: Engine, speed: float) -> Measured:
     each=AT_SPEEDS,
 )
 def limit(engine: Engine, speed: float) -> Measured:
-    """Compare the relative error of (18), extrapolated to X0 = 0, with its limit."""
     pin = pin_at(speed, OFFSETS[-1])
     means = over_offset(engine, speed)
     relative = np.array(
@@ -241,7 +237,7 @@ def _complex(point: FloatArray) -> complex:
     return complex(point[0], point[1])
 
 
-# --- Figure: Fig. 4 redrawn, and the errors of both formulas over the offset
+# --- Figure
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (
@@ -252,7 +248,6 @@ MARKERS = dict(zip(CLAIM_SPEEDS, "os^", strict=True))
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the mean of the whirl over the speed, and its distance from both formulas over the offset."""
     figure, (left, right) = new_figure(ncols=2)
     _draw_shift(left, data)
     _draw_gaps(right, data)

@@ -56,11 +56,10 @@ ON_THE_WAY = 1e-8
 
 
 def with_load(load: float) -> PinOnDisc:
-    """Return the pin with μN = ``load`` in N."""
     return replace(FIG6, friction_force=float(load))
 
 
-# --- The branches of Fig. 6: equilibria and stick by formulas, whirls and cycles by continuation with the reference
+# --- The branches of Fig. 6
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
@@ -136,8 +135,7 @@ STUDY = Study.beside(
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
-    """Compare the positions of rest with (3) at several late times; a single state may be right by chance."""
-    times = np.linspace(590.0, 600.0, 11)
+    times = np.linspace(590.0, 600.0, 11)  # a single state may be right by chance
     found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
     # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).
@@ -170,7 +168,6 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
     swept=("friction_force",),
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
-    """Compare period and extent of the whirls with those of the reference."""
     first = [whirl_of(engine, with_load(load), TOLERANCE) for load in loads]
 
     def period_and_extent(tolerance: float) -> FloatArray:
@@ -211,7 +208,6 @@ def _reference_whirl(load: float) -> Orbit:
     named={"least load of a whirl": 0},
 )
 def whirl_ends(engine: Engine) -> Measured:
-    """Compare the smallest μN of the branch with the μN of a unit multiplier."""
     fold = last_whirl(
         with_load(0.08), simulate=engine.simulate, tolerance=WORKING, precision=engine.precision
     )
@@ -245,7 +241,6 @@ def whirl_ends(engine: Engine) -> Measured:
     "whirl slide for the whole 100 s?",
 )
 def coexist(engine: Engine) -> Measured:
-    """Check that one start sticks and the other slides all the time."""
     stuck = 0.5 * sticking_radius(FIG6)
     orbit = whirl_orbit(FIG6)
     starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
@@ -271,7 +266,6 @@ def coexist(engine: Engine) -> Measured:
     "orbit.",
 )
 def cycle_exists(engine: Engine) -> Measured:
-    """Compare one turn from a state on the cycle with the reference."""
     orbit = cycle()
     times = np.linspace(0.0, orbit.period, 65)
     found = refined(
@@ -300,7 +294,6 @@ def cycle_exists(engine: Engine) -> Measured:
     "twice the deviation.",
 )
 def cycle_attracts(engine: Engine) -> Measured:
-    """Compare the ratio of successive distances from the cycle with the multiplier."""
     orbit = cycle()
     found = refined(lambda tolerance: _decay_in_a_turn(engine, orbit, tolerance, CYCLE_DEVIATION), TOLERANCE)
     # For central differences, the error is a third of the change at twice the deviation.
@@ -329,11 +322,10 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
     return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
 
 
-# --- Figure of the branches of Fig. 6
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the branches over the friction force, and an enlarged view near the limit (5)."""
     figure, (whole, near) = new_figure(ncols=2, width=10.0, height=4.2)
     for panel in (whole, near):
         if "theory" in data:

@@ -17,7 +17,7 @@ from reference_model import simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of discs and throws, and closed forms of their deceleration.
+# --- Parameters
 
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
 
@@ -40,13 +40,13 @@ class Throw:
 
     Parameters
     ----------
-    name : str
+    name
         Label.
-    inertia : float
+    inertia
         J/(mR²).
-    sliding, rim : float
+    sliding, rim
         Initial U and W in m/s; W has the sign of the spin.
-    force, moment : float
+    force, moment
         Friction over μN and μNR while the disc moves.
 
     """
@@ -121,7 +121,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times of a full disc, which a regularised law need not bring to rest."""
 
 
-# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part.
+# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part
 
 EPSILON = 100.0
 """Regularisation ε of the part over tolerance and speed; its effect on a sliding disc is of order ε²."""
@@ -144,7 +144,7 @@ def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
 
     epsilon, state, states = EPSILON * tolerance * SPEED, throw.state, [throw.state]
     for span in np.diff(times).tolist():
-        model = exudyn_models.build_disc_on_disc(throw.disc(), state, regularisation=epsilon, friction=full)
+        model = exudyn_models.build_model(throw.disc(), state, regularisation=epsilon, friction=full)
         steps = solve(model, 0.0, span, integrator="DOPRI5", step=span, tolerance=0.01 * tolerance)
         state = steps.states[-1]
         states.append(state)
@@ -240,7 +240,6 @@ def seen(states: FloatArray) -> FloatArray:
     swept=("polar_inertia",),
 )
 def on_ring(engine: Engine) -> Measured:
-    """Compare throws of a ring with uniform deceleration."""
     return compared(in_engine(engine), RING, TO_REST, "ring")
 
 
@@ -254,7 +253,6 @@ def on_ring(engine: Engine) -> Measured:
     each={str(points): points for points in POINTS},
 )
 def on_points(engine: Engine, points: int) -> Measured:
-    """Compare throws of a disc on points with uniform deceleration."""
     return compared(in_engine(engine, points), POINTS[points], TO_REST, f"{points} points", points=points)
 
 
@@ -269,12 +267,11 @@ def on_points(engine: Engine, points: int) -> Measured:
     swept=("polar_inertia",),
 )
 def on_full_disc(engine: Engine) -> Measured:
-    """Compare throws of a full disc with uniform deceleration."""
     way = way_of(engine)
     return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
 
 
-# --- Figure of the thrown discs: speeds of centre and rim over time.
+# --- Figure
 
 TAKEN = {
     "ring": (r"slides: $\mu N$", r"spins: $\mu NR$", r"both: $\frac{2}{\pi}$ of each"),
@@ -290,7 +287,6 @@ DASHES = ("-", "--", (0.0, (1.0, 1.5)))
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the speeds over time, on a ring and on a full disc."""
     if not data:
         return {}
     figure, panels = new_figure(ncols=2, width=9.6, height=3.8, sharey=True)

@@ -29,9 +29,9 @@ def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: 
         there counts.
     end : array of shape (...)
         The quantity at the end.
-    rate : float
+    rate
         Decay rate r in 1/s of the slowest mode.
-    delay : float
+    delay
         Time in s.
 
     """
@@ -71,15 +71,15 @@ def settled(
 
     Parameters
     ----------
-    track : callable
+    track
         ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` except the first, which is 0.
-    duration, delay : float
+    duration, delay
         Duration of the simulation, and time before its end that yields the remaining transient, in s.
-    period : float
+    period
         Period of the transient's oscillation, in s.
-    rate : float
+    rate
         Decay rate of the slowest mode, in 1/s.
-    tolerance : float
+    tolerance
         Tolerance of the simulation.
 
     """

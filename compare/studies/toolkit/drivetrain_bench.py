@@ -65,7 +65,6 @@ def parameters_of(
 
 
 def facings(car: Drivetrain, rings: int = 16) -> Annulus:
-    """Return the reference's friction law for the clutch."""
     return Annulus(car.inner_radius, car.outer_radius, rings)
 
 
@@ -94,11 +93,11 @@ class Operation:
 
     Parameters
     ----------
-    speed, slip : float
+    speed, slip
         Speed of the flywheel and slip of the disc, in rad/s.
-    torque : float
+    torque
         Transmitted torque in N m.
-    offset : float
+    offset
         X0 in m.
 
     """
@@ -179,19 +178,17 @@ def centre(disc: FloatArray) -> ComplexArray:
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
-# --- Equilibrium and whirl of the reference's equivalent disc.
+# --- Equilibrium and whirl of the reference's equivalent disc
 
 RINGS = 16
 """Number of rings of the reference's annulus."""
 
 
 def rest_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningEquilibrium:
-    """Return the reference's equilibrium."""
     (equilibrium,) = self_centred_equilibria(operation.reduced(car), facings(car, rings))
     return equilibrium
 
 
 def whirl_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningWhirl:
-    """Return the reference's whirl."""
     (whirl,) = whirls(operation.reduced(car), facings(car, rings))
     return whirl

@@ -14,7 +14,7 @@ from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTer
 from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Shared by the parts of the study of Fig. 11: initial state, source, and (19) as plain equations.
+# --- Shared by the parts of the study of Fig. 11
 
 RING = FIG11
 
@@ -54,7 +54,7 @@ def integrated(
     return np.asarray(run.y.T)
 
 
-# --- Parameter planes around the disc of Fig. 11, and the curves that bound its motions there.
+# --- Parameter planes around the disc of Fig. 11, and the curves that bound its motions there
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),

@@ -51,7 +51,7 @@ class Slowing:
 
     Parameters
     ----------
-    inertia : float
+    inertia
         c = J/(mR²), between 1/2 and 2.
 
     """

@@ -11,7 +11,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Initial states of a pin that sticks to the disc, and its release.
+# --- Initial states of a pin that sticks to the disc, and its release
 
 
 def safest_angle(pin: PinOnDisc) -> float:
@@ -40,7 +40,7 @@ def first_release(run: Trajectory) -> float:
     return first.end if len(run.phases) > 1 else math.inf
 
 
-# --- The pin's whirl as a periodic orbit of an engine.
+# --- The pin's whirl as a periodic orbit of an engine
 
 SAMPLES = 64
 """Number of states per revolution."""

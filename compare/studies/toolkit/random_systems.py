@@ -15,12 +15,10 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 
 def between(random: Generator, low: float, high: float) -> float:
-    """Draw from a log-uniform distribution."""
     return float(np.exp(random.uniform(math.log(low), math.log(high))))
 
 
 def sign(random: Generator) -> float:
-    """Draw −1 or 1."""
     return float(random.choice((-1.0, 1.0)))
 
 

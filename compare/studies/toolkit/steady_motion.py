@@ -49,11 +49,11 @@ class SteadyMotion:
     ----------
     states : array of shape (SAMPLES + 1, 6)
         States at equidistant times over one period, in axes that rotate with the centre.
-    period : float
+    period
         Period in s.
-    frequency : float
+    frequency
         Mean angular velocity of the centre about the axis, in rad/s; zero if it rests.
-    spin : float
+    spin
         Mean spin in rad/s.
 
     """
@@ -84,13 +84,11 @@ def steady_motion(
 
     Parameters
     ----------
-    engine : Engine
-        The engine.
-    disc : DiscOnDisc
+    disc
         The parameters.
     guess : array of shape (6,)
         State near the motion; y = 0 without offset.
-    tolerance : float
+    tolerance
         Tolerance of the engine.
 
     """
@@ -164,17 +162,15 @@ def mode_growth(
 
     Parameters
     ----------
-    engine : Engine
-        The engine.
-    disc : DiscOnDisc
+    disc
         The parameters, on a continuous ring.
-    motion : SpinningEquilibrium or SpinningWhirl
+    motion
         The steady motion.
     displacement : array of shape (6,)
         Initial deviation from the motion.
-    duration : float
+    duration
         Duration of the simulations, in s.
-    tolerance : float
+    tolerance
         Tolerance of the engine.
 
     """
@@ -200,7 +196,7 @@ def mode_growth(
     return complex(growth[1] - growth[0], turn[1] - turn[0]) / duration
 
 
-# --- The self-centred equilibrium of a disc against the friction force, and its end.
+# --- The self-centred equilibrium of a disc against the friction force, and its end
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:

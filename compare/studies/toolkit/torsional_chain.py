@@ -34,11 +34,11 @@ class Harmonic:
 
     Parameters
     ----------
-    amplitude : float
+    amplitude
         Amplitude in N m.
-    rate : float
+    rate
         Angular frequency in rad/s, >= 0.
-    phase : float
+    phase
         Phase in rad.
 
     """
@@ -78,7 +78,7 @@ class Chain:
         External torque on each rotor.
     capacities : sequence of n - 1 Pieces
         Torque of each clutch during slip, >= 0; the clutch is open if the amplitude is 0.
-    static_ratio : float
+    static_ratio
         Ratio of the holding capacity to that torque, >= 1.
 
     """

@@ -74,7 +74,7 @@ class Cluster:
 
     Parameters
     ----------
-    address : str
+    address
         Address of the scheduler, "tcp://host:port".
 
     Raises

@@ -48,7 +48,7 @@ def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motio
     return found
 
 
-class Known(NamedTuple):
+class TheoryMotion(NamedTuple):
     """A motion of the theory: its kind, least and largest radius in m, and stability."""
 
     meaning: str
@@ -57,7 +57,7 @@ class Known(NamedTuple):
     stable: bool
 
 
-One = TypeVar("One", Motion, Known)
+One = TypeVar("One", Motion, TheoryMotion)
 
 
 def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> list[dict[int, One]]:

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from compare.claims import shares
 from compare.claims.shares import Share
 from compare.sweep.arrays import Chunks, Group, Large, Round
-from compare.sweep.compute.known import curves, known_branches
 from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
+from compare.sweep.compute.theory import curves, theory_branches
 from compare.sweep.plan import BASES, Basin, Continuation, Map, Plan, RandomBasin, Uncertainty
 from compare.sweep.quantities import RESULTS, Axis, components, units
 from compare.sweep.refinement import Grid
@@ -280,12 +280,12 @@ def _along(
 
 
 def branches_of(plan: Continuation) -> xr.Dataset:
-    """Return the motions from formulas and continuation; ``known_stable`` is 1 for stable ones, else 0."""
-    found = known_branches(plan)
+    """Return the motions from formulas and continuation; ``theory_stable`` is 1 for stable ones, else 0."""
+    found = theory_branches(plan)
     meanings = [next(iter(branch.values())).meaning for branch in found]
     return xr.Dataset(
-        _along(plan, "known", found, ("least", "largest", "stable")),
-        coords=_coordinates(plan.system, (plan.x,)) | {"known": np.array(meanings, dtype=str)},
+        _along(plan, "theory", found, ("least", "largest", "stable")),
+        coords=_coordinates(plan.system, (plan.x,)) | {"theory": np.array(meanings, dtype=str)},
     )
 
 

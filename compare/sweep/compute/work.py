@@ -92,7 +92,7 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     return Plain(state, int(found))
 
 
-# --- Ends of trajectories of the plain reference, for the check of a sweep's random sample.
+# --- Ends of trajectories of the plain reference, for the check of a sweep's random sample
 
 WATCHED = 0.5
 """Share of a trajectory, at its end, that decides the end state."""

@@ -1,11 +1,10 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
-Both are shares of μN for the slip u of the disc's centre and the velocity W·t of the rim, W = R·(φ̇ − ω) of either
-sign: a resistance to slip of the centre and one to slip of the rim (the moment over R). Multiplied by the two speeds
-they give the mean slip speed on the circle, which is the power of friction per newton.
+Both are shares of μN for the slip u of the centre and the velocity W·t of the rim, W = R·(φ̇ − ω): a resistance to
+slip of the centre and one to slip of the rim (the moment over R). Times the speeds they give the mean slip speed P.
 
 The ring's are complete elliptic integrals by the arithmetic-geometric mean. With k the smaller over the larger of U =
-|u| and |W|, with a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
+|u| and |W|, a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
@@ -21,7 +20,7 @@ from typing import Any
 import numpy as np
 from numba.extending import overload
 
-from reference_model.ensemble.core.jit import INLINED, inlined
+from reference_model.ensemble.core.jit import INLINED, generated, inlined
 
 LEAST = 1e-300
 """Lower bound on speeds in denominators."""
@@ -30,10 +29,7 @@ NEAREST = 1e-16
 """Smallest relative distance from U = |W| that makes a difference."""
 
 SMALL = 1e-4
-"""k² below which the terms after c₁² in the sum over k² are less than rounding.
-
-Their own rounding would be larger.
-"""
+"""k² below which the terms after c₁² in the sum over k² are less than their own rounding."""
 
 HALVINGS = 7
 """Number of means of a and g; both then agree to rounding for all k."""
@@ -81,38 +77,33 @@ def points_shares(
 ) -> tuple[float, float, float, float]:
     """Return the resistances along x, y and the rim, and the mean slip speed, of points on a ring.
 
-    ``around`` contains the unit vectors to the points, (cos, sin) of each in sequence, as a tuple whose length is
-    known when the sum is unrolled. A point at rest contributes nothing. Compiled code only.
+    ``around`` contains (cos, sin) of each point in sequence. A point at rest contributes nothing. Compiled code only.
     """
     raise NotImplementedError
 
 
 @overload(points_shares, jit_options=INLINED, strict=False)
 def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any]:
-    lines = ["def shares(ux, uy, rim, around):", "    fx = fy = moment = power = 0.0"]
+    lines = ["fx = fy = moment = power = 0.0"]
     for i in range(0, len(around), 2):
         lines += [
-            f"    vx, vy = ux - rim * around[{i + 1}], uy + rim * around[{i}]",
-            "    speed = math.sqrt(vx * vx + vy * vy)",
-            "    inverse = 1.0 / max(speed, LEAST)",
-            "    vx, vy = vx * inverse, vy * inverse",
-            "    fx, fy, power = fx + vx, fy + vy, power + speed",
-            f"    moment = moment + around[{i}] * vy - around[{i + 1}] * vx",
+            f"vx, vy = ux - rim * around[{i + 1}], uy + rim * around[{i}]",
+            "speed = math.sqrt(vx * vx + vy * vy)",
+            f"inverse = 1.0 / max(speed, {LEAST!r})",
+            "vx, vy = vx * inverse, vy * inverse",
+            "fx, fy, power = fx + vx, fy + vy, power + speed",
+            f"moment = moment + around[{i}] * vy - around[{i + 1}] * vx",
         ]
     share = 1.0 / (len(around) // 2)
-    lines.append(f"    return {share!r} * fx, {share!r} * fy, {share!r} * moment, {share!r} * power")
-    namespace: dict[str, Any] = {"math": math, "LEAST": LEAST}
-    exec("\n".join(lines), namespace)
-    function: Callable[..., Any] = namespace["shares"]
-    return function
+    lines.append(f"return {share!r} * fx, {share!r} * fy, {share!r} * moment, {share!r} * power")
+    return generated("ux, uy, rim, around", lines)
 
 
 @inlined
 def turned(angle: float) -> tuple[float, float]:
     """Return cosine and sine of an angle of up to about 1e6 rad, to rounding, without a branch.
 
-    Quarter turns are subtracted in three parts, the first two with trailing zeros (Cody and Waite). Taylor series
-    give the rest, below π/4.
+    Quarter turns are subtracted in three parts (Cody and Waite). Taylor series give the rest, below π/4.
     """
     quarters = np.rint(angle * (2.0 / math.pi))
     x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]

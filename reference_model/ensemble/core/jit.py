@@ -6,7 +6,8 @@ nothing may be reordered or contracted: ``fastmath`` stays off, although FMA wou
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -37,31 +38,36 @@ def inlined(function: Function) -> Function:
 def scalar(function: Function) -> Function:
     """Compile ``function`` as one that its callers call, because it is large or has several callers.
 
-    numba compiles it again with each function that calls it, directly or indirectly. So in a chain of calls only some
-    functions should be scalar, and the others ``written_out``.
+    It is compiled again with each direct or indirect caller. So in a chain of calls only some functions should be
+    scalar, and the others ``written_out``.
     """
     return cast(Function, extending.register_jitable(**PART)(function))
 
 
 def written_out(function: Function) -> Function:
-    """Insert ``function`` into its only caller before numba compiles the caller, with the functions passed to it.
-
-    So it is compiled once. A called function would be compiled separately and then again with its caller.
-    """
+    """Insert ``function`` into its only caller before numba compiles the caller, with the functions passed to it."""
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 
-def outermost(function: Callable[..., None]) -> CompiledOnce:
+def called_from_python(function: Callable[..., None]) -> CompiledOnce:
     """Compile ``function`` as one that Python calls."""
     return CompiledOnce(function, SOURCES)
 
 
+def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
+    """Return a function with these ``arguments`` and ``lines``, for code that must be unrolled before compilation."""
+    namespace: dict[str, Any] = {"math": math}
+    exec("\n    ".join([f"def function({arguments}):", *lines]), namespace)
+    function: Callable[..., Any] = namespace["function"]
+    return function
+
+
 @extending.intrinsic  # type: ignore[untyped-decorator]
 def wide_vectors(typing: Any) -> Any:
-    """Let the calling function use the widest vectors of the processor.
+    """Let the calling function use the widest vectors of the processor, without effect on results.
 
     LLVM uses 256 bits on many processors that have 512, because wide vectors once reduced their clock rate. Here they
-    gain more than that (figures: ``benchmarks/ensemble.py``). Results do not depend on the width.
+    gain more than that (figures: ``benchmarks/ensemble.py``).
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

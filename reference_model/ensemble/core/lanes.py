@@ -1,13 +1,13 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
 A processor takes a step in eight lanes in the time of one. One record holds all numbers of all lanes, each number in
-its own row (:mod:`records`), so a loop over the lanes that loads, steps and stores becomes vector instructions. For
-this the loop needs its own function, and may call only inlined functions of numbers and tuples. The step is also
-compiled for one lane, with bit-identical results, because a single trajectory would pay for all lanes.
+its own row (:mod:`records`), so a loop over the lanes becomes vector instructions. For this the loop needs its own
+function, and may call only inlined functions of numbers and tuples. The step is also compiled for one lane, with
+bit-identical results, because a single trajectory would pay for all lanes.
 
 A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
-release, the end), which scalar code handles lane by lane. Lanes are independent: the result of a trajectory is the
-same bit by bit wherever and next to whichever others it runs.
+release, the end), which scalar code handles lane by lane. The result of a trajectory is the same bit by bit wherever
+and next to whichever others it runs.
 """
 
 from __future__ import annotations
@@ -24,11 +24,7 @@ from reference_model.systems import FloatArray
 
 
 class _Lanes(Protocol):
-    """Required fields of the record of all lanes.
-
-    They are the current motion ``now``, the motion after the ``trial`` step, and a flag that is positive if a lane
-    needs attention.
-    """
+    """The motion ``now`` and after the ``trial`` step, and a flag that is positive if a lane needs attention."""
 
     now: Any
     trial: Any
@@ -38,66 +34,59 @@ class _Lanes(Protocol):
 Lanes = TypeVar("Lanes", bound=_Lanes)
 Memory = TypeVar("Memory")
 Task = TypeVar("Task")
-Aims = TypeVar("Aims")
+Settings = TypeVar("Settings")
 Results = TypeVar("Results")
 Kind = TypeVar("Kind")
 
 
+Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
+"""Writes the start of a trajectory, given by its number, to the trial of a lane; returns whether it has ended."""
+Advance = Callable[[Lanes, Kind], None]
+"""Makes a trial step in all lanes, or in the first one only."""
+HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
+"""Handles a lane with a flag and may change its trial; returns whether the trajectory has ended."""
+Store = Callable[[Lanes, Memory, int, Results], None]
+"""Writes the result of a trajectory from the trial of its lane."""
+Idle = Callable[[Lanes, int], None]
+"""Fills a lane with harmless numbers."""
+
+
 @written_out
 def run(
-    load: Callable[[Lanes, Memory, int, int, Task, Aims], bool],
-    advance: Callable[[Lanes, Kind], None],
-    alone: Callable[[Lanes, Kind], None],
-    attend: Callable[[Lanes, Memory, int, Aims], bool],
-    store: Callable[[Lanes, Memory, int, Results], None],
-    idle: Callable[[Lanes, int], None],
-    room: NDArray[Any],
+    load: Load[Lanes, Memory, Task, Settings],
+    advance: Advance[Lanes, Kind],
+    advance_alone: Advance[Lanes, Kind],
+    handle_flag: HandleFlag[Lanes, Memory, Settings],
+    store: Store[Lanes, Memory, Results],
+    idle: Idle[Lanes],
+    record: NDArray[Any],
     memory: NDArray[Any],
     first: int,
     last: int,
     kind: Kind,
     task: Task,
-    aims: Aims,
+    settings: Settings,
     results: Results,
 ) -> None:
-    """Run the trajectories ``first`` to ``last`` (excluded) of ``task`` to their ends.
+    """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    It has many arguments because compiled code has no methods: all functions of a kind of system are passed in.
-
-    Parameters
-    ----------
-    load, advance, alone, attend, store, idle : compiled functions
-        ``load(lanes, memory, lane, number, task, aims)`` writes the start of a trajectory to the trial of a lane.
-        ``advance(lanes, kind)`` makes a trial step in all lanes and ``alone`` in the first one only. ``attend(lanes,
-        memory, lane, aims)`` handles a lane with a flag and may change its trial. ``store(lanes, memory, lane,
-        results)`` writes the result from the trial. ``idle(lanes, lane)`` fills a lane with harmless numbers.
-        ``load`` and ``attend`` return whether the trajectory has ended.
-    room : array of shape (1,)
-        The record of all lanes, initially zeros.
-    memory : array of shape (LANES,)
-        Records of scalar code, for data that no vector needs.
-    first, last : int
-        Numbers of trajectories.
-    kind
-        Properties of the system that must be known when ``advance`` is compiled, as a type.
-    task, aims, results : tuples
-        Parameters and starts; the settings for ``attend``, which is called often and should receive few arrays; the
-        output arrays.
-
+    Compiled code has no methods, so all functions of a kind of system are arguments. ``record``, shape (1,), contains
+    all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both are zeros. ``kind`` contains the
+    properties that the compiler must know. ``settings`` is passed often and should contain few arrays.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
     number = first
     active = 0
     for lane in range(LANES):
-        idle(room[0], lane)
+        idle(record[0], lane)
     while True:
-        # The record is taken from its room in every round, because it exists only while something refers to the room.
-        lanes = room[0]
+        # Taken again in every round, because the lanes exist only while something refers to the array.
+        lanes = record[0]
         for lane in range(LANES):
             ended = False
             if busy[lane] and lanes.flag[lane] > 0.0:
-                ended = attend(lanes, memory[lane], lane, aims)
+                ended = handle_flag(lanes, memory[lane], lane, settings)
             while ended or (not busy[lane] and number < last):
                 if busy[lane]:
                     store(lanes, memory[lane], lane, results)
@@ -106,7 +95,7 @@ def run(
                 if number == last:
                     idle(lanes, lane)
                     break
-                ended = load(lanes, memory[lane], lane, number, task, aims)
+                ended = load(lanes, memory[lane], lane, number, task, settings)
                 busy[lane] = True
                 active += 1
                 number += 1
@@ -114,7 +103,7 @@ def run(
             break
         _accept(lanes)
         if last - first == 1:
-            alone(lanes, kind)
+            advance_alone(lanes, kind)
         else:
             advance(lanes, kind)
 

@@ -17,8 +17,8 @@ CREEP = 0.1
 class PinLaw(NamedTuple):
     """Constants of a pin, divided by its mass, scaled so that motion is of order one.
 
-    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0. ``stretching`` is
-    s₀; without friction nothing rests, and ``free`` = 1 keeps time unstretched.
+    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0, ``stretching`` s₀.
+    ``free`` = 1 keeps time unstretched without friction, where nothing rests.
     """
 
     stiffness: float

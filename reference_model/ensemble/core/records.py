@@ -1,9 +1,9 @@
 """Records: the data of a lane, by name.
 
-A record is declared as a class with annotations and laid out from them. So code reads ``memory.level`` and
-``lanes.now.state.x[lane]``, and a type checker knows these names. For the compiler a record is a single address, and
-all fields have constant offsets from it. So the compiler sees that no two rows overlap and can vectorise loops over
-lanes. With an array of rows or a tuple of arrays it could not, and such loops would take four times as long.
+A record is declared as a class with annotations, so code reads ``lanes.now.state.x[lane]``, and a type checker knows
+these names. For the compiler all fields have constant offsets from one address. So it sees that no two rows overlap
+and can vectorise loops over lanes. With an array of rows or a tuple of arrays such loops would take four times as
+long.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from reference_model.ensemble.core.jit import INLINED, PART
+from reference_model.ensemble.core.jit import INLINED, PART, generated
 from reference_model.systems import FloatArray
 
 LANES = 16
@@ -71,7 +71,7 @@ def put(rows: Rows[Numbers], lane: int, numbers: Numbers | tuple[float, ...]) ->
 
 
 def fill(record: Any, numbers: Any) -> None:
-    """Store the numbers of a named tuple, or of a similar record, in a record; compiled code only."""
+    """Store the numbers of a named tuple or of a similar record; compiled code only."""
     raise NotImplementedError
 
 
@@ -86,7 +86,7 @@ def clear(record: Any) -> None:
 @overload(at, jit_options=INLINED, strict=False)
 def _at(rows: types.Record, lane: Any) -> Callable[..., Any]:
     values = "".join(f"rows.{name}[lane], " for name in rows.fields)
-    return _written_out("rows, lane", [f"return ({values})"])
+    return generated("rows, lane", [f"return ({values})"])
 
 
 @overload(put, jit_options=INLINED, strict=False)
@@ -94,17 +94,17 @@ def _put(rows: types.Record, lane: Any, numbers: Any) -> Callable[..., Any]:
     named = isinstance(numbers, types.BaseNamedTuple)
     values = [f"numbers.{name}" if named else f"numbers[{i}]" for i, name in enumerate(rows.fields)]
     lines = [f"rows.{name}[lane] = {value}" for name, value in zip(rows.fields, values, strict=True)]
-    return _written_out("rows, lane, numbers", lines)
+    return generated("rows, lane, numbers", lines)
 
 
 @overload(fill, jit_options=PART, strict=False)
 def _fill(record: types.Record, numbers: Any) -> Callable[..., Any]:
-    return _written_out("record, numbers", [f"record.{name} = numbers.{name}" for name in record.fields])
+    return generated("record, numbers", [f"record.{name} = numbers.{name}" for name in record.fields])
 
 
 @overload(clear, jit_options=PART, strict=False)
 def _clear(record: types.Record) -> Callable[..., Any]:
-    return _written_out("record", list(_zeros("record", record)))
+    return generated("record", list(_zeros("record", record)))
 
 
 def _zeros(place: str, record: types.Record) -> Iterator[str]:
@@ -115,10 +115,3 @@ def _zeros(place: str, record: types.Record) -> Iterator[str]:
             yield from (f"{place}.{name}[{i}] = 0.0" for i in range(field.type.shape[0]))
         else:
             yield f"{place}.{name} = 0"
-
-
-def _written_out(arguments: str, lines: list[str]) -> Callable[..., Any]:
-    namespace: dict[str, Any] = {}
-    exec("\n    ".join([f"def written({arguments}):", *lines]), namespace)
-    function: Callable[..., Any] = namespace["written"]
-    return function

@@ -1,8 +1,7 @@
 """Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
 
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff. But the motion is a smooth function of
-time, and an implicit method for all nodes of a step (:mod:`.core.stepping.implicit`) follows it until an explicit one
-can.
+Slip grows like ½κt² with its direction slaved to the pull, which is stiff. An implicit method for all nodes of a step
+(:mod:`.core.stepping.implicit`) follows it until an explicit one can.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from reference_model.ensemble.core.stepping.implicit import (
     PLACES,
     SERIES,
     collocate_ring,
-    place_after,
+    position_after,
 )
 from reference_model.ensemble.core.stepping.linear import length_of, zeros
 from reference_model.motion.slip.breakaway import FIRST_STEP, LEAST_STEP, STIFF
@@ -62,7 +61,7 @@ def grown(
             if step < LEAST_STEP:
                 return z, 0j, 0.0, 0.0, 0.0, 0.0
             continue
-        there = place_after(z, w, step, law)
+        there = position_after(z, w, step, law)
         goes = (complex(w[-1, 0], w[-1, 1]) * there.conjugate()).real
         if goes * outward < 0.0:
             break  # ends at an extreme of the radius, which must be recorded

@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import Checkpoints, from_the_start, room_for
+from reference_model.ensemble.checkpoints import Checkpoints, empty_checkpoints, from_the_start
 from reference_model.ensemble.chunks import in_chunks
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.disc.kernel import PARAMETERS, DiscTask, run_points, run_rings
-from reference_model.ensemble.disc.memory import DiscAims
-from reference_model.ensemble.disc.trapping import known_regions, no_regions
+from reference_model.ensemble.disc.kernel import PARAMETERS, run_points, run_rings
+from reference_model.ensemble.disc.memory import DiscSettings
+from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Ensemble, Results
-from reference_model.ensemble.parameters import parameter_table
+from reference_model.ensemble.parameters import Task, parameter_table
 from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
@@ -44,10 +44,10 @@ def simulate_discs(
 ) -> Ensemble:
     """Simulate ``n`` discs like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     table = parameter_table(disc, PARAMETERS, varied)
-    aims = _aims(disc, tolerance, early_end, no_regions() if varied else known_regions(disc))
+    settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
     results = Results.empty(n, disc.state_size)
     _run_through(
-        disc, DiscTask(table, starts, from_the_start(), np.full(1, duration)), aims, results, varied,
+        disc, Task(table, starts, from_the_start(), np.full(1, duration)), settings, results, varied,
         tolerance, threads,
     )  # fmt: skip
     return results.ensemble(varied.get("friction_force", disc.friction_force))
@@ -56,20 +56,20 @@ def simulate_discs(
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a disc from ``state`` on."""
     table = parameter_table(disc, PARAMETERS)
-    aims = _aims(disc, tolerance, False, no_regions())
+    settings = _settings(disc, tolerance, False, no_regions())
 
     def one(
         starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
     ) -> Results:
         results = Results.empty(1, disc.state_size)
-        _run(DiscTask(table, starts, paces, durations), aims._replace(checkpoints=checkpoints), results)
+        _run(Task(table, starts, paces, durations), settings._replace(checkpoints=checkpoints), results)
         return results
 
     def many(
         starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
     ) -> Results:
         results = Results.empty(len(starts), disc.state_size)
-        _run_through(disc, DiscTask(table, starts, paces, durations), aims, results, {}, tolerance)
+        _run_through(disc, Task(table, starts, paces, durations), settings, results, {}, tolerance)
         return results
 
     t = 0.0
@@ -83,42 +83,42 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
             t, state = float(motion.times[-1]), motion.at_end
 
 
-def _aims(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[Any]) -> DiscAims:
+def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDArray[Any]) -> DiscSettings:
     points = disc.contact_points or 0
     around = tuple(f(2.0 * math.pi * i / points) for i in range(points) for f in (math.cos, math.sin))
-    nowhere = room_for(0, disc.state_size)
-    return DiscAims(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
+    nowhere = empty_checkpoints(0, disc.state_size)
+    return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
-def _run(task: DiscTask, aims: DiscAims, results: Results, threads: int = 1) -> None:
+def _run(task: Task, settings: DiscSettings, results: Results, threads: int = 1) -> None:
     """Run all trajectories as far as compiled code can follow them."""
-    kernel = run_points if aims.around else run_rings
-    in_chunks(lambda first, last: kernel(task, aims, results, first, last), len(results.ends), threads)
+    kernel = run_points if settings.around else run_rings
+    in_chunks(lambda first, last: kernel(task, settings, results, first, last), len(results.ends), threads)
 
 
 def _run_through(
     disc: DiscOnDisc,
-    task: DiscTask,
-    aims: DiscAims,
+    task: Task,
+    settings: DiscSettings,
     results: Results,
     varied: Mapping[str, FloatArray],
     tolerance: float,
     threads: int = 1,
 ) -> None:
     """Run all trajectories to their ends; the plain reference continues those handed over in between."""
-    _run(task, aims, results, threads)
+    _run(task, settings, results, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
     handed = np.flatnonzero(results.ends == HANDED_OVER)
     while handed.size:
         for i in handed:
             one = replace(disc, **{name: float(values[i]) for name, values in varied.items()})  # type: ignore[arg-type]
-            _take_on(one, results, int(i), float(durations[i]), tolerance, aims.early)
+            _continue_until_slip(one, results, int(i), float(durations[i]), tolerance, settings.early)
         handed = handed[results.ends[handed] == HANDED_OVER]
         if handed.size:
             again = Results.empty(len(handed), disc.state_size)
             left = durations[handed] - results.times[handed]
             table = task.parameters[handed] if varied else task.parameters
-            _run(DiscTask(table, results.states[handed], from_the_start(), left), aims, again, threads)
+            _run(Task(table, results.states[handed], from_the_start(), left), settings, again, threads)
             again.times[:] += results.times[handed]
             again.steps[:] += results.steps[handed]
             results.ends[handed], results.times[handed] = again.ends, again.times
@@ -129,7 +129,7 @@ def _run_through(
     results.times[at_end] = durations[at_end]
 
 
-def _take_on(
+def _continue_until_slip(
     disc: DiscOnDisc, results: Results, i: int, duration: float, tolerance: float, early_end: bool
 ) -> None:
     """Continue a trajectory with the plain reference until all points slip again, or to its end."""
@@ -157,15 +157,15 @@ def _through_rest(
 ) -> Iterator[tuple[Trajectory, bool]]:
     """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
-    It comes in parts, which include the requested ``times`` they contain, each with whether the disc is permanently
-    stuck. It is if it has been stuck for a turn of the master disc.
+    Each part includes the requested ``times`` within it, and whether the disc is permanently stuck. It is if it has
+    been stuck for a turn of the master disc.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration
-    asked, span = np.asarray(times), (1.0 + 2.0 * LEAST_SLIP) * turn
+    requested, span = np.asarray(times), (1.0 + 2.0 * LEAST_SLIP) * turn
     while t < duration:
         end = t + span if duration - (t + span) > ROUNDED * duration else duration
-        inside = asked[(asked > t) & (asked < end)]
+        inside = requested[(requested > t) & (requested < end)]
         motion = simulate_with(
             Thresholds(), disc, state, [t, *inside, end], tolerance=tolerance, slipping=LEAST_SLIP * turn
         )

@@ -3,16 +3,13 @@
 Self-centred
     The state is checked once per free period. It converges to a fixed point if the motion goes to an equilibrium: if
     d is the distance between checks and q the larger of its last two ratios, d·q/(1 − q) remains
-    (:mod:`.core.convergence`). A motion may come close to an unstable equilibrium and leave it later, as some of
-    Fig. 11 do. So the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
-
+    (:mod:`.core.convergence`). A motion may come close to an unstable equilibrium and leave it later, as some of Fig.
+    11 do. So the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
 Whirl
     The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
     velocities along and across it, and the spin converge from check to check.
-
 Modulated
     Without an offset, the same for the states where the radius is largest, while the radius continues to oscillate.
-
 Stuck, or stick-slip
     As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).
 
@@ -23,14 +20,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import ACCURACY
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import fill
+from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.core.stepping.dense_output import (
     outward,
-    place_on,
+    position_on,
     velocity_on,
     where_radius_turns,
     where_rightmost,
@@ -56,20 +53,20 @@ from reference_model.ensemble.disc.lanes import (
 from reference_model.ensemble.disc.memory import (
     OF_PEAK,
     OF_TURN,
-    DiscAims,
     DiscMemory,
+    DiscSettings,
     compared,
-    pass_asked,
+    record_requested,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
 Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
 """Replaces the trial step by an implicit one, if that is worthwhile."""
 
-Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscAims], bool]
+Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscSettings], bool]
 """Handles slow slip or rest; returns whether the trajectory ends."""
 
-Shows = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
+Attracts = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
 """Returns whether a nearby steady motion, an equilibrium or a circle, attracts, as ``stability.attracts``."""
 
 STILL = 1e-2
@@ -77,11 +74,17 @@ STILL = 1e-2
 
 
 @written_out
-def attend_with(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims, stride: Stride, slow: Slow, shows: Shows
+def handle_flag_with(
+    lanes: DiscLanes,
+    memory: DiscMemory,
+    lane: int,
+    settings: DiscSettings,
+    stride: Stride,
+    slow: Slow,
+    attracts: Attracts,
 ) -> bool:
     """Handle the flag of a lane; return whether its trajectory ends here."""
-    law = law_of(lanes, lane, aims.around)
+    law = law_of(lanes, lane, settings.around)
     if int(lanes.flag[lane]) & STIFF:
         stride(lanes, memory, lane, law)
     flag = int(lanes.flag[lane])
@@ -89,19 +92,19 @@ def attend_with(
         memory.end = UNDECIDED
         return True
     passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]  # by more than rounding
-    if flag & IS_DUE and passed and looked(lanes, memory, lane, law, aims, shows):
+    if flag & IS_DUE and passed and check_due(lanes, memory, lane, law, settings, attracts):
         return True
     if lanes.trial.state.time[lane] >= lanes.duration[lane] - AT_END:
         return True
-    if flag & (RIGHTMOST | EXTREME) and passed and extreme_met(lanes, memory, lane, flag, law, aims):
+    if flag & (RIGHTMOST | EXTREME) and passed and record_extreme(lanes, memory, lane, flag, law, settings):
         return True
-    return bool(flag & REST) and slow(lanes, memory, lane, law, aims)
+    return bool(flag & REST) and slow(lanes, memory, lane, law, settings)
 
 
 @scalar
 def found(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, end: int, t: float, way: float, radius: float,
-    law: DiscLaw, aims: DiscAims,
+    law: DiscLaw, settings: DiscSettings,
 ) -> bool:  # fmt: skip
     """Measure an end state from here to the next similar crossing; return whether the trajectory ends."""
     window = memory.window
@@ -115,7 +118,7 @@ def found(
     memory.end = MODULATED if end == WHIRL and law.offset == 0.0 and swings else end
     window.kind = NO_WINDOW
     lanes.watch[lane] = UNWATCHED
-    return aims.early
+    return settings.early
 
 
 @inlined
@@ -130,8 +133,8 @@ def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
 
 
 @scalar
-def extreme_met(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, aims: DiscAims
+def record_extreme(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
     """Record where x is largest, or the radius is extreme; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
@@ -141,7 +144,7 @@ def extreme_met(
     centred = law.offset == 0.0
     ended = False
     if turns <= 1.0:
-        z, v = place_on(step, turns), velocity_on(step, turns)
+        z, v = position_on(step, turns), velocity_on(step, turns)
         radius = abs(z)
         see_radius(memory.window, radius)
         if centred and outward(step, 0.0) > 0.0:
@@ -153,45 +156,46 @@ def extreme_met(
                 0.0,
             )
             met = compared(memory.peaks, values, radius)
-            ended = met and whirls(lanes, memory, lane, OF_PEAK, turns, radius, law, aims)
+            ended = met and record_turn(lanes, memory, lane, OF_PEAK, turns, radius, law, settings)
     if flag & RIGHTMOST and not centred and not ended:
         u = where_rightmost(step)
-        z, v = place_on(step, u), velocity_on(step, u)
+        z, v = position_on(step, u), velocity_on(step, u)
         values = (z.real, z.imag, v.imag, spin_at(lanes, lane, u, step.span), 0.0)
         met = compared(memory.turns, values, abs(v))
-        ended = met and whirls(lanes, memory, lane, OF_TURN, u, abs(z), law, aims)
+        ended = met and record_turn(lanes, memory, lane, OF_TURN, u, abs(z), law, settings)
         if turns <= 1.0:
             see_radius(memory.window, radius)  # again, because it belongs to a window that opens here
     return ended
 
 
 @scalar
-def whirls(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw, aims: DiscAims
+def record_turn(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw,
+    settings: DiscSettings,
 ) -> bool:  # fmt: skip
     """Record a crossing in the last step that repeats the previous one; return whether the trajectory ends there."""
     t0, t1 = lanes.now.state.time[lane], lanes.trial.state.time[lane]
     way0, way1 = lanes.now.state.way[lane], lanes.trial.state.way[lane]
     t, way = t0 + u * (t1 - t0), way0 + u * (way1 - way0)
-    return found(lanes, memory, lane, kind, WHIRL, t, way, radius, law, aims)
+    return found(lanes, memory, lane, kind, WHIRL, t, way, radius, law, settings)
 
 
 @written_out
-def looked(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims, shows: Shows
+def check_due(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings, attracts: Attracts
 ) -> bool:
     """Check the motion, once per free period and at the end; return whether the trajectory ends here."""
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
-    if recorded(aims):
-        pass_asked(lanes, lanes.now, memory, lane, t, aims)
-        lanes.due[lane] = next_asked(memory, aims)
+    if recorded(settings):
+        record_requested(lanes, lanes.now, memory, lane, t, settings)
+        lanes.due[lane] = next_requested(memory, settings)
         return False
     state, k = state_at(lanes.trial, lane), rates_at(lanes.trial, lane)
     velocity = (1.0 / k.time) * complex(k.x, k.y)
     place = complex(state.x, state.y)
-    if memory.end == UNDECIDED and in_region(memory, place, velocity, state.r, aims):
+    if memory.end == UNDECIDED and in_region(memory, place, velocity, state.r, settings):
         lanes.watch[lane] = UNWATCHED
-        return aims.early
+        return settings.early
     if t < due:
         return False  # at the end
     lanes.due[lane] = due + memory.tick
@@ -199,7 +203,7 @@ def looked(
         return False
     step = last_step(lanes, lane)
     u = (due - lanes.now.state.time[lane]) / step.span
-    z, v, r = place_on(step, u), velocity_on(step, u), spin_at(lanes, lane, u, step.span)
+    z, v, r = position_on(step, u), velocity_on(step, u), spin_at(lanes, lane, u, step.span)
     if law.offset == 0.0:
         radius = max(abs(z), 1e-300)
         along = (1.0 / radius) * v * z.conjugate()
@@ -209,24 +213,24 @@ def looked(
         values = (z.real, z.imag, v.real, v.imag, r)
         swing, centred = abs(v), False
     scale = 1.0 if centred else abs(z)
-    met = compared(memory.looks, values, scale)
+    met = compared(memory.checks, values, scale)
     if not met or (swing > STILL * abs(law.disc_speed * z) and not centred):
         return False
     circle = law.offset == 0.0 and not centred
-    if not shows(z, v, r, law, circle, ACCURACY * scale):
+    if not attracts(z, v, r, law, circle, ACCURACY * scale):
         return False
     memory.end = WHIRL if circle else SELF_CENTRED
     radius = 0.0 if centred else abs(z)
     fill(memory.found, Measures(radius, radius, k.way / k.time))
     lanes.watch[lane] = UNWATCHED
-    return aims.early
+    return settings.early
 
 
 @scalar
-def in_region(memory: DiscMemory, z: complex, v: complex, r: float, aims: DiscAims) -> bool:
+def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: DiscSettings) -> bool:
     """Return whether the motion is in a known trapping region, and store its end state."""
     length, speed = memory.length, memory.length * memory.rate
-    for region in aims.regions:
+    for region in settings.regions:
         if region.circle:
             radius = max(abs(z), 1e-300)
             along = (1.0 / radius) * v * z.conjugate()

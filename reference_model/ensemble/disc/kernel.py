@@ -3,46 +3,48 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
-from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.jit import inlined, outermost, scalar, written_out
+from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
+from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.core.stepping.implicit import collocate_points, collocate_ring
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.ensemble.disc.events import Slow, attend_with
-from reference_model.ensemble.disc.lanes import RADII, TURNS, DiscLanes, advance_with, idle
+from reference_model.ensemble.disc.events import Slow, handle_flag_with
+from reference_model.ensemble.disc.lanes import (
+    RADII,
+    TURNS,
+    DiscLanes,
+    Rates,
+    advance_with,
+    idle,
+    put_slipping,
+)
 from reference_model.ensemble.disc.memory import (
-    DiscAims,
     DiscMemory,
+    DiscSettings,
     put_state,
     take_checkpoint,
 )
 from reference_model.ensemble.disc.rest import (
     points_rest,
-    points_slip,
     points_slow,
     ring_rests,
-    ring_slips,
     ring_slow,
 )
 from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.disc.stride import disc_stride_with
 from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
+from reference_model.ensemble.parameters import Task
 from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
-
-Slips = Callable[[DiscLanes, int, DiscLaw], None]
-"""Prepares a lane that slips."""
 
 PARAMETERS = (
     "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
@@ -57,17 +59,26 @@ WATCHED_STEP = 1e-3
 """Step below which the points of a disc are checked for one that comes to rest."""
 
 
-class DiscTask(NamedTuple):
-    """Input of the kernel.
-
-    ``parameters`` are (1 or n, 10), in the order of PARAMETERS; ``starts`` (1 or n, 6), their ``paces`` (1 or n, 5)
-    if they are checkpoints, ``durations`` in s (1 or n,).
-    """
-
-    parameters: FloatArray
-    starts: FloatArray
-    paces: FloatArray
-    durations: FloatArray
+@inlined
+def _scaled_law(parameters: FloatArray, around: Tuple, length: float, rate: float) -> DiscLaw:
+    """Return the law in units of ``length`` (m) and 1/``rate`` (s); the parameters are those of PARAMETERS."""
+    mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = parameters
+    kappa, speed = math.sqrt(inertia / mass), length * rate
+    friction = force / mass / (speed * rate)
+    return DiscLaw(
+        around,
+        stiffness / mass / rate**2,
+        damping / mass / rate,
+        friction,
+        omega / rate,
+        offset / length,
+        STRETCHING_TIME * friction if force > 0.0 else 1.0,
+        0.0 if force > 0.0 else 1.0,
+        radius / kappa,
+        shaft / inertia / rate,
+        kappa * (omega - shaft_speed) / speed,
+        length / kappa,
+    )
 
 
 @written_out
@@ -76,53 +87,34 @@ def load_with(
     memory: DiscMemory,
     lane: int,
     number: int,
-    task: DiscTask,
-    aims: DiscAims,
+    task: Task,
+    settings: DiscSettings,
     rest: Slow,
-    slip: Slips,
+    rates: Rates,
 ) -> bool:
-    """Write the start of a trajectory to the trial of a lane; return whether it ends there.
-
-    It is one function because it converts SI units to the kernel's units, which nearly every line uses.
-    """
-    mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = row_of(
-        task.parameters, number
-    )
+    """Write the start of a trajectory to the trial of a lane; return whether it ends there."""
+    parameters = row_of(task.parameters, number)
+    mass, inertia, stiffness, damping, force, omega, offset, _, shaft, _ = parameters
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
-    k2, c, g, kappa = stiffness / mass, damping / mass, force / mass, math.sqrt(inertia / mass)
-    decay = max(c, shaft / inertia)
-    length, rate = units(math.sqrt(k2), decay, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
+    k, decay, g = math.sqrt(stiffness / mass), max(damping / mass, shaft / inertia), force / mass
+    length, rate = units(k, decay, g, omega, offset, math.hypot(x, y), math.hypot(vx, vy))
     pace = row_of(task.paces, number)
     goes_on = pace[RATE] > 0.0
     if goes_on:
         length, rate = pace[LENGTH], pace[RATE]
-    speed = length * rate
-    friction = g / (speed * rate)
-    law = DiscLaw(
-        aims.around,
-        k2 / rate**2,
-        c / rate,
-        friction,
-        omega / rate,
-        offset / length,
-        STRETCHING_TIME * friction if g > 0.0 else 1.0,
-        0.0 if g > 0.0 else 1.0,
-        radius / kappa,
-        shaft / inertia / rate,
-        kappa * (omega - shaft_speed) / speed,
-        length / kappa,
-    )
+    law = _scaled_law(parameters, settings.around, length, rate)
     clear(memory)
     duration = float(row_of(task.durations, number)) * rate
     memory.number, memory.length, memory.rate = number, length, rate
     memory.tick = 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
     put(lanes.law, lane, law)
-    lanes.tolerance[lane], lanes.duration[lane], lanes.due[lane] = aims.tolerance, duration, memory.tick
-    if recorded(aims):
-        lanes.due[lane] = next_asked(memory, aims)
+    lanes.tolerance[lane], lanes.duration[lane], lanes.due[lane] = settings.tolerance, duration, memory.tick
+    if recorded(settings):
+        lanes.due[lane] = next_requested(memory, settings)
     lanes.watch[lane] = RADII if law.offset == 0.0 else TURNS
     lanes.usual[lane] = lanes.flag[lane] = lanes.steps[lane] = lanes.short[lane] = 0.0
 
+    speed, kappa = length * rate, math.sqrt(inertia / mass)
     u = complex(vx + omega * y, vy - omega * x) / speed
     r = kappa * (spin - omega) / speed
     if abs(u) <= ROUNDING * abs(omega) * math.hypot(x, y) / speed:
@@ -130,10 +122,10 @@ def load_with(
     if abs(spin - omega) <= ROUNDING * abs(omega):
         r = 0.0
     put(lanes.trial.state, lane, (x / length, y / length, u.real, u.imag, r, angle, 0.0, 0.0))
-    take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
-    if u == 0j and r == 0.0 and friction > 0.0:
-        return bool(rest(lanes, memory, lane, law, aims))
-    slip(lanes, lane, law)
+    take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
+    if u == 0j and r == 0.0 and force > 0.0:
+        return bool(rest(lanes, memory, lane, law, settings))
+    put_slipping(lanes, lane, law, rates)
     if goes_on:
         lanes.trial.step[lane], lanes.short[lane], memory.span = pace[STEP], pace[SHORT], pace[SPAN]
     return bool(duration <= 0.0)
@@ -154,12 +146,12 @@ def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> 
 
 
 @scalar
-def _ring_shows(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
+def _ring_attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
     return attracts(z, v, r, law, circle, near)
 
 
 @scalar
-def _points_show(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
+def _points_attract(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
     """Return whether a motion of a disc on points attracts; known only without friction.
 
     Friction of points changes with the angle. Without friction every damped motion on springs attracts.
@@ -182,9 +174,9 @@ def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw
 
 @written_out
 def _load_ring(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, aims: DiscAims
+    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
 ) -> bool:
-    return load_with(lanes, memory, lane, number, task, aims, ring_rests, ring_slips)
+    return load_with(lanes, memory, lane, number, task, settings, ring_rests, ring_rates)
 
 
 @scalar
@@ -198,15 +190,15 @@ def _advance_ring_alone(lanes: DiscLanes, around: Tuple) -> None:
 
 
 @written_out
-def _attend_ring(lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims) -> bool:
-    return attend_with(lanes, memory, lane, aims, _ring_strides, ring_slow, _ring_shows)
+def _handle_ring(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: DiscSettings) -> bool:
+    return handle_flag_with(lanes, memory, lane, settings, _ring_strides, ring_slow, _ring_attracts)
 
 
 @written_out
 def _load_points(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: DiscTask, aims: DiscAims
+    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
 ) -> bool:
-    return load_with(lanes, memory, lane, number, task, aims, points_rest, points_slip)
+    return load_with(lanes, memory, lane, number, task, settings, points_rest, points_rates)
 
 
 @scalar
@@ -220,29 +212,31 @@ def _advance_points_alone(lanes: DiscLanes, around: Tuple) -> None:
 
 
 @written_out
-def _attend_points(lanes: DiscLanes, memory: DiscMemory, lane: int, aims: DiscAims) -> bool:
-    return attend_with(lanes, memory, lane, aims, _points_stride, points_slow, _points_show)
+def _handle_points(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: DiscSettings) -> bool:
+    return handle_flag_with(lanes, memory, lane, settings, _points_stride, points_slow, _points_attract)
 
 
-@outermost
-def run_rings(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
+@called_from_python
+def run_rings(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
-        _load_ring, _advance_rings, _advance_ring_alone, _attend_ring, store, idle,
-        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, aims.around, task, aims, results,
+        _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store, idle,
+        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
+        settings.around, task, settings, results,
     )  # fmt: skip
 
 
-@outermost
-def run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
+@called_from_python
+def run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
-    _run_points(task, aims, results, first, last)
+    _run_points(task, settings, results, first, last)
 
 
 @inlined
-def _run_points(task: DiscTask, aims: DiscAims, results: Results, first: int, last: int) -> None:
+def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
     """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
-        _load_points, _advance_points, _advance_points_alone, _attend_points, store, idle,
-        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, aims.around, task, aims, results,
+        _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
+        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
+        settings.around, task, settings, results,
     )  # fmt: skip

@@ -17,10 +17,7 @@ from reference_model.ensemble.disc.slip import direction
 
 
 class DiscState(NamedTuple):
-    """Position, slip velocity, r, angle, time and slip distance (mean over the contact), or their rates.
-
-    All are scaled; rates are by stretched time.
-    """
+    """Position, slip velocity, r, angle, time and mean slip distance, scaled; or their rates by stretched time."""
 
     x: float
     y: float
@@ -44,8 +41,8 @@ class DiscLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
     Further fields are the tolerance of a step; the usual step, before the edge shortened it; the end of the motion
-    (``duration``), and an earlier time that needs attention (``due``); how closely it is watched; why it needs
-    attention (``flag``); the number of steps so far; and the number of successive short steps.
+    (``duration``), and an earlier time that needs attention (``due``); how closely it is watched; the reasons for
+    attention (``flag``); the number of steps; and the number of successive short steps.
     """
 
     now: Moment
@@ -71,10 +68,10 @@ UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """Degrees of watching: attention when x is largest, when the radius is largest or smallest, or both."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip may be about to end.
+"""Flags, which add up.
 
-The due time has come; x was largest; the radius was largest or smallest; step size or number of steps are out of
-bounds; an implicit step may be worthwhile.
+Slip may be about to end; the due time has come; x was largest; the radius was largest or smallest; step size or
+number of steps are out of bounds; an implicit step may be worthwhile.
 """
 
 SHORT_STEP, MANY = 0.1, 40.0
@@ -148,7 +145,7 @@ def advance_with(
 
         done = new.time >= end - AT_END
         due = (new.time >= lanes.due[lane]) | done
-        flag = reasons(state, k, new, k1, NEAR_REST * law.friction, due, h < small_step, lanes.watch[lane])
+        flag = flags_of(state, k, new, k1, NEAR_REST * law.friction, due, h < small_step, lanes.watch[lane])
         flag = flag if taken else 0.0
         steps = lanes.steps[lane] + 1.0
         short = lanes.short[lane] + 1.0 if new.time - state.time < SHORT_STEP else 0.0
@@ -190,7 +187,7 @@ def share_to_edge(before: float, after: float, approach: float, h: float) -> flo
 
 
 @inlined
-def reasons(
+def flags_of(
     state: DiscState, k: DiscState, new: DiscState, k1: DiscState, nearly: float, due: bool, fine: bool, watch: float
 ) -> float:  # fmt: skip
     """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""

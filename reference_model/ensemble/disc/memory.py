@@ -8,10 +8,10 @@ from typing import Annotated, Any, NamedTuple
 from numpy.typing import NDArray
 
 from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
-from reference_model.ensemble.core.asked import passes_asked
 from reference_model.ensemble.core.convergence import converged
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.records import Record
+from reference_model.ensemble.core.requested_times import mark_requested
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.ensemble.core.window import Measures, Window
 from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
@@ -67,9 +67,8 @@ class Series(Record):
 class DiscMemory(Record):
     """Data of a lane: number of the trajectory, units, end state so far and its measures, the period of checks.
 
-    Further fields are the motion once in a period, at the largest x and at the largest radius; the window for
-    measuring an end state; the proposed implicit step, the number of checkpoints taken, and the number of requested
-    times passed.
+    Further fields are the motion at checks, at the largest x and at the largest radius; the window for measuring an
+    end state; the proposed implicit step; and the numbers of checkpoints taken and of requested times passed.
     """
 
     number: int
@@ -78,7 +77,7 @@ class DiscMemory(Record):
     end: int
     found: Measures
     tick: float
-    looks: Series
+    checks: Series
     turns: Series
     peaks: Series
     window: Window
@@ -87,11 +86,11 @@ class DiscMemory(Record):
     passed: int
 
 
-class DiscAims(NamedTuple):
+class DiscSettings(NamedTuple):
     """Settings for scalar code.
 
-    They contain ``around`` of the law, the known ``regions`` (m,), and room for ``checkpoints`` of a single
-    trajectory, empty if not requested.
+    They contain ``around`` of the law, the trapping ``regions`` (m,), and ``checkpoints`` of a single trajectory,
+    empty if not requested.
     """
 
     tolerance: float
@@ -115,21 +114,21 @@ def compared(series: Series, values: Tuple, scale: float) -> bool:
 
 
 @scalar
-def pass_asked(
-    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, aims: DiscAims
+def record_requested(
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, settings: DiscSettings
 ) -> None:
-    """Store a checkpoint of a ``moment`` of a lane if times between it and ``until`` are requested."""
-    if passes_asked(lanes, moment, memory, lane, until, aims):
-        take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, aims)
+    """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
+    if mark_requested(lanes, moment, memory, lane, until, settings):
+        take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, settings)
 
 
 @scalar
 def take_checkpoint(
-    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, aims: DiscAims
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, settings: DiscSettings
 ) -> None:
-    """Store a checkpoint of a ``moment`` of a lane, while there is room."""
-    if memory.checkpoints < aims.checkpoints.size:
-        checkpoint = aims.checkpoints[memory.checkpoints]
+    """Store a checkpoint of a ``moment``, while there is room."""
+    if memory.checkpoints < settings.checkpoints.size:
+        checkpoint = settings.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
         checkpoint.kind, checkpoint.time = kind, moment.state.time[lane] / memory.rate
         put_state(checkpoint.state, lanes, moment, memory, lane)

@@ -1,7 +1,7 @@
-"""The end of slip, rest, and the beginning of slip of a disc; a disc on points is handed over.
+"""End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
 A disc on a ring sticks as a whole, and its centre like a pin with the friction that the shaft's moment leaves. Stick
-is permanent if the pull, a constant part and a turning part, never exceeds this friction (eq. 7), which is exact.
+is permanent if the pull never exceeds this friction (eq. 7), which is exact.
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
-from reference_model.ensemble.core.asked import recorded
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import DiscLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
+from reference_model.ensemble.core.requested_times import recorded
 from reference_model.ensemble.core.window import Measures
 from reference_model.ensemble.disc.events import found
 from reference_model.ensemble.disc.lanes import (
@@ -30,13 +30,13 @@ from reference_model.ensemble.disc.lanes import (
 )
 from reference_model.ensemble.disc.memory import (
     OF_PEAK,
-    DiscAims,
     DiscMemory,
+    DiscSettings,
     compared,
-    pass_asked,
+    record_requested,
     take_checkpoint,
 )
-from reference_model.ensemble.disc.slip import centre_of, held_friction, points_rates, ring_rates, stuck_for
+from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_rates, stuck_for
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
@@ -50,17 +50,19 @@ SOON = 3e-4
 
 
 @scalar
-def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
     """Bring a disc on a ring to rest if the end of slip is known; return whether the trajectory ends."""
     if not slip_left(lanes, lane)[0] < NEAR_REST * law.friction:
         return False
-    if _creeps_out(lanes, memory, lane, law, aims):
+    if _creeps_out(lanes, memory, lane, law, settings):
         return True
-    return comes_to_rest(lanes, lane, law) and ring_rests(lanes, memory, lane, law, aims)
+    return comes_to_rest(lanes, lane, law) and ring_rests(lanes, memory, lane, law, settings)
 
 
 @scalar
-def _creeps_out(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def _creeps_out(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
+) -> bool:
     """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
 
     This is possible only if its pull just rotates with the master disc. As for a pin, see
@@ -77,59 +79,51 @@ def _creeps_out(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, a
     if memory.end == UNDECIDED:
         memory.end = STUCK
         fill(memory.found, Measures(abs(z), abs(z), 0.0))
-    if not aims.early:
+    if not settings.early:
         delay = lanes.duration[lane] - t
         turn = law.disc_speed * delay
         z *= complex(math.cos(turn), math.sin(turn))
-        if recorded(aims):
-            pass_asked(lanes, lanes.trial, memory, lane, t + delay, aims)
+        if recorded(settings):
+            record_requested(lanes, lanes.trial, memory, lane, t + delay, settings)
         put(lanes.trial.state, lane, (z.real, z.imag, 0.0, 0.0, 0.0, angle + turn, t + delay, way))
     return True
 
 
 @scalar
-def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
     """Follow a disc on a ring from rest until it slips; return whether its trajectory ends before."""
-    ended = _held(lanes, memory, lane, law, aims)
+    ended = _held(lanes, memory, lane, law, settings)
     if not ended:
-        ring_slips(lanes, lane, law)
+        put_slipping(lanes, lane, law, ring_rates)
     return ended
 
 
 @scalar
-def ring_slips(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Prepare a disc on a ring that slips."""
-    put_slipping(lanes, lane, law, ring_rates)
-
-
-@scalar
-def points_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def points_slow(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
+) -> bool:
     """Hand over a disc on points if it or one of its points is about to rest."""
     s, left = slip_left(lanes, lane)
     slow = s < NEAR_REST * law.friction
-    if slow and _creeps_out(lanes, memory, lane, law, aims):
+    if slow and _creeps_out(lanes, memory, lane, law, settings):
         return True
     goes_on = not slow or (left > LINGERS and s > LEAST_SLIP)
     if goes_on and not _point_rests(lanes, lane, law):
         return False
-    return points_rest(lanes, memory, lane, law, aims)
+    return points_rest(lanes, memory, lane, law, settings)
 
 
 @inlined
-def points_rest(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def points_rest(
+    lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
+) -> bool:
     """Hand over a disc on points that rests."""
     memory.end = HANDED_OVER
     return True
 
 
 @scalar
-def points_slip(lanes: DiscLanes, lane: int, law: DiscLaw) -> None:
-    """Prepare a disc on points that slips."""
-    put_slipping(lanes, lane, law, points_rates)
-
-
-@scalar
-def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: DiscAims) -> bool:
+def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
     """Keep a disc on a ring at rest as long as friction holds it, then begin slip.
 
     Return whether the trajectory ends.
@@ -138,16 +132,16 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:
         return True
-    memory.looks.count = memory.turns.count = 0  # discard earlier values
+    memory.checks.count = memory.turns.count = 0  # discard earlier values
     friction = held_friction(law)
     held = stuck_for(z, friction, law)
     if held == math.inf:
         memory.end = STUCK
         fill(memory.found, Measures(abs(z), abs(z), 0.0))
-        if aims.early:
+        if settings.early:
             return True
     if held > 0.0:
-        take_checkpoint(lanes, lanes.trial, memory, lane, STICKS, aims)
+        take_checkpoint(lanes, lanes.trial, memory, lane, STICKS, settings)
     delay = min(held, end - t)
     turn = law.disc_speed * delay
     z *= complex(math.cos(turn), math.sin(turn))
@@ -156,17 +150,17 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, aims: D
     if t >= end - AT_END:
         return True
     if held > 0.0:
-        take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, aims)
+        take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
         # Its centre slips no farther than an equally held pin, and creeps inward where such a pin does.
         centre, last = centre_of(law, friction), memory.peaks.values[0]
         if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
             memory.end, radius = STUCK, sticking_radius(centre)
             fill(memory.found, Measures(radius, radius, 0.0))
-            if aims.early:
+            if settings.early:
                 return True
         elif compared(memory.peaks, (abs(z), 0.0, 0.0, 0.0, 0.0), abs(z)) and found(
-            lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, aims
+            lanes, memory, lane, OF_PEAK, STICK_SLIP, t, way, abs(z), law, settings
         ):
             return True
     return not begin_slip(lanes, lane, z, angle, t, law)

@@ -76,14 +76,14 @@ def held_friction(law: DiscLaw) -> float:
 
     As in ``stick.stuck_centre``, the points of the limit surface are force and moment at all ratios of U and W.
     """
-    asked = law.shaft_rate * abs(law.lag)
+    needed = law.shaft_rate * abs(law.lag)
     most = law.friction * law.leverage
-    if asked > most:
+    if needed > most:
         return -1.0
     low, high = 0.0, 0.5 * math.pi
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if most * ring_shares(math.cos(middle), math.sin(middle))[1] < asked:
+        if most * ring_shares(math.cos(middle), math.sin(middle))[1] < needed:
             low = middle
         else:
             high = middle

@@ -22,8 +22,8 @@ from reference_model.ensemble.disc.lanes import (
     DiscState,
     Edge,
     Rates,
+    flags_of,
     rates_at,
-    reasons,
     state_at,
 )
 from reference_model.ensemble.disc.memory import DiscMemory
@@ -73,4 +73,6 @@ def disc_stride_with(
         trial.step[lane] = now.step[lane]
         lanes.usual[lane] = 0.0
         due = new.time >= min(lanes.due[lane], lanes.duration[lane] - AT_END)
-        lanes.flag[lane] = reasons(state, k, new, k1, NEAR_REST * law.friction, due, False, lanes.watch[lane])
+        lanes.flag[lane] = flags_of(
+            state, k, new, k1, NEAR_REST * law.friction, due, False, lanes.watch[lane]
+        )

@@ -19,7 +19,7 @@ Self-centred
 
     where c = β/m, s* = |ω|ρ*, and R is the nonlinear part of the direction of slip, |R| <= g·(|δw|/s*)² for |δw| <=
     s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) for each
-    oscillator, except for coupling and R, which :func:`well_of` bounds. The region is small and reached late.
+    oscillator, except for coupling and R, which :func:`equilibrium_region` bounds. It is small and reached late.
 
 Whirl
     The points where x is largest form a section that every closed orbit crosses once per turn. A stable orbit is a
@@ -64,7 +64,7 @@ class Form(NamedTuple):
     v_v: float
 
 
-class Well(NamedTuple):
+class EquilibriumRegion(NamedTuple):
     """The self-centred equilibrium z* (3), V, and the level of its trapping region; negative if none is known."""
 
     place: complex
@@ -76,14 +76,14 @@ NOTHING = Form(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @scalar
-def well_of(law: PinLaw) -> Well:
+def equilibrium_region(law: PinLaw) -> EquilibriumRegion:
     """Return the self-centred equilibrium, with V of the module's estimate."""
     k2, c, g = law.stiffness, law.damping, law.friction
     reach = k2 * abs(law.offset)
     if k2 == 0.0 or c == 0.0 or (g > 0.0 and (g >= reach or law.disc_speed == 0.0)):
-        return Well(0j, NOTHING, -1.0)
+        return EquilibriumRegion(0j, NOTHING, -1.0)
     if g == 0.0:
-        return Well(complex(law.offset, 0.0), NOTHING, math.inf)
+        return EquilibriumRegion(complex(law.offset, 0.0), NOTHING, math.inf)
     radius = math.sqrt((reach - g) * (reach + g)) / k2
     place = radius / law.offset * complex(radius, math.copysign(g / k2, law.disc_speed))
     slip = abs(law.disc_speed) * radius
@@ -103,7 +103,7 @@ def well_of(law: PinLaw) -> Well:
     least_along, least_across = _least_share(along), _least_share(across)
     root = bound / (lever_along / math.sqrt(least_along) + lever_across * math.sqrt(weight / least_across))
     nearest = math.sqrt(min(least_along, weight * least_across)) / (2.0 * swing)  # |δw| <= s*/2
-    return Well(place, form, min(root, nearest) ** 2)
+    return EquilibriumRegion(place, form, min(root, nearest) ** 2)
 
 
 @inlined
@@ -113,7 +113,7 @@ def _least_share(a: float) -> float:
 
 
 @scalar
-def depth(z: complex, w: complex, law: PinLaw, well: Well) -> float:
+def depth(z: complex, w: complex, law: PinLaw, well: EquilibriumRegion) -> float:
     """Return V of a motion."""
     size = abs(well.place)
     along = well.place.conjugate() / size if size > 0.0 else 1.0 + 0j

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from reference_model.ensemble.checkpoints import SLIPS, STICKS
-from reference_model.ensemble.core.asked import next_asked, recorded
 from reference_model.ensemble.core.convergence import ACCURACY, converged
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import (
@@ -15,9 +14,10 @@ from reference_model.ensemble.core.laws import (
     release_delay,
     sticking_radius,
 )
+from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
-    place_on,
+    position_on,
     velocity_on,
     way_along,
     where_radius_turns,
@@ -25,7 +25,7 @@ from reference_model.ensemble.core.stepping.dense_output import (
 )
 from reference_model.ensemble.core.window import NO_WINDOW, open_window, see_radius
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
-from reference_model.ensemble.pin.end_states import Well, depth
+from reference_model.ensemble.pin.end_states import EquilibriumRegion, depth
 from reference_model.ensemble.pin.lanes import (
     EXTREME,
     IS_DUE,
@@ -41,19 +41,19 @@ from reference_model.ensemble.pin.lanes import (
     landed,
     last_step,
     law_of,
-    place_at,
-    put_place,
+    position_at,
+    put_position,
     put_slipping,
     slip_at,
 )
 from reference_model.ensemble.pin.memory import (
     OF_RELEASE,
     OF_TURN,
-    Aims,
     PinMemory,
+    Settings,
     close_window,
     keep,
-    pass_asked,
+    record_requested,
     take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (
@@ -80,7 +80,7 @@ AFTER_START = 1e-3
 
 
 @written_out
-def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
+def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> bool:
     """Handle the flag of a lane; return whether its trajectory ends here."""
     law = law_of(lanes, lane)
     if int(lanes.flag[lane]) & STIFF:
@@ -90,14 +90,14 @@ def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
     if flag & LOST:
         memory.end = UNDECIDED
         return True
-    if flag & IS_DUE and recorded(aims):
-        pass_asked(lanes, lanes.now, memory, lane, later, law, aims)
+    if flag & IS_DUE and recorded(settings):
+        record_requested(lanes, lanes.now, memory, lane, later, law, settings)
     if flag & IS_DUE and later >= memory.duration - LANDING:
         if not landed(lanes, lane, memory.duration):
             return False
         settle(lanes, memory, lane, law)
         return True
-    if flag & IS_DUE and watch_well(lanes, memory, lane, later, law, aims):
+    if flag & IS_DUE and check_region(lanes, memory, lane, later, law, settings):
         return True
     if flag & (RIGHTMOST | EXTREME):
         step = last_step(lanes, lane, law)
@@ -105,66 +105,74 @@ def attend(lanes: PinLanes, memory: PinMemory, lane: int, aims: Aims) -> bool:
         if flag & RIGHTMOST:
             u = where_rightmost(step)
         if turns <= u:
-            see_radius(memory.window, abs(place_on(step, turns)))
+            see_radius(memory.window, abs(position_on(step, turns)))
         if flag & RIGHTMOST:
-            z, v = place_on(step, u), velocity_on(step, u)
-            if turn_made(lanes, memory, lane, step, u, law, aims):
-                put_place(lanes.trial, lane, z, v - 1j * law.disc_speed * z)
+            z, v = position_on(step, u), velocity_on(step, u)
+            if record_crossing(lanes, memory, lane, step, u, law, settings):
+                put_position(lanes.trial, lane, z, v - 1j * law.disc_speed * z)
                 lanes.trial.state.time[lane] = lanes.now.state.time[lane] + u * step.span
                 return True
-            if watch_well(lanes, memory, lane, later, law, aims):
+            if check_region(lanes, memory, lane, later, law, settings):
                 return True
         if u < turns <= 1.0:
-            see_radius(memory.window, abs(place_on(step, turns)))  # of a window that opened at u
+            see_radius(memory.window, abs(position_on(step, turns)))  # of a window that opened at u
     if flag & REST:
-        return maybe_rest(lanes, memory, lane, law, aims)
+        return maybe_rest(lanes, memory, lane, law, settings)
     return False
 
 
 @scalar
-def watch_well(lanes: PinLanes, memory: PinMemory, lane: int, later: float, law: PinLaw, aims: Aims) -> bool:
+def check_region(
+    lanes: PinLanes, memory: PinMemory, lane: int, later: float, law: PinLaw, settings: Settings
+) -> bool:
     """Check whether the motion is in the trapping region of the equilibrium, and set the next check."""
     if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
         lanes.watch[lane] = TURNS
-    due = next_asked(memory, aims) if recorded(aims) else later + memory.tick
+    due = next_requested(memory, settings) if recorded(settings) else later + memory.tick
     lanes.due[lane] = min(due, memory.duration - LANDING)
-    if memory.end != UNDECIDED or not in_well(lanes, memory, lane, law):
+    if memory.end != UNDECIDED or not in_region(lanes, memory, lane, law):
         return False
     lanes.watch[lane] = UNWATCHED
     memory.end = SELF_CENTRED
     radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
     keep(memory, radius, radius, abs(law.disc_speed) * radius)
-    return aims.early
+    return settings.early
 
 
 @scalar
-def in_well(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
+def in_region(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
     """Return whether the motion is in the trapping region of the equilibrium."""
     level = memory.level
     if level <= 0.0:
         return False
-    well = Well(memory.equilibrium, memory.form, level)
-    return depth(place_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
+    well = EquilibriumRegion(memory.equilibrium, memory.form, level)
+    return depth(position_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
 
 
 @written_out
-def turn_made(
-    lanes: PinLanes, memory: PinMemory, lane: int, step: DenseOutput, u: float, law: PinLaw, aims: Aims
+def record_crossing(
+    lanes: PinLanes,
+    memory: PinMemory,
+    lane: int,
+    step: DenseOutput,
+    u: float,
+    law: PinLaw,
+    settings: Settings,
 ) -> bool:
     """Record a crossing of the section at u in a step; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
-    z, speed = place_on(step, u), velocity_on(step, u).imag
+    z, speed = position_on(step, u), velocity_on(step, u).imag
     t = lanes.now.state.time[lane] + u * step.span
-    if aims.once:
+    if settings.once:
         if t < AFTER_START:
             return False
         memory.end = WHIRL
         return True
-    if in_reach(memory, z, speed, law, aims):
+    if in_reach(memory, z, speed, law, settings):
         memory.end = WHIRL
         lanes.watch[lane] = UNWATCHED
-        return aims.early
+        return settings.early
     turns = memory.turns
     came = z.real - turns.place.real, z.imag - turns.place.imag, speed - turns.speed
     distance = math.sqrt(came[0] ** 2 + came[1] ** 2 + came[2] ** 2)
@@ -184,17 +192,22 @@ def turn_made(
             return False
         close_window(memory, WHIRL, t, way, abs(z))
         lanes.watch[lane] = UNWATCHED
-        return aims.early
+        return settings.early
     open_window(memory.window, OF_TURN, t, way, abs(z))
     lanes.watch[lane] = RADII
     return False
 
 
 @scalar
-def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aims) -> bool:
+def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings: Settings) -> bool:
     """Return whether the motion crosses the section in the trapping region of the known whirl."""
-    known, turn, metric, length = aims.known, aims.known.turn, aims.known.metric, memory.length
-    if known.reach <= 0.0:
+    regions, turn, metric, length = (
+        settings.regions,
+        settings.regions.turn,
+        settings.regions.metric,
+        memory.length,
+    )
+    if regions.reach <= 0.0:
         return False
     x, y = z.real * length - turn.x, z.imag * length - turn.y
     v = speed * length / math.sqrt(law.stiffness) - turn.v
@@ -203,17 +216,17 @@ def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, aims: Aim
         + y * (metric.yy * y + 2.0 * metric.yv * v)
         + metric.vv * v * v
     )
-    if square > known.reach:
+    if square > regions.reach:
         return False
-    measures, pace = known.measures, length * memory.rate
+    measures, pace = regions.measures, length * memory.rate
     keep(memory, measures.least / length, measures.largest / length, measures.slip / pace)
     return True
 
 
 @written_out
-def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims: Aims) -> bool:
+def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, settings: Settings) -> bool:
     """Bring the pin to rest if the end of slip is known; return whether the trajectory ends."""
-    z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     t, s = lanes.trial.state.time[lane], abs(w)
     creeps = creeps_steadily(z, w, law)
     if creeps:
@@ -222,25 +235,34 @@ def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, aims:
             memory.end = STUCK
             radius = sticking_radius(law) if law.offset == 0.0 else abs(place)
             keep(memory, radius, radius, 0.0)
-            if aims.early:
+            if settings.early:
                 return True
-        creeps = max(s, abs(place - z)) < max(SPENT_SHARE * aims.tolerance, REVERSAL_SLIP)
-    left = time_to_rest(z, w, law, aims.tolerance)
+        creeps = max(s, abs(place - z)) < max(SPENT_SHARE * settings.tolerance, REVERSAL_SLIP)
+    left = time_to_rest(z, w, law, settings.tolerance)
     if creeps or (left == math.inf and s < REVERSAL_SLIP):
         left = 0.0
     if not t + left < memory.duration:
         return False
-    if recorded(aims):
-        pass_asked(lanes, lanes.trial, memory, lane, memory.duration if creeps else t + left, law, aims)
+    if recorded(settings):
+        record_requested(
+            lanes, lanes.trial, memory, lane, memory.duration if creeps else t + left, law, settings
+        )
     middle = z + 0.5 * left * (0.75 * w + 1j * law.disc_speed * z)
     z += left * (0.5 * w + 1j * law.disc_speed * middle)
     lanes.trial.state.way[lane] += 0.5 * s * left
-    return rest(lanes, memory, lane, z, t + left, law, aims, creeps)
+    return rest(lanes, memory, lane, z, t + left, law, settings, creeps)
 
 
 @scalar
 def rest(
-    lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, aims: Aims, creeps: bool
+    lanes: PinLanes,
+    memory: PinMemory,
+    lane: int,
+    z: complex,
+    t: float,
+    law: PinLaw,
+    settings: Settings,
+    creeps: bool,
 ) -> bool:
     """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before.
 
@@ -249,7 +271,7 @@ def rest(
     end = memory.duration
     w = 0j
     forget_turns(lanes, memory, lane)
-    if aims.once:
+    if settings.once:
         memory.end = STUCK
         return True
     while w == 0j and t < end:
@@ -259,27 +281,27 @@ def rest(
         if creeps or abs(pull(z, 0j, law)) <= law.friction:
             held = math.inf if creeps else release_delay(z, law)
             if held > 0.0 and not creeps:
-                take_checkpoint(memory, STICKS, t, z, w, law, aims)
+                take_checkpoint(memory, STICKS, t, z, w, law, settings)
             if held == math.inf:
                 if memory.end == UNDECIDED or not creeps:
                     memory.end = STUCK
                     keep(memory, abs(z), abs(z), 0.0)
-                if aims.early:
+                if settings.early:
                     end = t
             turn = law.disc_speed * min(held, end - t)
             z *= complex(math.cos(turn), math.sin(turn))
             t += held
             if t < end and held > 0.0:
-                take_checkpoint(memory, SLIPS, t, z, w, law, aims)
-            if t < end and held > 0.0 and released(lanes, memory, lane, z, t, law, aims):
+                take_checkpoint(memory, SLIPS, t, z, w, law, settings)
+            if t < end and held > 0.0 and released(lanes, memory, lane, z, t, law, settings):
                 end = t
         if t < end:
-            z, w, took, way = begin_slip(z, law, SERIES_SHARE * aims.tolerance, end - t, aims.series)
+            z, w, took, way = begin_slip(z, law, SERIES_SHARE * settings.tolerance, end - t, settings.series)
             t += took
             lanes.trial.state.way[lane] += way
     lanes.trial.state.time[lane] = min(t, end)
     if w == 0j:
-        put_place(lanes.trial, lane, z, w)
+        put_position(lanes.trial, lane, z, w)
     else:
         put_slipping(lanes, lane, z, w, law)
     return t >= end  # a pin that begins to slip at the very end has ended too
@@ -302,7 +324,7 @@ def watched(lanes: PinLanes, lane: int) -> bool:
 
 @scalar
 def released(
-    lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, aims: Aims
+    lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, settings: Settings
 ) -> bool:
     """Record a release at ``z``; return whether the trajectory ends."""
     if memory.end == STUCK:
@@ -317,7 +339,7 @@ def released(
     if releases.count > 0 and creeps_by_turns(radius, releases.radius, law):
         memory.end = STUCK
         keep(memory, largest, largest, 0.0)
-        return aims.early
+        return settings.early
     distance, before, first = abs(radius - releases.radius), releases.last, releases.before
     releases.radius, releases.last, releases.before = radius, distance, before
     releases.count += 1
@@ -327,7 +349,7 @@ def released(
     if memory.window.kind == OF_RELEASE:
         close_window(memory, STICK_SLIP, t, way, radius)
         lanes.watch[lane] = TURNS
-        return aims.early
+        return settings.early
     open_window(memory.window, OF_RELEASE, t, way, radius)
     lanes.watch[lane] = RADII
     return False
@@ -336,12 +358,12 @@ def released(
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     """Decide the end state at the very end, also of a pin whose slip is not yet slow enough for a closed form."""
-    z = place_at(lanes.trial, lane)
+    z = position_at(lanes.trial, lane)
     if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
         radius = sticking_radius(law)
         memory.end = STUCK
         keep(memory, radius, radius, 0.0)
-    if memory.end == UNDECIDED and in_well(lanes, memory, lane, law):
+    if memory.end == UNDECIDED and in_region(lanes, memory, lane, law):
         radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
         memory.end = SELF_CENTRED
         keep(memory, radius, radius, abs(law.disc_speed) * radius)

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
-from reference_model.ensemble.core.asked import next_asked, recorded
-from reference_model.ensemble.core.jit import inlined, outermost, scalar, written_out
+from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run
 from reference_model.ensemble.core.laws import PinLaw, pull
 from reference_model.ensemble.core.nondimensional import ROUNDING, units
 from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
+from reference_model.ensemble.core.requested_times import next_requested, recorded
 from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
-from reference_model.ensemble.pin.end_states import well_of
-from reference_model.ensemble.pin.events import attend, rest
+from reference_model.ensemble.parameters import Task
+from reference_model.ensemble.pin.end_states import equilibrium_region
+from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
     LANDING,
     MANY,
@@ -29,18 +29,17 @@ from reference_model.ensemble.pin.lanes import (
     advance_alone,
     idle,
     law_of,
-    place_at,
+    position_at,
     put_slipping,
     slip_at,
 )
 from reference_model.ensemble.pin.memory import (
-    Aims,
     PinMemory,
+    Settings,
     keep,
     put_state,
     take_checkpoint,
 )
-from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
@@ -61,21 +60,8 @@ PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "o
 """Parameters of a pin, in the order of the kernel."""
 
 
-class PinTask(NamedTuple):
-    """Input of the kernel.
-
-    ``parameters`` are (1 or n, 6), in the order of PARAMETERS; ``starts`` (1 or n, 4), their ``paces`` (1 or n, 5) if
-    they are checkpoints, ``durations`` in s (1 or n,).
-    """
-
-    parameters: FloatArray
-    starts: FloatArray
-    paces: FloatArray
-    durations: FloatArray
-
-
 @written_out
-def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTask, aims: Aims) -> bool:
+def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task, settings: Settings) -> bool:
     """Write the start of a trajectory to the trial of a lane; return whether it has ended."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
     x, y, vx, vy = row_of(task.starts, number)
@@ -101,29 +87,21 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
         0.0 if g > 0.0 else 1.0,
     )
     put(lanes.law, lane, law)
-    lanes.tolerance[lane] = aims.tolerance
-    lanes.slow[lane] = 10.0 * friction * math.sqrt(aims.tolerance)
+    lanes.tolerance[lane] = settings.tolerance
+    lanes.slow[lane] = 10.0 * friction * math.sqrt(settings.tolerance)
     lanes.steps[lane] = lanes.flag[lane] = 0.0
     lanes.most_steps[lane] = STEPS_TO_SPARE + STEPS_A_TIME * memory.duration
 
-    expect_ends(memory, law, aims)
-    begin_watching = recorded(aims) or aims.early or aims.once or memory.duration <= LAST_TICKS * memory.tick
-    lanes.watch[lane] = TURNS if begin_watching and friction > 0.0 else UNWATCHED
-    if recorded(aims):
-        lanes.due[lane] = min(next_asked(memory, aims), memory.duration - LANDING)
-    elif begin_watching:
-        lanes.due[lane] = min(memory.tick, memory.duration - LANDING)
-    else:
-        lanes.due[lane] = memory.duration - LAST_TICKS * memory.tick
-
+    expect_ends(memory, law, settings)
+    _start_watching(lanes, memory, lane, settings)
     lanes.trial.state.time[lane] = lanes.trial.state.way[lane] = 0.0
     z = complex(x, y) / length
     w = complex(vx + omega * y, vy - omega * x) / speed
     if abs(w) <= ROUNDING * abs(law.disc_speed * z):
         w = 0j
-    take_checkpoint(memory, SLIPS, 0.0, z, w, law, aims)
+    take_checkpoint(memory, SLIPS, 0.0, z, w, law, settings)
     if w == 0j and friction > 0.0:
-        return rest(lanes, memory, lane, z, 0.0, law, aims, False)
+        return rest(lanes, memory, lane, z, 0.0, law, settings, False)
     put_slipping(lanes, lane, z, w, law)
     if abs(w) < SLOWNESS * friction < SLOWNESS * abs(pull(z, w, law)):
         lanes.short[lane] = MANY
@@ -132,19 +110,34 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: PinTa
     if memory.level == math.inf:
         memory.end = SELF_CENTRED
         keep(memory, 0.0, 0.0, 0.0)
-        return aims.early
+        return settings.early
     return bool(duration <= 0.0)
 
 
 @inlined
-def expect_ends(memory: PinMemory, law: PinLaw, aims: Aims) -> None:
+def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> None:
+    """Watch the motion from the start on, or only at the end if all of it is simulated in any case."""
+    begin_watching = (
+        recorded(settings) or settings.early or settings.once or memory.duration <= LAST_TICKS * memory.tick
+    )
+    lanes.watch[lane] = TURNS if begin_watching and lanes.law.friction[lane] > 0.0 else UNWATCHED
+    if recorded(settings):
+        lanes.due[lane] = min(next_requested(memory, settings), memory.duration - LANDING)
+    elif begin_watching:
+        lanes.due[lane] = min(memory.tick, memory.duration - LANDING)
+    else:
+        lanes.due[lane] = memory.duration - LAST_TICKS * memory.tick
+
+
+@inlined
+def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
     """Store the trapping region of the equilibrium, if known, and the time of the first check."""
-    well, known = well_of(law), aims.known
+    well, regions = equilibrium_region(law), settings.regions
     memory.equilibrium, memory.level = well.place, well.level
     fill(memory.form, well.form)
-    if known.level > 0.0:
-        memory.level = known.level / memory.length**2
-        fill(memory.form, known.form)
+    if regions.level > 0.0:
+        memory.level = regions.level / memory.length**2
+        fill(memory.form, regions.form)
     memory.tick = TICK_TURNS * 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
 
 
@@ -152,7 +145,7 @@ def expect_ends(memory: PinMemory, law: PinLaw, aims: Aims) -> None:
 def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> None:
     """Write the result of a lane in SI units."""
     number, length, found = memory.number, memory.length, memory.found
-    z, w = place_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     put_state(results.states[number], memory, z, w, law_of(lanes, lane))
     results.times[number] = lanes.trial.state.time[lane] / memory.rate
     results.ends[number] = memory.end
@@ -164,16 +157,16 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
     measures[0], measures[1], measures[2] = least, largest, slip
 
 
-@outermost
-def run_pins(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
+@called_from_python
+def run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded)."""
-    _run_pins(task, aims, results, first, last)
+    _run_pins(task, settings, results, first, last)
 
 
 @inlined
-def _run_pins(task: PinTask, aims: Aims, results: Results, first: int, last: int) -> None:
+def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
     """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
     run(
-        load, advance, advance_alone, attend, store, idle,
-        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, aims, results,
+        load, advance, advance_alone, handle_flag, store, idle,
+        np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,
     )  # fmt: skip

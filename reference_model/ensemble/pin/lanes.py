@@ -35,8 +35,8 @@ class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
     Further fields are the tolerance of a step; the slip speed below which rest may be near; when the lane next needs
-    attention (``due``); how closely it is watched; why it needs attention (``flag``); the number of steps so far and
-    the largest allowed; and the number of successive short steps.
+    attention (``due``); how closely it is watched; the reasons for attention (``flag``); the number of steps and the
+    largest allowed; and the number of successive short steps.
     """
 
     now: Moment
@@ -56,10 +56,10 @@ UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
 """Degrees of watching: attention also when x is largest, and when the radius is largest or smallest too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up: slip is about to end.
+"""Flags, which add up.
 
-The due time has come; x was largest; the radius was largest or smallest; step size or number of steps are out of
-bounds; an implicit step may be worthwhile.
+Slip is about to end; the due time has come; x was largest; the radius was largest or smallest; step size or number of
+steps are out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
@@ -98,7 +98,7 @@ def _advance_in(lanes: PinLanes, count: int) -> None:
         good = error < 1.0
         shorter = h * factor_of(error)
 
-        flag = reasons(state, k, new, k1, lanes.due[lane], lanes.slow[lane], lanes.watch[lane])
+        flag = flags_of(state, k, new, k1, lanes.due[lane], lanes.slow[lane], lanes.watch[lane])
         flag = flag if good else 0.0
         steps = lanes.steps[lane] + 1.0
         lost = (shorter < SMALLEST_STEP) | (steps > lanes.most_steps[lane])
@@ -126,7 +126,7 @@ def advance_alone(lanes: PinLanes, _: None) -> None:
 
 
 @inlined
-def reasons(
+def flags_of(
     state: PinState, k: PinState, new: PinState, k1: PinState, due: float, slow: float, watch: float
 ) -> float:
     """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
@@ -171,7 +171,7 @@ def rates_at(moment: Moment, lane: int) -> PinState:
 
 
 @inlined
-def place_at(moment: Moment, lane: int) -> complex:
+def position_at(moment: Moment, lane: int) -> complex:
     """Return z."""
     return complex(moment.state.x[lane], moment.state.y[lane])
 
@@ -196,12 +196,12 @@ def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw
 @inlined
 def put_motion(moment: Moment, lane: int, z: complex, w: complex, law: PinLaw) -> None:
     """Write a slipping pin and its rates to a lane."""
-    put_place(moment, lane, z, w)
+    put_position(moment, lane, z, w)
     put(moment.rates, lane, pin_rates((z.real, z.imag, w.real, w.imag), law))
 
 
 @inlined
-def put_place(moment: Moment, lane: int, z: complex, w: complex) -> None:
+def put_position(moment: Moment, lane: int, z: complex, w: complex) -> None:
     """Write position and slip velocity to a lane."""
     state = moment.state
     state.x[lane], state.y[lane], state.wx[lane], state.wy[lane] = z.real, z.imag, w.real, w.imag
@@ -248,6 +248,6 @@ def motion(z: complex, w: complex, law: PinLaw) -> Motion:
 def last_step(lanes: PinLanes, lane: int, law: PinLaw) -> DenseOutput:
     """Return the motion in the last step."""
     now, trial = lanes.now, lanes.trial
-    first = motion(place_at(now, lane), slip_at(now, lane), law)
-    last = motion(place_at(trial, lane), slip_at(trial, lane), law)
+    first = motion(position_at(now, lane), slip_at(now, lane), law)
+    last = motion(position_at(trial, lane), slip_at(trial, lane), law)
     return dense_output(trial.state.time[lane] - now.state.time[lane], first, last)

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
-from reference_model.ensemble.core.asked import passes_asked
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import Record, fill, layout
+from reference_model.ensemble.core.requested_times import mark_requested
 from reference_model.ensemble.core.window import NO_WINDOW, Measures, Window, measured, see_radius
 from reference_model.ensemble.pin.end_states import Form
-from reference_model.ensemble.pin.lanes import Moment, PinLanes, place_at, slip_at
+from reference_model.ensemble.pin.lanes import Moment, PinLanes, position_at, slip_at
 from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray
 
@@ -42,12 +42,12 @@ class SectionForm(NamedTuple):
     vv: float
 
 
-class KnownEnds(Record):
-    """Known end states, if all trajectories have the same parameters; in m and s.
+class TrappingRegions(Record):
+    """Trapping regions, if all trajectories have the same parameters; in m and s.
 
-    ``level`` and ``form`` describe the trapping region of the equilibrium. ``reach`` is the level of that of the
-    whirl, ``turn`` its crossing of the section, ``metric`` the form there, and ``measures`` its measures. Level or
-    reach are 0 if unknown.
+    ``level`` and ``form`` describe the region of the equilibrium. ``reach`` is the level of that of the whirl,
+    ``turn`` its crossing of the section, ``metric`` the form there, and ``measures`` its measures. Level or reach are
+    0 if unknown.
     """
 
     level: float
@@ -81,8 +81,8 @@ class PinMemory(Record):
     """Data of a lane: number of the trajectory, units, duration in units, end state so far and its measures.
 
     Further fields are the self-centred equilibrium with its trapping region and the time between checks; crossings
-    and releases so far, and the window for measuring an end state; the proposed implicit step, the number of
-    checkpoints taken, and the number of requested times passed.
+    and releases so far, and the window for measuring an end state; the proposed implicit step; and the numbers of
+    checkpoints taken and of requested times passed.
     """
 
     number: int
@@ -103,31 +103,33 @@ class PinMemory(Record):
     passed: int
 
 
-class Aims(NamedTuple):
+class Settings(NamedTuple):
     """Settings for scalar code; few arrays, because each costs time in every call.
 
     ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section.
-    ``known`` contains the known end states, ``series`` is work space for the start of slip, and ``checkpoints`` is
-    room for those of a single trajectory, empty if not requested.
+    ``series`` is work space for the start of slip. ``checkpoints`` are those of a single trajectory, empty if not
+    requested.
     """
 
     tolerance: float
     early: bool
     once: bool
-    known: KnownEnds
+    regions: TrappingRegions
     series: ComplexArray
     checkpoints: Checkpoints
 
 
-def nothing_known() -> NDArray[Any]:
-    """Return ``KnownEnds`` without any known end state, shape (1,)."""
-    return np.zeros(1, layout(KnownEnds))
+def no_regions() -> NDArray[Any]:
+    """Return ``TrappingRegions`` without any region, shape (1,)."""
+    return np.zeros(1, layout(TrappingRegions))
 
 
-def aims_of(tolerance: float, early: bool, once: bool, known: NDArray[Any], checkpoints: Checkpoints) -> Aims:
-    """Return the aims of one call of the kernel, with work space; ``known``, shape (1,), are ``KnownEnds``."""
+def settings_of(
+    tolerance: float, early: bool, once: bool, regions: NDArray[Any], checkpoints: Checkpoints
+) -> Settings:
+    """Return the settings of one call of the kernel, with work space; ``regions`` has the shape (1,)."""
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
-    return Aims(tolerance, early, once, known[0], series, checkpoints)
+    return Settings(tolerance, early, once, regions[0], series, checkpoints)
 
 
 @inlined
@@ -146,24 +148,30 @@ def close_window(memory: PinMemory, end: int, t: float, way: float, radius: floa
 
 @scalar
 def take_checkpoint(
-    memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, aims: Aims
+    memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, settings: Settings
 ) -> None:
     """Store a checkpoint of a trajectory, while there is room."""
-    if memory.checkpoints < aims.checkpoints.size:
-        checkpoint = aims.checkpoints[memory.checkpoints]
+    if memory.checkpoints < settings.checkpoints.size:
+        checkpoint = settings.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
         checkpoint.kind, checkpoint.time = kind, t / memory.rate
         put_state(checkpoint.state, memory, z, w, law)
 
 
 @scalar
-def pass_asked(
-    lanes: PinLanes, moment: Moment, memory: PinMemory, lane: int, until: float, law: PinLaw, aims: Aims
+def record_requested(
+    lanes: PinLanes,
+    moment: Moment,
+    memory: PinMemory,
+    lane: int,
+    until: float,
+    law: PinLaw,
+    settings: Settings,
 ) -> None:
-    """Store a checkpoint of a ``moment`` of a lane if times between it and ``until`` are requested."""
-    if passes_asked(lanes, moment, memory, lane, until, aims):
-        t, z, w = moment.state.time[lane], place_at(moment, lane), slip_at(moment, lane)
-        take_checkpoint(memory, ON_THE_WAY, t, z, w, law, aims)
+    """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
+    if mark_requested(lanes, moment, memory, lane, until, settings):
+        t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
+        take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)
 
 
 @scalar

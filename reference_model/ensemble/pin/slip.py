@@ -2,7 +2,7 @@
 
 As elsewhere z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ =
 dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and almost unchanged far from rest.
-So one right-hand side serves all lanes, whether they slip fast or are about to rest.
+So one right-hand side serves all lanes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series of beginning slip, usually and where it stays slow: see STIFF.
+"""Number of terms of the series of beginning slip, usually and where it stays slow, see STIFF.
 
 The truncation error of a short series is an error of direction, which slip forgets.
 """
@@ -30,8 +30,7 @@ The truncation error of a short series is an error of direction, which slip forg
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
 
-Otherwise friction only just exceeds the pull and slip is a short excursion. A longer series then replaces many stiff
-steps.
+Otherwise friction only just exceeds the pull, and a longer series replaces many stiff steps of a short excursion.
 """
 
 SLAVED = 0.02

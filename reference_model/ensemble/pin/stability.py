@@ -27,8 +27,8 @@ from reference_model.systems import FloatArray
 STRIDE, STABLE = 0.5, 1.5
 """Step sizes, in units of time or of the time scale of the slip velocity, and in units of 1/(c + g/s).
 
-Deviations decay by damping and friction at the rate c + g/s; the method is stable up to 2.8 units of 1/(c + g/s). The
-multipliers of Fig. 5's whirls have errors of 1e-5, and of 1e-3 if slip almost ends in a turn.
+Deviations decay at the rate c + g/s; the method is stable up to 2.8 units of 1/(c + g/s). The multipliers of Fig. 5's
+whirls have errors of 1e-5, and of 1e-3 if slip almost ends in a turn.
 """
 
 MOST_STRIDES = 20_000
@@ -103,7 +103,7 @@ def return_derivative(z: complex, v: complex, period: float, law: PinLaw, deriva
 
 @scalar
 def _put_rates(y: ComplexArray, law: PinLaw, rates: ComplexArray) -> None:
-    """Write the rates of the motion, the first row of ``y``, and of its deviations, the other rows, to ``rates``."""
+    """Write the rates of the motion (first row of ``y``) and of its deviations (other rows) to ``rates``."""
     turn = complex(0.0, law.disc_speed)
     z, v = y[0, 0], y[0, 1]
     w = v - turn * z

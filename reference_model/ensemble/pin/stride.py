@@ -16,10 +16,10 @@ from reference_model.ensemble.core.stepping.implicit import (
 )
 from reference_model.ensemble.pin.lanes import (
     PinLanes,
-    place_at,
+    flags_of,
+    position_at,
     put_motion,
     rates_at,
-    reasons,
     slip_at,
     state_at,
 )
@@ -32,7 +32,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     now, trial = lanes.now, lanes.trial
     t, share = now.state.time[lane], now.rates.time[lane]
     short = now.step[lane] * share
-    z, w = place_at(now, lane), slip_at(now, lane)
+    z, w = position_at(now, lane), slip_at(now, lane)
     left = memory.duration - t
     least = min(WORTH * short, left)
     span = first_try(memory.span, least, left)
@@ -56,7 +56,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
     trial.state.time[lane] = t + took if took < left else memory.duration
     trial.step[lane] = now.step[lane]  # the trial step gives no estimate for it
     trial.state.way[lane] = now.state.way[lane] + way
-    lanes.flag[lane] = reasons(
+    lanes.flag[lane] = flags_of(
         state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),
         lanes.due[lane], lanes.slow[lane], lanes.watch[lane],
     )  # fmt: skip

@@ -1,10 +1,9 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
-For both a map is known that the motion repeats: the flow over a given time, and the return to the section where x is
-largest. Near a stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The
-map itself shows how far this extends. It is applied to points on the surface of ever larger ellipsoids, as long as
-each image lies in a clearly smaller ellipsoid, on a whirl without stick. All motions inside these ellipsoids are
-attracted.
+Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
+stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The map itself shows
+how far this extends. It is applied to points on the surface of ever larger ellipsoids, as long as each image lies in
+a clearly smaller ellipsoid, on a whirl without stick. All motions inside these ellipsoids are attracted.
 """
 
 from __future__ import annotations
@@ -19,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
-from reference_model.ensemble.checkpoints import from_the_start, room_for
+from reference_model.ensemble.checkpoints import empty_checkpoints, from_the_start
 from reference_model.ensemble.end_states import EndState, Results
-from reference_model.ensemble.parameters import parameter_table
-from reference_model.ensemble.pin.kernel import PARAMETERS, PinTask, run_pins
-from reference_model.ensemble.pin.memory import aims_of, nothing_known
+from reference_model.ensemble.parameters import Task, parameter_table
+from reference_model.ensemble.pin.kernel import PARAMETERS, run_pins
+from reference_model.ensemble.pin.memory import no_regions, settings_of
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc
 
@@ -41,7 +40,7 @@ GROWTH = 1.25
 
 FIRST = 1e-2
 
-ASKED_FOR = 0.25
+REQUIRED_SHARE = 0.25
 """Share of the contraction of small deviations that all points on an ellipsoid must show."""
 
 MOST_ELLIPSOIDS = 40
@@ -59,20 +58,20 @@ DIFFERENCE = 1e-4
 
 
 @lru_cache(maxsize=64)
-def known_ends(pin: PinOnDisc) -> NDArray[Any]:
-    """Return the known ends of ``pin``, ``KnownEnds`` of shape (1,), with zeros where nothing is known.
+def trapping_regions(pin: PinOnDisc) -> NDArray[Any]:
+    """Return the trapping regions of ``pin``, shape (1,), with zeros where none is known.
 
     This takes some ten milliseconds, which a sweep in many parts should spend once.
     """
-    known = nothing_known()
+    regions = no_regions()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
-        _look_about_equilibrium(pin, known)
-        _look_about_whirl(pin, known)
-    known.flags.writeable = False
-    return known
+        _find_equilibrium_region(pin, regions)
+        _find_whirl_region(pin, regions)
+    regions.flags.writeable = False
+    return regions
 
 
-def _look_about_equilibrium(pin: PinOnDisc, known: NDArray[Any]) -> None:
+def _find_equilibrium_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
     try:
         place = complex(*equilibrium_position(pin))
     except ValueError:
@@ -91,11 +90,11 @@ def _look_about_equilibrium(pin: PinOnDisc, known: NDArray[Any]) -> None:
         given_up = results.times < 0.5 * duration
         return np.where(given_up[:, np.newaxis], np.nan, np.column_stack((z.real, z.imag, v.real, v.imag)))
 
-    known["level"], form = _drawn_in(after_some_time, 4, abs(place))
-    known["form"] = tuple(form)
+    regions["level"], form = _contracting_region(after_some_time, 4, abs(place))
+    regions["form"] = tuple(form)
 
 
-def _look_about_whirl(pin: PinOnDisc, known: NDArray[Any]) -> None:
+def _find_whirl_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
     centred = replace(pin, offset=0.0)
     try:
         radius, frequency = whirl_radius(centred), whirl_frequency(centred)
@@ -124,9 +123,11 @@ def _look_about_whirl(pin: PinOnDisc, known: NDArray[Any]) -> None:
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
         start = _on_section(turn[np.newaxis], k)  # so that the measures are those of the orbit itself
-    known["turn"], known["measures"] = tuple(turn), tuple(found.measures[0])
-    known["reach"], metric = _drawn_in(lambda points: crossing_from(turn + points) - turn, 3, radius)
-    known["metric"] = tuple(metric)
+    regions["turn"], regions["measures"] = tuple(turn), tuple(found.measures[0])
+    regions["reach"], metric = _contracting_region(
+        lambda points: crossing_from(turn + points) - turn, 3, radius
+    )
+    regions["metric"] = tuple(metric)
 
 
 def _on_section(crossings: FloatArray, k: float) -> FloatArray:
@@ -138,10 +139,10 @@ def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
     results = Results.empty(len(starts), pin.state_size)
-    task = PinTask(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
-    checkpoints = room_for(0, pin.state_size)
-    aims = aims_of(TOLERANCE, early, once, nothing_known(), checkpoints)
-    run_pins(task, aims, results, 0, len(starts))
+    task = Task(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
+    checkpoints = empty_checkpoints(0, pin.state_size)
+    settings = settings_of(TOLERANCE, early, once, no_regions(), checkpoints)
+    run_pins(task, settings, results, 0, len(starts))
     return results
 
 
@@ -151,11 +152,8 @@ def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:
     return np.asarray((images[:dimension] - images[dimension:]).T / (2.0 * DIFFERENCE * size))
 
 
-def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray]:
-    """Return the largest level of xᵀPx within which the map contracts, and the upper half of P.
-
-    Zeros if it never does.
-    """
+def _contracting_region(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray]:
+    """Return the largest level of xᵀPx within which the map contracts, and the upper half of P, or zeros."""
     nothing = 0.0, np.zeros(dimension * (dimension + 1) // 2)
     matrix = _derivative(flow, dimension, size)
     if not np.all(np.isfinite(matrix)) or np.max(np.abs(np.linalg.eigvals(matrix))) >= 1.0:
@@ -165,7 +163,7 @@ def _drawn_in(flow: Map, dimension: int, size: float) -> tuple[float, FloatArray
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
     # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves room between the points.
-    allowed = 1.0 - ASKED_FOR * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
+    allowed = 1.0 - REQUIRED_SHARE * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):
         images = flow(radius * surface)

@@ -18,11 +18,7 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
     Friction acts along the circle about the axis, so the springs must pull by μN at a right angle to ρ*. Their
     deflection d* = √(X0² − ρ*²) is that of the force μN, which is μN/C on a linear support.
 
-    Raises
-    ------
-    ValueError
-        If (5) fails, if there are no springs, or if the disc is at rest and there is friction.
-
+    Raises ``ValueError`` if (5) fails, if there are no springs, or if the disc is at rest and there is friction.
     """
     _require_equilibrium(pin)
     if pin.linear_support:
@@ -36,11 +32,8 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
 def equilibrium_angle(pin: PinOnDisc) -> float:
     """Return ψ* of (3), the angle of the pin at rest, in rad between −π and π.
 
-    Raises
-    ------
-    ValueError
-        As :func:`equilibrium_radius`, and if the offset is zero, where no direction is distinguished.
-
+    Raises ``ValueError`` as :func:`equilibrium_radius`, and if the offset is zero, where no direction is
+    distinguished.
     """
     _require_equilibrium(pin)
     if pin.offset == 0.0:
@@ -54,11 +47,7 @@ def equilibrium_angle(pin: PinOnDisc) -> float:
 def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
     """Return x* and y* of (3), the position of the pin at rest, in m.
 
-    Raises
-    ------
-    ValueError
-        As :func:`equilibrium_radius`.
-
+    Raises ``ValueError`` as :func:`equilibrium_radius`.
     """
     radius = equilibrium_radius(pin)
     if pin.offset == 0.0:

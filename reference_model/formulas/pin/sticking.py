@@ -18,8 +18,6 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
     radius : float or array
         A, the distance of the stuck pin from the axis, in m.
     disc_angle : float or array
@@ -54,11 +52,9 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
 
     Parameters
     ----------
-    pin : PinOnDisc
-        Parameters of the system.
-    radius : float
+    radius
         A, the distance of the stuck pin from the axis, in m, >= 0.
-    start_angle : float
+    start_angle
         Angle of the pin at the start, in rad.
 
     Returns
@@ -117,11 +113,8 @@ def sticking_radius(pin: PinOnDisc) -> float:
 
     It is ``inf`` if an undamped pin is carried round at its natural frequency, which takes no force.
 
-    Raises
-    ------
-    ValueError
-        If μN <= C·|X0|, where friction cannot hold the pin even on the axis, or if the support is not linear.
-
+    Raises ``ValueError`` if μN <= C·|X0|, where friction cannot hold the pin even on the axis, or if the support is
+    not linear.
     """
     spare = sticking_margin(pin, 0.0)
     if spare <= 0.0:
@@ -136,11 +129,7 @@ def sticking_radius(pin: PinOnDisc) -> float:
 def resonant_disc_speed(pin: PinOnDisc) -> float:
     """Return ω* below (9) in rad/s, the disc speed with the largest sticking domain.
 
-    Raises
-    ------
-    ValueError
-        If C/m <= β²/2m², where the domain shrinks from ω = 0 on, or if the support is not linear.
-
+    Raises ``ValueError`` if C/m <= β²/2m², where the domain shrinks from ω = 0 on, or if the support is not linear.
     """
     require_linear_support(pin)
     spring, damper = pin.stiffness / pin.mass, pin.damping**2 / (2.0 * pin.mass**2)

@@ -29,11 +29,7 @@ def whirl_radius(pin: PinOnDisc) -> float:
 def whirl_frequency(pin: PinOnDisc) -> float:
     """Return ψ̇ of (11) in rad/s: k if ω > k, −k if ω < −k, and (μN/β)/ρ_c in general.
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     return turning_direction(pin) * circling_speed(pin, driven_radius(pin, pin.friction_force))

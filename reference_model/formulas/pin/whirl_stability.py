@@ -15,11 +15,7 @@ def variational_matrix(pin: PinOnDisc) -> FloatArray:
 
     ξ is the deviation of the radius in m, and η the deviation of the angular velocity in the sense of ω, in rad/s.
 
-    Raises
-    ------
-    ValueError
-        If |ω| = k, if damping or friction force is zero, or if the support is not linear.
-
+    Raises ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
     """
     require_positive(pin, "damping", "friction_force")
     rate, k = pin.damping / pin.mass, pin.natural_frequency

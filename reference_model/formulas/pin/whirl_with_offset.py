@@ -25,11 +25,7 @@ def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
     It balances only the first harmonic. The second harmonic that the offset excites is of the same order in X0 and
     changes the mean, see :func:`first_order_whirl_shift`.
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     half = _relative_damping(pin) * speed_ratio(pin) / 2.0  # βω/(2mk(ω − k))
@@ -51,11 +47,7 @@ def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
         mean            = X0·conj((6 − id(w + 2))/(2(3 + d²w + id(w − 1))))
         second harmonic = X0·idw/(2(3 + d²w + id(w − 1)))
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)
@@ -70,11 +62,7 @@ def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
 def first_order_whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
     """Return the time mean of x and y in m of the whirl with a small offset, exact to first order in X0.
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     mean = first_order_whirl_response(pin).mean
     return mean.real, mean.imag
@@ -86,11 +74,7 @@ def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
     With d and w of :func:`first_order_whirl_response` it is the complex conjugate of d²w(2 − w)/((2 + idw)(6 − id(w +
     2))): zero at |ω| = 2k, and −1 as |ω| → k. It does not depend on the offset, which may be zero.
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)
@@ -114,11 +98,7 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
 
         i·d·w(w + 1)/(4(2w + 1))·(wX0/ρ_c)²
 
-    Raises
-    ------
-    ValueError
-        As :func:`whirl_radius`.
-
+    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)

@@ -68,11 +68,11 @@ def begin_slip(
 
     Parameters
     ----------
-    run : Run
+    run
         The simulation.
-    motion : Coordinates
+    motion
         Coordinates of the slip.
-    t : float
+    t
         Initial time.
     y : sequence
         Initial unknowns without the slip.
@@ -80,7 +80,7 @@ def begin_slip(
         Their rates at rest.
     direction : array of shape (slip,)
         Unit vector of the incipient slip.
-    leave : callable
+    leave
         Returns whether the motion needs another description, for example because a point comes to rest.
 
     Raises
@@ -176,13 +176,13 @@ class _Piece:
 
     Parameters
     ----------
-    values : Polynomial
+    values
         Unknowns as functions of the time since the step began.
     rates : array of shape (NODES, unknowns)
         Rates at the nodes.
-    stiffness : float
+    stiffness
         Relaxation rate of the direction of slip at the end, in 1/T.
-    falling : bool
+    falling
         Whether slip decelerates at the end.
 
     """

@@ -42,25 +42,25 @@ class Coordinates:
 
     Parameters
     ----------
-    rates : callable
+    rates
         Takes the unknowns and returns their rates in 1/T, including friction; never evaluated at zero slip.
-    many : callable
+    many
         The vectorised ``rates``, for arrays of shape (k,).
-    slip : int
+    slip
         Number of components of the slip.
-    slow : callable
+    slow
         Takes the unknowns and returns the speed limit of slow slip.
-    pace : float
+    pace
         Largest rate of everything except the slip, in 1/T.
-    standard : callable
+    standard
         Takes unknowns of shape (k, n) and returns the standard unknowns of the body, (unknowns, n).
-    angle : int or None
+    angle
         Index of an angle, which has an absolute tolerance.
-    turning : int or None
+    turning
         Index of a relative velocity apart from the slip. Friction may change on its scale, however small it is.
-    leverage : float
+    leverage
         Derivative of the velocity of the centre by the slip.
-    grip : callable or None
+    grip
         Returns the margin of a held friction force; the motion ends where it falls to zero.
     surfaces : tuple of SwitchingSurface
         Surfaces of continuous but not smooth friction or support.
@@ -143,11 +143,11 @@ def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
 
 
 class Outcome(NamedTuple):
-    """Time and unknowns where a description of the motion ended; ``let_go`` if the grip was lost."""
+    """Time and unknowns where a description of the motion ended; ``released`` if the grip was lost."""
 
     t: float
     y: list[float]
-    let_go: bool = False
+    released: bool = False
 
 
 Leave = Callable[[list[float]], bool]

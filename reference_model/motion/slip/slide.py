@@ -49,7 +49,7 @@ def slide(run: Run, motion: Coordinates, t: float, y: list[float], leave: Leave)
             break
         if solver.stiff_for_long(_change(slip, y) + t - before) and motion.speed(y) > 0.0:
             return slide_stiffly(run, motion, t, y, leave, t - before)
-    return Outcome(t, y, let_go=lost is not None)
+    return Outcome(t, y, released=lost is not None)
 
 
 def _change(before: list[float], y: list[float]) -> float:
@@ -115,7 +115,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
             return ended
         if solver.stiff_for_long(_change(slip, y) + t - before):
             return slide_stiffly(run, motion, t, y, leave, t - before)
-    return Outcome(t, y, let_go=lost is not None)
+    return Outcome(t, y, released=lost is not None)
 
 
 def _stretched(

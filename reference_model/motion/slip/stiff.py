@@ -57,7 +57,7 @@ def slide_stiffly(
             run.record(t, partial(_standard, motion, others, solver.dense_output()))
         y = _one(others, (solver.y if lost is None else solver.dense_output()(lost)).tolist())
         if lost is not None:
-            return Outcome(t, y, let_go=True)
+            return Outcome(t, y, released=True)
         if t - start > COST * step * (run.steps - taken):
             run.patience = PATIENCE
         if t >= run.end or leave(y) or (slowly and motion.speed(y) > FAST_AGAIN * motion.slow(y)):

@@ -76,7 +76,6 @@ def test_help_needs_no_heavy_library_and_only_a_sweep_needs_the_extra():
 
 
 def report(*arguments, engine="fake_studies:straight", output, studies=fake_studies.ALL):
-    """Return the exit status of a report of the fake studies."""
     options = ("--engine", engine, "--jobs", "1", "--output", str(output))
     return cli.status(["report", *arguments, *options], studies)
 

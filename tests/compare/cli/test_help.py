@@ -21,7 +21,6 @@ COMMAND = "friction-discs "
 
 
 def help_texts(command=None, path="friction-discs"):
-    """Yield the name and the help text of every command."""
     command = command or typer.main.get_command(cli.app)
     yield path, command.help
     for name, part in getattr(command, "commands", {}).items():
@@ -64,7 +63,6 @@ class Understood(BaseException):
 
 @pytest.fixture
 def idle(monkeypatch, tmp_path):
-    """Stop before any work, and change to an empty folder."""
 
     def stop(*arguments, **options):
         raise Understood

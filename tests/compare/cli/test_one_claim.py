@@ -17,14 +17,12 @@ ASKED = []
 
 @STUDY.claim("One is one", unit="m", resolution=1.0)
 def one(engine):
-    """Compare one number."""
     ASKED.append("one")
     return Measured(predicted=1.0, value=1.0 + 1e-3, error=1e-2)
 
 
 @STUDY.claim("It is {}", unit="m, rad", resolution=1.0, each={"Small one": 1e-9, "large": 1.0})
 def of_size(engine, size):
-    """Compare one number for each size."""
     ASKED.append(size)
     return Measured(
         predicted=[size, 1.0], value=[size, 2.0], error=0.1, components=("x in m", "angle in rad")

@@ -1,5 +1,3 @@
-"""What no motion of the paper's systems can start from is refused in a sentence."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -24,7 +24,7 @@ import reference_model
 from compare.claims.parameters import FIG5, FIG11
 from exudyn_models import add_native_friction, add_ring_friction, simulate_with_native_contact
 from exudyn_models.forces.laws.places import ring_places
-from exudyn_models.paper.models import build as models
+from exudyn_models.paper.model import build_model
 from reference_model.systems import DiscOnDisc
 
 SLIPPING_PIN = [1.3, 0.0, 0.0, -1.3]  # never comes to rest
@@ -173,7 +173,7 @@ def test_the_contact_holds_however_far_a_body_goes(system, span, distance):
 )
 def test_no_user_function_takes_part_in_the_friction(system, state):
     friction = partial(add_native_friction, reach=10.0)
-    model = models.build(system, state, regularisation=1e-7, friction=friction)
+    model = build_model(system, state, regularisation=1e-7, friction=friction)
     mbs = model.mbs
     objects = [mbs.GetObject(i) for i in range(mbs.systemData.NumberOfObjects())]
     assert sum("trianglePoints" in item for item in objects) == (1 if system is FIG5 else 6)

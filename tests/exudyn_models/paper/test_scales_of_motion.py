@@ -11,7 +11,7 @@ from compare.claims.error_estimates import refined
 from compare.claims.parameters import FIG5, FIG11
 from compare.studies.engines.clutch_scale import Scale
 from exudyn_models import simulate, simulate_with_native_contact
-from exudyn_models.paper.models.build import build
+from exudyn_models.paper.model import build_model
 from exudyn_models.paper.recording import Recording
 from exudyn_models.paper.turning_axes import Axes
 from exudyn_models.solver.solver_run import solve
@@ -96,9 +96,9 @@ def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
     """Coriolis and centrifugal force, the turning ground, damper and shaft: all that axes change, at any speed."""
     axes, start = Axes(speed), np.array(start)
     options = {"integrator": "DOPRI5", "step": 0.1, "tolerance": 1e-12}
-    fixed = solve(build(system, start, regularisation=1e-7), 0.0, 5.0, **options)
+    fixed = solve(build_model(system, start, regularisation=1e-7), 0.0, 5.0, **options)
     turning = solve(
-        build(system, axes.start(start), regularisation=1e-7, axes_speed=speed), 0.0, 5.0, **options
+        build_model(system, axes.start(start), regularisation=1e-7, axes_speed=speed), 0.0, 5.0, **options
     )
     seen = axes.fixed_steps(turning)
     np.testing.assert_allclose(seen.states[-1], fixed.states[-1], rtol=0.0, atol=2e-11)

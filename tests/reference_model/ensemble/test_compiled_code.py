@@ -26,7 +26,6 @@ VECTOR_ROOT, SCALAR_ROOT = (r"fsqrt\s+v", r"fsqrt\s+d") if ARM else (r"v?sqrtpd"
 
 
 def random_starts(system, number):
-    """Return starts with slip, and for a disc one more without slip."""
     rng = np.random.default_rng(0)
     size = system.state_size
     starts = np.zeros((number, size))

@@ -181,7 +181,7 @@ CREEPING = replace(FIG5, offset=0.0, damping=2.0, friction_force=0.1, disc_speed
 
 
 def as_disc(pin, points):
-    """Return a disc without relative spin, whose centre moves like the pin."""
+    """Return a disc without relative spin."""
     return DiscOnDisc(
         mass=pin.mass, stiffness=pin.stiffness, damping=pin.damping, friction_force=pin.friction_force,
         disc_speed=pin.disc_speed, offset=pin.offset, polar_inertia=0.02, contact_radius=0.2, shaft_damping=0.0,

@@ -11,7 +11,7 @@ from test_compiled_runs import STICKING
 from compare.claims.parameters import FIG8, FIG9, FIG11
 from reference_model import DiscOnDisc, self_centred_equilibria, simulate, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
-from reference_model.ensemble.disc.trapping import known_regions
+from reference_model.ensemble.disc.trapping import trapping_regions
 
 BISTABLE = DiscOnDisc(
     mass=1.0, polar_inertia=0.01, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
@@ -94,7 +94,7 @@ def test_early_end_at_the_equilibrium_of_fig_8_has_its_radius_and_power():
 
 
 def test_motion_from_the_edge_of_a_trapping_region_goes_to_the_equilibrium():
-    region = known_regions(BISTABLE)[0]
+    region = trapping_regions(BISTABLE)[0]
     form = np.zeros((5, 5))
     form[np.triu_indices(5)] = region["form"].tolist()
     form += np.triu(form, 1).T

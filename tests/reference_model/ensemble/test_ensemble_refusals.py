@@ -1,5 +1,3 @@
-"""Error messages of ensembles and compiled runs for invalid arguments."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -22,7 +22,7 @@ from reference_model import (
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.convergence import ACCURACY, converged
-from reference_model.ensemble.pin.end_states import depth, well_of
+from reference_model.ensemble.pin.end_states import depth, equilibrium_region
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
 
 STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
@@ -235,7 +235,7 @@ def law_of(pin):
 )
 def test_lyapunov_form_falls_along_all_motions_within_its_level(pin):
     law = law_of(pin)
-    well = well_of(law)
+    well = equilibrium_region(law)
     (equilibrium,) = self_centred_equilibria(pin)
     assert well.place == pytest.approx(complex(equilibrium.x, equilibrium.y), rel=1e-12)
     assert well.level > 0.0

@@ -7,7 +7,7 @@ import pytest
 from reference_model.ensemble.core.stepping.dense_output import (
     Motion,
     dense_output,
-    place_on,
+    position_on,
     velocity_on,
 )
 from reference_model.ensemble.core.stepping.runge_kutta import (
@@ -74,7 +74,7 @@ def test_dense_output_is_exact_for_polynomials_of_degree_seven():
     between = dense_output(0.8, motion_at(x, y, 0.3), motion_at(x, y, 1.1))
     for u in np.linspace(0.0, 1.0, 7):
         t = 0.3 + 0.8 * u
-        assert place_on(between, u) == pytest.approx(complex(x(t), y(t)), rel=1e-12, abs=1e-12)
+        assert position_on(between, u) == pytest.approx(complex(x(t), y(t)), rel=1e-12, abs=1e-12)
         assert velocity_on(between, u) == pytest.approx(
             complex(x.deriv()(t), y.deriv()(t)), rel=1e-11, abs=1e-11
         )

@@ -80,7 +80,7 @@ DISCS = [
 @pytest.mark.parametrize("disc", DISCS)
 def test_positions_by_the_corrected_26_are_the_equilibria_of_23_to_rounding(disc, share):
     disc = replace(disc, friction_force=share * disc.stiffness * abs(disc.offset))
-    found = formulas.places_by_26(disc)
+    found = formulas.positions_by_26(disc)
     expected = self_centred_equilibria(disc, ThreeTermRing(disc.contact_radius))
     assert len(found) == len(expected) == 1
     assert found[0] == pytest.approx((expected[0].x, expected[0].y, expected[0].spin), abs=1e-12)
@@ -91,7 +91,10 @@ def test_26_as_printed_is_right_only_without_load():
     errors = []
     for load in (0.0, 0.001, 0.05, 0.09):
         disc = replace(FIG8, friction_force=load)
-        (printed,), (corrected,) = formulas.places_by_26(disc, as_printed=True), formulas.places_by_26(disc)
+        (printed,), (corrected,) = (
+            formulas.positions_by_26(disc, as_printed=True),
+            formulas.positions_by_26(disc),
+        )
         errors.append(math.dist(printed[:2], corrected[:2]))
     assert errors[0] == 0.0
     assert errors == sorted(errors)
@@ -110,10 +113,10 @@ def test_parameters_25_are_two_lengths_and_a_number():
 
 def test_26_gives_the_equilibrium_of_a_pin_if_shaft_and_master_disc_turn_alike():
     disc = replace(FIG8, shaft_speed=0.8)
-    (place,) = formulas.places_by_26(disc)
+    (place,) = formulas.positions_by_26(disc)
     x, y = pin_formulas.equilibrium_position(formulas.pin_of(disc))
     assert place == pytest.approx((x, y, 0.8), rel=1e-14)
-    assert formulas.places_by_26(replace(disc, friction_force=0.1001)) == ()
+    assert formulas.positions_by_26(replace(disc, friction_force=0.1001)) == ()
 
 
 @pytest.mark.parametrize("law", [Ring, ThreeTermRing])
@@ -158,10 +161,10 @@ def test_held_force_lies_on_the_limit_surface(torque_share):
 
 
 REFUSED = [
-    (formulas.places_by_26, {"stiffness": 0.0}, "stiffness = 0"),
-    (formulas.places_by_26, {"disc_speed": 0.0}, "disc_speed = 0"),
-    (formulas.places_by_26, {"shaft_damping": 0.0}, "shaft_damping = 0"),
-    (formulas.places_by_26, {"offset": 0.0}, "offset = 0"),
+    (formulas.positions_by_26, {"stiffness": 0.0}, "stiffness = 0"),
+    (formulas.positions_by_26, {"disc_speed": 0.0}, "disc_speed = 0"),
+    (formulas.positions_by_26, {"shaft_damping": 0.0}, "shaft_damping = 0"),
+    (formulas.positions_by_26, {"offset": 0.0}, "offset = 0"),
     (lambda disc: formulas.polar_angle(disc, 0.2, 0.0), {}, r"A·cos\(alpha\) = 0\.2 m.*\|offset\| = 0\.1 m"),
     (formulas.held_pin, {"friction_force": 0.02}, r"holds only 0\.0024 N m of the shaft's 0\.003 N m"),
     (formulas.held_pin, {"contact_points": 6}, "contact_points = 6"),

@@ -17,7 +17,6 @@ HARDENING = PinOnDisc(
 
 @pytest.fixture
 def few_steps(monkeypatch):
-    """Make a motion fail quickly if it takes very many steps."""
     monkeypatch.setattr("reference_model.trajectory.MOST_STEPS", 3_000)
 
 

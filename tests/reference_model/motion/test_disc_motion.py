@@ -127,7 +127,6 @@ def test_motion_under_23_with_stick_phases_reaches_the_default_tolerance():
 
 @pytest.fixture(scope="module", params=[None, 3], ids=["ring", "three points"])
 def sticky(request):
-    """Return a disc and its motion with the usual thresholds."""
     disc = replace(STICKY, contact_points=request.param)
     return disc, simulate(disc, STICKING, np.linspace(0.0, 12.0, 61))
 

@@ -25,7 +25,6 @@ MOTIONS = {
 
 @pytest.fixture(autouse=True)
 def bounded_work(monkeypatch):
-    """Make a motion fail if its steps never stop getting smaller."""
     taken, step = itertools.count(), Explicit._step_impl
 
     def counted(self):
@@ -36,7 +35,6 @@ def bounded_work(monkeypatch):
 
 
 def neighbours(event):
-    """Return the event, and the floats before and after it."""
     return [float(np.nextafter(event, event + side)) for side in (-1, 0, 1)]
 
 

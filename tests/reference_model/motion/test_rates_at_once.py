@@ -19,7 +19,6 @@ DISC = DiscOnDisc(**asdict(PIN), polar_inertia=0.6, contact_radius=0.9, shaft_da
 
 
 def descriptions(system):
-    """Return all coordinates that describe the motion of a system."""
     run = Run(np.linspace(0.0, 1.0, 3), system.state_size, float, Thresholds(), 1e-9, 1.0)
     if isinstance(system, PinOnDisc):
         return [PinBody(run, SlipMotion.of(system)).coordinates]

@@ -21,13 +21,11 @@ def saddle():
 
 @pytest.fixture(scope="module")
 def boundary(saddle):
-    """Return the boundary with errors of about 1e-7."""
     return basin_boundary(with_tolerance(saddle, 1e-6), ranges=RANGES, cells=5)
 
 
 @pytest.fixture(scope="module")
 def point(saddle):
-    """Return the point of the boundary between the two starts of the paper."""
     return boundary_point(saddle, *FIG5_STARTS.values())
 
 
@@ -36,7 +34,6 @@ def with_tolerance(orbit, tolerance):
 
 
 def whirls(start, duration, tolerance):
-    """Return whether a long compiled run ends on the whirl."""
     end = simulate(FIG5, start, [0.0, duration], tolerance=tolerance, compiled=True).at_end
     return np.hypot(*end[:2]) > 0.4
 

@@ -123,9 +123,8 @@ def spin_at(disc, law, slip):
 
 
 def brackets_of_radii(disc, law, whirl):
-    """Return pairs of neighbouring radii between which the balance of forces changes sign.
-
-    The search starts at 1e-4 of the largest radius, because the plain form of the law is inaccurate below.
+    """Return pairs of neighbouring radii between which the balance of forces changes sign, from 1e-4 of the largest
+    radius on, where the plain form of the law is accurate.
     """
     k, speed = disc.natural_frequency, abs(disc.disc_speed)
     largest = disc.friction_force / (disc.damping * k) if whirl else abs(disc.offset)
@@ -145,7 +144,6 @@ def brackets_of_radii(disc, law, whirl):
 
 
 def random_disc(rng, whirl):
-    """Return a disc with parameters of any size, which may have steady motions."""
 
     def size(least, most):
         return 10.0 ** rng.uniform(math.log10(least), math.log10(most))

@@ -1,5 +1,3 @@
-"""Error messages of steady motions, orbits and boundaries for systems that have none."""
-
 import math
 from dataclasses import replace
 

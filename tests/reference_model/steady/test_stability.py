@@ -57,7 +57,6 @@ def derivative(function, point):
 
 
 def assert_same_eigenvalues(found, expected, tolerance=1e-12):
-    """Compare as sets: each value with the nearest remaining one."""
     left = list(expected)
     assert len(found) == len(left)
     scale = np.abs(left).max()
@@ -85,7 +84,6 @@ disc_states = st.lists(coordinates, min_size=6, max_size=6)
 
 
 def slip_ratio(disc, state):
-    """Return U/(R|S|)."""
     x, y, _, vx, vy, spin = state
     rim = disc.contact_radius * abs(disc.disc_speed - spin)
     return math.hypot(vx + disc.disc_speed * y, vy - disc.disc_speed * x) / max(rim, 1e-300)

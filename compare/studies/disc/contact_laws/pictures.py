@@ -1,4 +1,4 @@
-"""Figures of the contact laws."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -32,12 +32,10 @@ NEAR = (0.2, 5.0)
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw force and moment of all laws over U/W, and their distance from the ring."""
     return {"contact-laws": laws(data), "contact-errors": errors(data)}
 
 
 def laws(data: ByEngine) -> Figure:
-    """Draw force and moment of the laws."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
         if "theory" in data:

@@ -1,4 +1,4 @@
-"""Study of the contact laws and its claims."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ STUDY = Study.beside(
 STUDY.provides(curves=curves)
 
 
-# --- Friction on a disc in an engine, from its acceleration.
+# --- Friction on a disc in an engine, from its acceleration
 
 NOTE = (
     "F_x, F_y over μN and M over μN·R. Measured: the initial acceleration, from the velocities in the first "
@@ -66,7 +66,7 @@ NOTE = (
     "Friction on the continuous ring equals the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
 )
 def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """Compare friction on the ring with the integral at the ``ratios`` U/W."""
+    """``ratios`` contains U/W."""
     predicted = [ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
     return friction_on(engine, DISC, ratios, "ring", predicted)
 
@@ -78,7 +78,7 @@ def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     note=NOTE,
 )
 def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """Compare friction on six points with the sum over the points at the ``ratios`` U/W."""
+    """``ratios`` contains U/W."""
     predicted = [sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
     return friction_on(engine, SIX, ratios, "points6", predicted)
 
@@ -132,7 +132,7 @@ def friction_on(
     )
 
 
-# --- Contact laws against the integral, each other and the textbook, without an engine.
+# --- Contact laws against the integral, each other and the textbook, without an engine
 
 OF_EXPANSION = (
     "Predicted: the integral (20), and the integral with the three terms of (22). Measured: the closed forms. Error: "
@@ -154,7 +154,6 @@ PARTS = ("force", "moment")
     note="F_x, F_y over μN and M over μN·R. Predicted: adaptive quadrature, whose own estimate is the error.",
 )
 def closed_form() -> Measured:
-    """Compare the closed form of the ring with quadrature, for several slip directions and both signs of spin."""
     predicted, measured, errors = [], [], []
     for sign in (1.0, -1.0):
         for i, ratio in enumerate(COMPARED):
@@ -186,7 +185,6 @@ def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> M
     note=f"{OF_EXPANSION}.",
 )
 def error_of_expansion() -> Measured:
-    """Compare the largest error of (23) by closed forms with the largest error by integrals."""
     integrals, formulas = greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 1],
@@ -204,7 +202,6 @@ def error_of_expansion() -> Measured:
     note=f"U/W. {OF_EXPANSION}, and the resulting uncertainty of the position of the maximum.",
 )
 def place_of_expansion_error() -> Measured:
-    """Compare the U/W of the largest error of (23) by closed forms with that by integrals."""
     integrals, formulas = greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 0],
@@ -222,7 +219,6 @@ def place_of_expansion_error() -> Measured:
     f"unfavourable direction, and the other points contribute a sum of sines. {OF_POINTS} step.",
 )
 def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
-    """Compare the largest error of points with its closed form."""
     found = greatest_errors_of_points(numbers)
     return of_laws(
         predicted=[[1.0 / n + 2.0 / math.pi - 1.0 / (n * math.tan(0.5 * math.pi / n))] * 2 for n in numbers],
@@ -241,7 +237,6 @@ def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
     note=f"U/W. {OF_POINTS} change of the position.",
 )
 def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
-    """Compare the U/W of the points' largest error with 1."""
     found = greatest_errors_of_points(numbers)
     return of_laws(
         predicted=np.ones(found.shape[:2]),
@@ -265,7 +260,6 @@ OF_RINGS = (
     note=OF_RINGS,
 )
 def annulus_converges() -> Measured:
-    """Compare the order of convergence of force and moment of an annulus with 12."""
     return order_in_rings(Annulus.shares, ORDER)
 
 
@@ -276,7 +270,6 @@ def annulus_converges() -> Measured:
     note=OF_RINGS,
 )
 def slopes_converge() -> Measured:
-    """Compare the order of convergence of the slopes of force and moment of an annulus with 6."""
     return order_in_rings(Annulus.slopes, SLOPE_ORDER)
 
 
@@ -310,7 +303,6 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
     f"{', '.join(f'{width:g}' for width in WIDTHS)}. Errors: scatter, and the change without a next term.",
 )
 def thin_annulus() -> Measured:
-    """Measure the order in the width of the annulus' difference from a ring."""
     widths, slips = np.array(WIDTHS), (0.5 * R, 2.0 * R)
     observed = []
     for slip in slips:
@@ -336,7 +328,6 @@ def thin_annulus() -> Measured:
     "uniform pressure, (r₁ + r₂)/2 under a pressure like 1/r. Error: rounding.",
 )
 def in_place() -> Measured:
-    """Compare the moment of annuli that only spin with the textbook."""
     predicted, measured = [], []
     for inner in (0.0, INNER):
         uniform = 2.0 / 3.0 * (R**3 - inner**3) / (R**2 - inner**2)

@@ -17,7 +17,7 @@ from reference_model.contact.contact_law import Contact, Ring, ThreeTermRing
 from reference_model.contact.points import PointsOnRing
 from reference_model.systems import FloatArray
 
-# --- Parameters of the discs, their motions and the contact laws.
+# --- Parameters
 
 DISC = FIG11
 
@@ -69,7 +69,7 @@ WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)
 """Widths of thin annuli, in units of their mean radius."""
 
 
-# --- Friction on a contact ring by (20) to (22): quadrature, sum over points, expansion.
+# --- Friction on a contact ring by (20) to (22)
 # These functions do not use the reference's closed forms, which claims compare with them. ``slip`` is the slip of the
 # disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x, F_y, M)
 # in units of μN and μN·R.

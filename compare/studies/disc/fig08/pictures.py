@@ -1,4 +1,4 @@
-"""Figures of the study of Fig. 8."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from reference_model.formulas.disc import shaft_torque
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw Fig. 8 with distances and positions, and the effect of the offset on the spin."""
     figures = {"fig08-spin": draw_spin(data)} if data else {}
     if "theory" in data:
         figures["fig08-offset"] = draw_offsets(data["theory"])
@@ -23,7 +22,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_spin(data: ByEngine) -> Figure:
-    """Draw the spin over the friction force, its distance from the continuous ring, and the positions of rest."""
     figure, (spin, distance, plane) = new_figure(ncols=3, width=13.2, height=4.2)
     own = f"{RING.offset:g}"
     if "theory" in data:
@@ -91,7 +89,6 @@ def _draw_theory(spin: Axes, distance: Axes, plane: Axes, found: Data) -> None:
 
 
 def draw_offsets(theory: Data) -> Figure:
-    """Draw the spin for several offsets, and the largest friction force with an equilibrium over the offset."""
     figure, (spin, end) = new_figure(ncols=2, width=9.8, height=3.9)
     for offset, colour in zip(theory["offset"], PALETTE, strict=False):
         ring, ring_load = theory[f"ring {offset:g}"], theory[f"ring load {offset:g}"]

@@ -1,4 +1,4 @@
-"""Study of Fig. 8 and eqs. (24) to (26): position and spin of the self-centred disc, and its end."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
-from reference_model.formulas.disc import places_by_26, semicircle_residual
+from reference_model.formulas.disc import positions_by_26, semicircle_residual
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
@@ -46,7 +46,7 @@ def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     """Return the means of x, y and spin of the steady motion found from (26), which deviates by a few per cent."""
-    place, *_ = places_by_26(disc)
+    place, *_ = positions_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
 
@@ -62,7 +62,6 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the engine's equilibria on the ring with root finding."""
     found = means_of(engine, theory.RING, loads)
     return Measured(
         predicted=[theory.place_and_spin(with_load(theory.RING, load)) for load in loads],
@@ -84,7 +83,6 @@ def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     swept=("friction_force",),
 )
 def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compute the residual of (4) at the equilibria on the ring."""
     found = means_of(engine, theory.RING, loads)
     x, y, _ = found.value.T
     # The gradient of (4) is twice the vector from the circle's centre, of length X0 on the circle.
@@ -110,7 +108,7 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Meas
     swept=("friction_force",),
 )
 def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = theory.DECAYS) -> Measured:
-    """Compare the decay of displaced discs with the least damped eigenvalue; ``spans`` has μN in N and times in s."""
+    """``spans`` contains μN in N and times in s."""
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
@@ -160,7 +158,6 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     swept=("friction_force",),
 )
 def ends(engine: Engine) -> Measured:
-    """Compare μN of equilibria close to the axis, extrapolated to the axis, with the largest μN."""
     found = refined(
         lambda tolerance: [
             _means(engine, with_load(theory.RING, load), tolerance) for load in theory.END_LOADS
@@ -195,7 +192,7 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
     swept=("friction_force",),
 )
 def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> Measured:
-    """Check that a disc on the axis sticks above the end of the equilibrium; ``ratios`` are in units of its μN."""
+    """``ratios`` are in units of the μN at the end of the equilibrium."""
     loads = np.array(ratios) * last_load(theory.RING)
     start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * theory.RING.disc_speed]
 
@@ -220,7 +217,6 @@ def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> 
     swept=("friction_force",),
 )
 def six_points(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the means of the motion on six points with the reference."""
     found = means_of(engine, theory.SIX, loads)
     beside_ring = np.abs(
         found.value - [theory.place_and_spin(with_load(theory.RING, load)) for load in loads]
@@ -252,7 +248,6 @@ def _six_points_of_reference(load: float) -> tuple[float, ...]:
     swept=("friction_force", "offset"),
 )
 def corrected_26() -> Measured:
-    """Compare positions and spins by (26) with the equilibria of (23)."""
     discs = theory.grid()
     places = np.array([theory.by_26(disc) for disc in discs])
     moved = np.array(
@@ -276,7 +271,6 @@ def corrected_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def printed_26() -> Measured:
-    """Check the residual force at the positions by (26), corrected and as printed."""
     discs = theory.grid()
     corrected, printed = (
         np.array([theory.unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
@@ -298,7 +292,6 @@ def printed_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def end_of_26() -> Measured:
-    """Compare the friction force at the end of (26) with the smallest one that can hold the disc by (23)."""
     discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
     predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
     return Measured(

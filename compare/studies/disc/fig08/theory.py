@@ -13,7 +13,7 @@ from compare.claims.parameters import FIG8
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, with_load
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.formulas.disc import (
-    places_by_26,
+    positions_by_26,
     reduced_parameters,
     shaft_torque,
     speed_difference_at,
@@ -21,7 +21,7 @@ from reference_model.formulas.disc import (
 )
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, friction forces and offsets; the paper does not print the offset.
+# --- Parameters
 
 RING = FIG8
 """Disc of Fig. 8 on the continuous ring (20)."""
@@ -82,13 +82,13 @@ def grid() -> list[DiscOnDisc]:
 
 def by_26(disc: DiscOnDisc) -> FloatArray:
     """Return x and y in m and spin in rad/s by the corrected (26)."""
-    (place,) = places_by_26(disc)
+    (place,) = positions_by_26(disc)
     return np.array(place)
 
 
 def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
     """Return the residual force of springs and friction (23) over μN, at the position by (26)."""
-    place, *_ = places_by_26(disc, as_printed=as_printed)
+    place, *_ = positions_by_26(disc, as_printed=as_printed)
     z, omega = complex(place.x, place.y), disc.disc_speed
     friction, _ = PAPER_LAW.force_and_moment(-1j * omega * z, omega - place.spin, 0.0)
     return abs(disc.stiffness * (disc.offset - z) / disc.friction_force + friction)
@@ -109,7 +109,7 @@ def last_load_by_26(disc: DiscOnDisc) -> float:
 
 
 def curves(count: int = 121) -> Data:
-    """Return spins and positions over ``count`` values of μN, for Fig. 8 and all offsets, and their ends over X0."""
+    """Return spins and positions over ``count`` values of μN, and their ends over X0."""
     data: Data = {"offset": np.array(OFFSETS)}
     for offset in OFFSETS:
         disc = replace(RING, offset=offset)
@@ -122,13 +122,13 @@ def curves(count: int = 121) -> Data:
             )
     loads = np.linspace(0.0, 1.08 * last_load(RING), count)
     data["printed load"] = loads
-    data["printed"] = np.array([places_by_26(with_load(RING, load), as_printed=True)[0] for load in loads])
+    data["printed"] = np.array([positions_by_26(with_load(RING, load), as_printed=True)[0] for load in loads])
     shared = np.array(
         [load for load in data[f"ring load {RING.offset:g}"] if load < last_load(RING, PAPER_LAW)]
     )
     ring = np.array([place_and_spin(with_load(RING, load)) for load in shared])
     corrected = np.array([place_and_spin(with_load(RING, load), PAPER_LAW) for load in shared])
-    printed = np.array([places_by_26(with_load(RING, load), as_printed=True)[0] for load in shared])
+    printed = np.array([positions_by_26(with_load(RING, load), as_printed=True)[0] for load in shared])
     data |= {
         "distance load": shared,
         "distance corrected": np.abs(corrected - ring),

@@ -25,7 +25,6 @@ from reference_model.formulas.disc import whirl_at
     swept=("friction_force",),
 )
 def fold() -> Measured:
-    """Compare the friction force of a zero eigenvalue with the smallest friction force of the balances."""
     laws: Sequence[IsotropicContact | None] = (None, theory.PAPER_LAW)
     measured = [whirl_at(theory.CENTRED, theory.marginal_ratio(law), law).load for law in laws]
     return Measured(
@@ -46,7 +45,6 @@ def fold() -> Measured:
     swept=("friction_force", "damping"),
 )
 def weak_damping() -> Measured:
-    """Measure the order in β of the error of ``weak_damping_load``."""
     discs = [replace(theory.RING, damping=float(damping)) for damping in theory.DAMPINGS]
     errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
     order, numerical, model = extrapolated_order(errors, 1e-12)
@@ -73,7 +71,6 @@ def weak_damping() -> Measured:
     swept=("friction_force",),
 )
 def merges() -> Measured:
-    """Extrapolate the friction force of the last orbits to size zero."""
     load = np.array([orbit.system.friction_force for orbit in theory.orbits()])
     square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in theory.orbits()])
     near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))

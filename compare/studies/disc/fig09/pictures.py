@@ -1,4 +1,4 @@
-"""Figures of the disc's branches: radius, spin, and the ends of the motions over the offset."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -39,7 +39,6 @@ PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw radius and spin over the friction force, and the ends of the motions over the offset."""
     figures = {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)}
     if "theory" in data:
         figures["fig09-offset"] = draw_ends(data["theory"])
@@ -47,7 +46,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_radius(data: ByEngine) -> Figure:
-    """Draw Fig. 9 with logarithmic axes, and the motions close to the axis with linear ones."""
     figure, (whole, near) = new_figure(ncols=2, width=11.0, height=5.0)
     if "theory" in data:
         _whirls(whole, data["theory"])
@@ -90,7 +88,6 @@ def _whirls(panel: Axes, found: Data) -> None:
 
 
 def _near_axis(panel: Axes, found: Data) -> None:
-    """Draw the inner whirl, the equilibrium and sticking."""
     load, least, greatest, _ = found["orbits"].T
     inner = slice(int(np.argmin(load)), None)
     panel.plot(load[inner], least[inner], label="unstable", **UNSTABLE)
@@ -113,7 +110,6 @@ def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
 
 
 def draw_spin(data: ByEngine) -> Figure:
-    """Draw Fig. 10, and the distance of the whirl's spin from its limit."""
     figure, (whole, distance) = new_figure(ncols=2, width=11.0, height=4.8)
     limit = spin_of_large_whirl(RING)
     if "theory" in data:
@@ -172,7 +168,6 @@ def _spin_by_theory(whole: Axes, distance: Axes, found: Data, limit: float) -> N
 
 
 def draw_ends(found: Data) -> Figure:
-    """Draw the end of each motion over the offset."""
     figure, (panel,) = new_figure(width=7.0, height=4.4)
     offset, last, stable = found["offset"], found["last load"], found["last stable"]
     panel.fill_between(offset, last, 1.0, color=GREY, alpha=0.4, linewidth=0.0)

@@ -20,7 +20,7 @@ from reference_model import Trajectory, simulate
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The self-centred equilibrium, and small deviations from it and from the whirl.
+# --- The self-centred equilibrium, and small deviations from it and from the whirl
 
 FOLLOWED = (
     f"Half the difference of two simulations that start {theory.DISPLACED:g} of the distance from the axis to either "
@@ -38,7 +38,6 @@ FOLLOWED = (
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
-    """Compare the equilibria with the balance of forces and moments."""
     found = rests_of(engine, theory.RING, loads)
     exact = [theory.rest_of(load) for load in loads]
     return Measured(
@@ -66,7 +65,6 @@ def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measure
     swept=("friction_force",),
 )
 def deviations_grow(engine: Engine) -> Measured:
-    """Compare the growth of deviations from the equilibrium with its least damped eigenvalue."""
     loads = [load for load, _ in theory.GROWTHS]
     motions = [
         (with_load(theory.RING, load), theory.rest_of(load), duration) for load, duration in theory.GROWTHS
@@ -91,7 +89,6 @@ def deviations_grow(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def whirl_attracts(engine: Engine) -> Measured:
-    """Compare the decay of a deviation from the whirl with its least damped eigenvalue."""
     load, duration = theory.DECAY
     circle = theory.circle_of(load, 0)
     larger = theory.DISPLACED * np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) * circle.state
@@ -131,7 +128,7 @@ def _growth(
     return Measurement(found.value, with_larger.rows + unseen)
 
 
-# --- Discs that stick to the master disc: permanently inside the radius (9), outside until the release time (7).
+# --- Discs that stick to the master disc
 
 REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
 """Period in s of the force that holds a sticking disc."""
@@ -149,7 +146,6 @@ REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
     swept=("friction_force",),
 )
 def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    """Simulate discs that stick inside the radius (9) for one revolution."""
     discs = [with_load(theory.RING, load) for load in loads]
     starts = [theory.stuck_at(disc, theory.INSIDE)[0] for disc in discs]
 
@@ -196,7 +192,6 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
     swept=("friction_force",),
 )
 def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    """Compare the release of discs outside the radius (9) with (7)."""
     cases = [(load, share) for load in loads for share in theory.OUTSIDE]
     starts = [
         (with_load(theory.RING, load), *theory.stuck_at(with_load(theory.RING, load), share))
@@ -224,7 +219,6 @@ def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Mea
     "ten whole turns?",
 )
 def coexist(engine: Engine) -> Measured:
-    """Check that at the largest friction force a disc can stick for a revolution, or whirl without sticking."""
     load = theory.STICK_LOADS[-1]
     start, _ = theory.stuck_at(with_load(theory.RING, load), 0.5)
     orbit = theory.orbit_of_reference(load, 0)
@@ -240,7 +234,7 @@ def coexist(engine: Engine) -> Measured:
     return answers_of(*asked(sticks_and_slides, theory.TOLERANCE), system=orbit.system)
 
 
-# --- The disc on six points, as the paper simulated it.
+# --- The disc on six points, as the paper simulated it
 
 REFERENCE = Engine("reference", simulate, ("points",))
 
@@ -256,7 +250,6 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
     swept=("friction_force",),
 )
 def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.CIRCLES) -> Measured:
-    """Compare the whirls on six points with those of the reference."""
     found = circles_of(engine, theory.on_six_points(theory.CENTRED), circles)
     predicted = np.array([_circle_of_reference(*one) for one in circles])
     beside = np.abs(
@@ -291,7 +284,6 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
     swept=("friction_force",),
 )
 def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
-    """Compare the motions about the equilibrium on six points with those of the reference."""
     found = rests_of(engine, theory.on_six_points(theory.RING), loads)
     return Measured(
         predicted=[_rest_of_reference(load) for load in loads],
@@ -322,7 +314,6 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
 def six_releases(
     engine: Engine, loads: Sequence[float] = theory.STICK_LOADS, tolerance: float = theory.TOLERANCE
 ) -> Measured:
-    """Compare the slip of discs on six points that start outside the radius (9) with the reference."""
     found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], tolerance)
     predicted = [_slipped_in_reference(load) for load in loads]
     return Measured(

@@ -25,7 +25,7 @@ from reference_model.steady.stability import turning_frame_jacobian, whirl_eigen
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, the measured motions and the branches.
+# --- Parameters
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
@@ -102,7 +102,6 @@ DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
 def on_six_points(disc: DiscOnDisc) -> DiscOnDisc:
-    """Return ``disc`` on six contact points, as in the paper's simulations."""
     return replace(disc, contact_points=6)
 
 
@@ -181,7 +180,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
 
 
-# ---------------------------------------------------------------- where the motions end
+# --- Where the motions end
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
@@ -247,16 +246,15 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
     return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
 
 
-# ---------------------------------------------------------------- curves
+# --- Curves
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return the branches of all motions over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
+    """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
     return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
-    """Return friction force, radius and spin of whirls without offset on the ring and by (23), largest first."""
     angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
     data: Data = {}
     laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}
@@ -349,7 +347,7 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     }
 
 
-# --- The study; the other modules of this package add its claims.
+# --- The study
 
 STUDY = Study.beside(
     __file__,

@@ -19,7 +19,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps.
+# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps
 
 
 @functools.lru_cache(maxsize=4)
@@ -89,7 +89,7 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
     return order, known(order, numerical), float(np.nan_to_num(np.max(np.abs(step))))
 
 
-# --- The whirl without offset: a circle.
+# --- The whirl without offset
 
 LOADS = [load for load, _ in theory.CIRCLES]
 
@@ -112,7 +112,6 @@ OBSERVED = (
     swept=("friction_force",),
 )
 def circles(engine: Engine) -> Measured:
-    """Compare the engine's circles with the three balances."""
     found = circles_of(engine, theory.CENTRED)
     exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
     return Measured(
@@ -144,7 +143,6 @@ def circles(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def error_of_23(engine: Engine) -> Measured:
-    """Measure the orders of the whirl's distance from the whirl of (23), at doubled friction forces."""
     by_23 = [
         (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
     ]
@@ -165,7 +163,6 @@ def error_of_23(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def limit_of_large_loads(engine: Engine) -> Measured:
-    """Measure the orders of the whirl's distance from its limit, at doubled friction forces."""
     limit = (1.0, theory.spin_of_large_whirl(theory.RING) / theory.RING.disc_speed)
     return _orders(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
 
@@ -186,7 +183,7 @@ def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[flo
     )
 
 
-# --- Whirls with an offset: periodic orbits, shifted and changed by the offset.
+# --- Whirls with an offset
 
 EXTRAPOLATED = (
     f"X0 = {', '.join(f'{offset:g}' for offset in theory.HALVED_OFFSETS)} m, extrapolated. Model error: the change "
@@ -205,7 +202,7 @@ EXTRAPOLATED = (
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
-    """Compare the engine's periodic orbits with the reference's; ``whirls`` contains μN in N and number of each."""
+    """``whirls`` contains μN in N and the number of each whirl."""
     exact = [theory.orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
@@ -285,7 +282,6 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
     swept=("offset",),
 )
 def offset_shifts(engine: Engine) -> Measured:
-    """Measure the order of the shift's distance from the first-order response."""
     found = parts(engine)
     discs = [
         with_load(replace(theory.RING, offset=offset), theory.OFFSET_LOAD) for offset in theory.HALVED_OFFSETS
@@ -306,7 +302,6 @@ def offset_shifts(engine: Engine) -> Measured:
     swept=("offset",),
 )
 def offset_changes_size(engine: Engine) -> Measured:
-    """Measure the orders of the changes from the circle without offset."""
     found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
     _, _, radius, spin = found.value[1]
     return replace(

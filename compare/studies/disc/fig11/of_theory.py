@@ -35,7 +35,6 @@ from reference_model.systems import FloatArray
     "motion.",
 )
 def shooting() -> Measured:
-    """Compare the modulated cycle found by shooting with the settled motion."""
     predicted, error = predicted_modulation()
     guess = simulate(RING, START, parameters.TIMES, tolerance=1e-7)
 
@@ -61,7 +60,6 @@ def shooting() -> Measured:
     swept=("contact_points",),
 )
 def unstable() -> Measured:
-    """Check the sign of the largest real part of the eigenvalues under each law."""
     whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, parameters.EXPANSION)]
     return answers_of(
         np.array((1.0, 1.0, -1.0)) * [whirl.eigenvalue.real for whirl in whirls_of],
@@ -80,7 +78,6 @@ def unstable() -> Measured:
     basis="reference",
 )
 def dies_out_by_23() -> Measured:
-    """Compare a deviation from the whirl of (23), simulated with (23), with the whirl's eigenvalues."""
     exact = steady_whirl(RING, parameters.EXPANSION).eigenvalue
     reference = Engine(
         "reference by (23)", functools.partial(simulate, contact=parameters.EXPANSION), ("ring",)
@@ -105,7 +102,6 @@ def dies_out_by_23() -> Measured:
     basis="reference",
 )
 def both_stable() -> Measured:
-    """Check the multipliers of the whirl and simulate the modulated motion at the same X0."""
     orbit = whirl_orbit(disc_at(parameters.BOTH_STABLE), tolerance=WORKING)
     reference = Engine("reference", simulate, ("ring",))
 

@@ -26,7 +26,7 @@ from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
 from reference_model import Orbit, Trajectory, simulate
 from reference_model.systems import FloatArray
 
-# --- Ends of the motion over the offset: modulated cycle, steady whirl or self-centred equilibrium.
+# --- Ends of the motion over the offset
 
 
 @STUDY.claim(
@@ -44,7 +44,6 @@ from reference_model.systems import FloatArray
     swept=("offset",),
 )
 def critical(engine: Engine) -> Measured:
-    """Compare the critical X0 by multipliers of the engine's whirl with the critical X0 by exact multipliers."""
     predicted, found = critical_of(engine)
     return Measured(predicted=predicted, value=found.value, error=found.error, source=SOURCE)
 
@@ -83,7 +82,7 @@ def error_of_monodromy(orbit: Orbit) -> float:
     swept=("offset",),
 )
 def ends(engine: Engine, offsets: Sequence[float] = parameters.OFFSETS) -> Measured:
-    """Compare the final motions at ``offsets`` in m with the predicted kinds."""
+    """``offsets`` are in m."""
     critical, _ = critical_of(engine)
     predicted = [2 if offset < critical else 1 if offset < rest_offset() else 0 for offset in offsets]
     extents: dict[float, list[list[float]]] = {}
@@ -129,7 +128,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, where single points come to rest.
+# --- The modulated motion on six points, where single points come to rest
 
 NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
@@ -143,7 +142,6 @@ NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
     note=f"{NOTE} A missing or additional rest makes all numbers missing.",
 )
 def points_rest(engine: Engine) -> Measured:
-    """Compare the times of rest and renewed slip of single points with the reference."""
     if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
         raise UnsupportedSystemError(f"{engine.name} does not report when single points rest")
     predicted = rests_of_points(_reference())
@@ -175,7 +173,6 @@ def points_rest(engine: Engine) -> Measured:
     note=NOTE,
 )
 def extremes_on_six_points(engine: Engine) -> Measured:
-    """Compare the extremes over one modulation with the reference."""
     found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), parameters.OF_RESTS, alike=False)
     return Measured(
         predicted=extremes_of(_reference()),

@@ -94,7 +94,7 @@ KINDS = ("rest", "whirl", "modulated")
 WITHOUT_ANGLE = [i for i in range(FIG11.state_size) if i != ANGLE]
 
 
-# --- The study; the other modules of this package add its claims.
+# --- The study
 
 STUDY = Study.beside(
     __file__,

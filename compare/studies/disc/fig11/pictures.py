@@ -1,4 +1,4 @@
-"""Figures of the modulated cycle: histories, spectrum and section, growth from the whirl, and the offsets."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -42,7 +42,6 @@ X0_AXIS = 0.025
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the figures that have data."""
     figures = {"fig11-history": draw_histories(data)} if data else {}
     if any(words in data[engine] for engine in engines_in(data) for words in DISCS):
         figures["fig11-section"] = draw_section(data)
@@ -58,7 +57,6 @@ def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
 
 
 def draw_histories(data: ByEngine) -> Figure:
-    """Draw spin and x over time as in the paper's figure, and the spin alone enlarged."""
     figure, panels = new_figure(
         ncols=3, nrows=2, width=13.0, height=6.0, sharex=True, sharey="row", height_ratios=(3, 2)
     )
@@ -91,7 +89,6 @@ def draw_histories(data: ByEngine) -> Figure:
 
 
 def draw_section(data: ByEngine) -> Figure:
-    """Draw the spectrum of the motion of the centre, and radius and spin once a turn."""
     figure, (lines, sections) = new_figure(ncols=2, width=13.0, height=4.2)
     draw_spectrum(lines, data)
     if "theory" in data:
@@ -128,7 +125,6 @@ def draw_section(data: ByEngine) -> Figure:
 
 
 def draw_spectrum(panel: Axes, data: ByEngine) -> None:
-    """Draw the spectral lines of the cycle on the ring over the spectrum on six points."""
     floor = 1e-4
     for name, states in histories(data, "six points").items():
         frequency, amplitude = spectrum(states[TIMES > SETTLED])
@@ -215,7 +211,6 @@ def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, Flo
 
 
 def draw_growth(data: ByEngine) -> Figure:
-    """Draw the growth of a deviation to the modulated cycle, and the exponential of the eigenvalue."""
     figure, panels = new_figure(ncols=2, width=10.5, height=3.8, sharey=True)
     for row, (panel, words) in enumerate(zip(panels, DISCS, strict=True)):
         for name in engines_in(data):
@@ -244,7 +239,6 @@ def draw_growth(data: ByEngine) -> Figure:
 
 
 def draw_offsets(data: ByEngine) -> Figure:
-    """Draw final radius and spin over the offset, with the branches of whirl and equilibrium."""
     figure, panels = new_figure(ncols=2, width=11.5, height=4.2)
     theory = data["theory"]
     critical, rest = float(theory["critical offset"]), float(theory["rest offset"])

@@ -26,7 +26,7 @@ from reference_model.contact.contact_law import IsotropicContact
 from reference_model.steady.stability import jacobian_without_angle, turning_frame_jacobian
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-# ---------------------------------------------------------------- the whirl and its critical modes
+# --- The whirl and its critical modes
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +40,11 @@ class SteadyWhirl:
     ----------
     state : array of shape (6,)
         A state on the whirl.
-    period : float
+    period
         Period in s.
-    turn, advance : float
+    turn, advance
         Rotation of the whirl about the axis in a period, in rad, and the disc's additional rotation.
-    eigenvalue : complex
+    eigenvalue
         Growth rate and frequency (> 0) in 1/s of the least damped pair.
     mode, projection : complex array of shape (6,)
         Right and left eigenvector, with product 1. The share projection·d of a deviation d, in axes that turn with
@@ -132,7 +132,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
     return np.asarray(right[:, which] / size), np.asarray(left * size)
 
 
-# ---------------------------------------------------------------- the modulated cycle
+# --- The modulated cycle
 
 
 def modulations(states: FloatArray) -> FloatArray:
@@ -184,7 +184,7 @@ def extremes_of(trajectory: Trajectory) -> FloatArray:
     return np.array(found)
 
 
-# ---------------------------------------------------------------- whirl and equilibrium over the offset
+# --- Whirl and equilibrium over the offset
 
 
 def disc_at(offset: float) -> DiscOnDisc:
@@ -293,7 +293,7 @@ def extents(run: Trajectory, last: int = 0) -> list[float]:
     return [radius.min(), radius.max(), spin.min(), spin.max()]
 
 
-# ---------------------------------------------------------------- data of the figures
+# --- Data of the figures
 
 
 def curves(whirling: ArrayLike = parameters.BRANCH) -> Data:

@@ -35,7 +35,6 @@ NOTE = (
     each=tuple(DISCS),
 )
 def slides(engine: Engine, contact: str) -> Measured:
-    """Compare the trajectory of a disc that slides all the time with a direct integration of (19)."""
     disc = DISCS[contact]
     predicted, rougher = (
         integrated(disc, parameters.SLIDING_START, parameters.SLIDING[-1], len(parameters.SLIDING), tolerance)
@@ -69,7 +68,6 @@ def slides(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
-    """Compare the growth of a deviation with the real part of the least damped pair of eigenvalues."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     times, sizes = departure(engine, DISCS[contact], whirl, parameters.FOLLOWED)
     return Measured(
@@ -94,7 +92,6 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def frequency_of_growth(engine: Engine, contact: str) -> Measured:
-    """Compare the frequency of a deviation with the imaginary part of the least damped pair of eigenvalues."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     return Measured(
         predicted=whirl.eigenvalue.imag,
@@ -183,7 +180,7 @@ def departure(
     return np.asarray(times, dtype=float), np.asarray(sizes)
 
 
-# --- The modulated cycle on the continuous ring: period, turn about the axis and extremes.
+# --- The modulated cycle on the continuous ring
 
 CYCLE_NOTE = (
     f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
@@ -202,7 +199,6 @@ CYCLE_NOTE = (
     named={"period of the modulation": 0, "turn in it": 1},
 )
 def period_and_turn(engine: Engine) -> Measured:
-    """Compare period and turn of the last modulation with a direct integration of (19)."""
     found = modulation(engine)
     return Measured(
         predicted=predicted_modulation()[0][:2],
@@ -222,7 +218,6 @@ def period_and_turn(engine: Engine) -> Measured:
     note=CYCLE_NOTE,
 )
 def extremes(engine: Engine) -> Measured:
-    """Compare the extremes of the last modulation with a direct integration of (19)."""
     found = modulation(engine)
     return Measured(
         predicted=predicted_modulation()[0][2:],

@@ -1,4 +1,4 @@
-"""Figure of the study of the free ring."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ LEAST_DEVIATION = 1e-8
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the phase plane, the approach to the ratio 1, and the ratio over the moment of inertia."""
     if not data:
         return {}
     figure, (plane, approach, ratio) = new_figure(ncols=3, width=13.2, height=4.2)

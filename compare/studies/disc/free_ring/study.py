@@ -1,4 +1,4 @@
-"""Study of the free ring and its claims."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
-# --- The end of sliding and spinning: at the same time, in a ratio independent of the start.
+# --- The end of sliding and spinning
 
 
 @STUDY.claim(
@@ -38,7 +38,6 @@ STUDY.provides(curves=theory.curves)
 def end_together(
     engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
 ) -> Measured:
-    """Compare the times when both extrapolated speeds reach zero."""
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
@@ -79,7 +78,6 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
     "and the change at a smaller one. Model error: the remaining distance to 1.",
 )
 def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
-    """Compare the ratio at the latest sample with 1."""
 
     def ratio(tolerance: float) -> FloatArray:
         speeds = [
@@ -118,7 +116,6 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
     basis="reference",
 )
 def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
-    """Compare A of the approach to the ratio 1 with the integrals."""
 
     def constants(tolerance: float) -> FloatArray:
         found = []
@@ -157,7 +154,6 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
 
 
 def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
-    """Return the figure's data: both speeds in m/s, and A over the remaining time, from the start to rest."""
     speeds, approaches = [], []
     for throw in throws:
         trajectory, times = (
@@ -181,7 +177,6 @@ def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLik
     swept=("polar_inertia",),
 )
 def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
-    """Compare the ratio at the end of slip for other moments of inertia with the balance."""
 
     def ratios(tolerance: float) -> FloatArray:
         found = []
@@ -216,7 +211,6 @@ def _limit(last: float, middle: float, first: float) -> float:
     swept=("polar_inertia",),
 )
 def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> Measured:
-    """Fit the power of the ratio that tends to zero."""
     predicted, found = [], []
     for throw in throws:
         slow = throw.inertia < 0.5
@@ -243,7 +237,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     )
 
 
-# --- Time and position of rest, and the energy balance.
+# --- Time and position of rest, and the energy balance
 
 
 @STUDY.claim(
@@ -256,7 +250,6 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     swept=("polar_inertia",),
 )
 def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
-    """Compare time and position of rest with the integrals."""
     found = stops_of(engine, throws)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
@@ -298,7 +291,6 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
     basis="reference",
 )
 def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
-    """Compare the lost energy with the integral of the friction power."""
 
     def imbalance(tolerance: float) -> FloatArray:
         """Return the largest difference over the initial energy, by all samples and by every second one."""
@@ -327,7 +319,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     )
 
 
-# --- Existence of a terminal ratio, and the published ratio of a disc.
+# --- Existence of a terminal ratio, and the published ratio of a disc
 
 
 @STUDY.claim(
@@ -337,7 +329,6 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     f"{at_each('J/mR²', theory.INERTIAS)}.",
 )
 def ratio_exists() -> Measured:
-    """Check the range of J with a balance of both decelerations."""
 
     def has_ratio(inertia: float) -> bool:
         slowing = Slowing(inertia)
@@ -357,7 +348,6 @@ def ratio_exists() -> Measured:
     "Model error: half of the last published digit.",
 )
 def published_ratio() -> Measured:
-    """Compare the balance of a full disc with the literature."""
     face = Annulus(0.0, 1.0, rings=16)
 
     def unevenness(ratio: float) -> float:

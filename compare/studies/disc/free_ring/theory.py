@@ -28,7 +28,7 @@ from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the ring, the throws and the samples.
+# --- Parameters
 
 TABLE = replace(
     FIG8,
@@ -59,9 +59,9 @@ class Throw:
 
     Parameters
     ----------
-    inertia : float
+    inertia
         c = J/(mR²).
-    degrees : float
+    degrees
         Initial atan(W/U) in degrees: 0 only slides, 90 only spins; a negative value reverses the spin.
 
     """
@@ -152,13 +152,12 @@ def expected_approach(throw: Throw, near: float = NEAR) -> float:
 
 
 def curves() -> Data:
-    """Return the terminal ratio over J/(mR²) between 1/2 and 2."""
     inertias = 0.5 * 4.0 ** np.linspace(0.002, 0.998, 101)
     ratios = [math.exp(Slowing(float(inertia)).terminal) for inertia in inertias]
     return {"inertia": inertias, "ratio": np.array(ratios)}
 
 
-# --- Simulated throws and their samples.
+# --- Simulated throws and their samples
 
 
 @functools.cache
@@ -175,7 +174,6 @@ def roughly_rest(engine: Engine, throw: Throw) -> float:
 
 @functools.cache
 def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
-    """Return the trajectory of a throw at all sample times."""
     rest = roughly_rest(engine, throw)
     times = [
         *uniform_times(engine, throw),

@@ -24,7 +24,7 @@ from reference_model.steady.stability import equilibrium_eigenvalues, onset_load
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
-# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11.
+# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11
 
 CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
     f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
@@ -46,7 +46,6 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
     f"not use. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues.",
 )
 def marginal(curves: theory.Traced | None = None) -> Measured:
-    """Compute the pair's real part over its frequency at all points of ``curves``, or of the map."""
     found = _spectra_on_map("Hopf") if curves is None else theory.spectra("Hopf", curves)
     frequencies = np.array([abs(values[0].imag) for values, _ in found])
     return Measured(
@@ -63,7 +62,6 @@ def marginal(curves: theory.Traced | None = None) -> Measured:
     note="Are the real parts of all other eigenvalues negative?",
 )
 def no_other_grows() -> Measured:
-    """Check the other eigenvalues at all points of the Hopf curves."""
     found = _spectra_on_map("Hopf")
     return answers_of(
         -np.array([value.real for values, _ in found for value in values[2:]]),
@@ -80,7 +78,6 @@ def no_other_grows() -> Measured:
     "which grow where a second one becomes zero.",
 )
 def folds() -> Measured:
-    """Compute the smallest eigenvalue over k at all points of the fold curves."""
     found = _spectra_on_map("fold")
     return Measured(
         predicted=np.zeros(len(found)),
@@ -99,7 +96,6 @@ def folds() -> Measured:
     swept=("friction_force",),
 )
 def crosses_line() -> Measured:
-    """Compare the crossings of the curves with the line of Fig. 11's speed with a search along that line."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []
@@ -124,7 +120,6 @@ def crosses_line() -> Measured:
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    """Compare the μN of an imaginary eigenvalue of the centred rotation with the closed form."""
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
         for speed in theory.ONSET_SPEEDS:
@@ -169,7 +164,6 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
 )
 def remedies() -> Measured:
-    """Compare the share of each parameter at the border of stable rotation with the closed form."""
     predicted: list[float] = []
     measured: list[float] = []
     errors: list[float] = []
@@ -196,7 +190,6 @@ def remedies() -> Measured:
     resolution=1e-8,
 )
 def by_whirls() -> Measured:
-    """Compare the zeros of the whirls' largest real part along each parameter with the map."""
     predicted: list[float] = []
     found: list[tuple[float, float]] = []
     names: list[str] = []
@@ -233,7 +226,6 @@ def by_whirls() -> Measured:
     f"point of the Hopf curves farther than {theory.FAR_FROM_KINK:g} from U = W in U : W?",
 )
 def jumps() -> Measured:
-    """Compute the sign of the first Lyapunov coefficient along the Hopf curves."""
     data: dict[str, FloatArray] = {}
     on_ring: list[float] = []
     for (plane, law, kind), curves in theory.traced().items():
@@ -249,7 +241,7 @@ def jumps() -> Measured:
     return answers_of(on_ring, data=data)
 
 
-# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin.
+# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin
 
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 
@@ -265,7 +257,6 @@ SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
     note=SIGN,
 )
 def unstable_on_ring() -> Measured:
-    """Check the sign of the largest real part of the ring's whirl."""
     return _side("ring", 1.0)
 
 
@@ -275,7 +266,6 @@ def unstable_on_ring() -> Measured:
     note=SIGN,
 )
 def stable_by_23() -> Measured:
-    """Check the sign of the largest real part of the whirl of (23)."""
     return _side("(23)", -1.0)
 
 
@@ -304,7 +294,6 @@ def _side(law: str, sign: float) -> Measured:
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:
-    """Check (16), the border of the pin's whirl, and the eigenvalues on a grid of ω and β."""
     pins = [
         PinOnDisc(
             mass=theory.DISC.mass,
@@ -325,7 +314,6 @@ def pin_is_stable() -> Measured:
     basis="reference",
 )
 def collapses_by_23() -> Measured:
-    """Simulate motions under (23) where its whirl is unstable, by the reference, and classify their ends."""
     law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
     (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
     starts = []

@@ -1,4 +1,4 @@
-"""Figures of the stability map."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -120,7 +120,6 @@ PANELS = {
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the map in four planes, and the motions over μN at the speeds of Fig. 11, if their data exist."""
     figures = {}
     if "theory" in data:
         figures["stability-map"] = draw_map(data)
@@ -130,7 +129,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_map(data: ByEngine) -> Figure:
-    """Draw the four planes with the curves of both laws and the simulated results."""
     from matplotlib.lines import Line2D
 
     figure, axes = new_figure(ncols=2, nrows=2, width=10.6, height=8.8)
@@ -151,7 +149,6 @@ def draw_map(data: ByEngine) -> Figure:
 
 
 def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
-    """Draw the curves, regions and results in one plane."""
     theory = data["theory"]
     x = np.linspace(*panel.x, 800)
     small, large = (hopf_curve(theory, name, x, side) for side in (1.0, -1.0))
@@ -263,7 +260,6 @@ def sticking(plane: str, x: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def draw_section(data: ByEngine) -> Figure:
-    """Draw the radius of whirls and of long motions over the friction force."""
     figure, (axes,) = new_figure(width=8.4, height=4.6)
     if "theory" in data:
         for law, colour in COLOURS.items():

@@ -21,7 +21,7 @@ from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Small deviations from the whirl on both sides of the Hopf curves.
+# --- Small deviations from the whirl on both sides of the Hopf curves
 
 Lines = Sequence[tuple[str, str, float]]
 """Plane, fixed parameter and its value, for each line."""
@@ -51,7 +51,6 @@ class Deviation(NamedTuple):
     basis="reference",
 )
 def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Compare the growth rate and frequency of deviations with the pair of eigenvalues."""
     found = deviations(engine, lines)
     return Measured(
         predicted=real_and_imaginary([one.predicted for one in found]),
@@ -70,7 +69,6 @@ def rates(engine: Engine, lines: Lines = theory.LINES) -> Measured:
     implied_by=rates,
 )
 def sides(engine: Engine, lines: Lines = theory.LINES) -> Measured:
-    """Check the side of the curves where deviations grow."""
     found = deviations(engine, lines)
     rows: dict[str, list[tuple[float, ...]]] = {}
     for one in found:
@@ -137,14 +135,13 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     return found, math.hypot(*error) + abs(rate(2.0 * theory.DEVIATION, theory.FLOW_TOLERANCE) - found)
 
 
-# --- Final motions in each region of the map and next to its borders.
+# --- Final motions in each region of the map and next to its borders
 
 
 @STUDY.claim(
     "In each region of the map, motions end as the map predicts", equation="(19), (20)", basis="reference"
 )
 def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
-    """Compare the final motions with the expected ones, by default from ``starts_in_regions``."""
     starts = starts_in_regions() if starts is None else starts
     ends, measured = theory.ends_of(engine.simulate, starts)
     return replace(measured, data=ends_by_plane(starts, ends))
@@ -158,16 +155,12 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 def coexist(
     engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = theory.LOADS
 ) -> Measured:
-    """Compare the final motions outside the Hopf curves with the expected ones, by default from ``coexisting``.
-
-    ``loads`` in N are the friction forces of the motions in the bifurcation diagram.
-    """
+    """Draw motions at ``loads`` in N in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 
 
 def starts_in_regions() -> tuple[theory.Start, ...]:
-    """Return motions in all regions of the map, with the ends expected from the ring's curves."""
     at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)

@@ -28,7 +28,7 @@ from reference_model.steady.stability import (
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters of the disc, the simulations and the checks.
+# --- Parameters
 
 DISC = FIG11
 K = DISC.natural_frequency
@@ -107,7 +107,6 @@ Traced = Mapping[tuple[str, str, Kind], tuple[Boundary, ...]]
 
 @functools.cache
 def traced() -> Traced:
-    """Trace all curves of the map."""
     return {
         (plane, law, kind): curves_in(plane, kind, law) for plane in PLANES for law in LAWS for kind in KINDS
     }
@@ -210,7 +209,6 @@ def nearest(values: Sequence[float], to: float) -> list[float]:
 
 
 def curves() -> Data:
-    """Return the curves of the map, and the whirls at the speeds of Fig. 11."""
     data: Data = {}
     for (plane, law, kind), found in traced().items():
         for i, curve in enumerate(found):
@@ -232,7 +230,7 @@ def section() -> Data:
     return data
 
 
-# --- Final motions of the centred disc.
+# --- Final motions of the centred disc
 
 SETTLED = 600.0
 WATCHED = 350.0
@@ -310,7 +308,7 @@ def changes(disc: DiscOnDisc) -> str:
     return ", ".join(differing) or "Fig. 11"
 
 
-# --- The study; the other modules of this package add its claims.
+# --- The study
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

@@ -1,4 +1,4 @@
-"""Claims: engines and the published result against the exact motion of Modelica's CoupledClutches."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -64,7 +64,6 @@ OF_ORDER = (
 
 
 def curves() -> Data:
-    """Return the exact speeds and the deviations of the published ones, for the figure."""
     t = np.linspace(0.0, UNTIL, 1501)
     record = published()
     off = record.speeds - first_and_slips(exact().states(record.times)[1])
@@ -128,7 +127,6 @@ def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
     note=HALVED,
 )
 def moves(engine: Engine) -> Measured:
-    """Compare the speeds with the exact ones."""
     runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
     found, error = _finest([run.at(SHOWN) for run in runs])
     note = (
@@ -156,7 +154,6 @@ def moves(engine: Engine) -> Measured:
     note=f"Times when the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
 )
 def switches_on_time(engine: Engine) -> Measured:
-    """Compare the times when the slip falls below ε, or rises above it, with the times of the events."""
     _check_has_epsilon(engine)
     times, error = _finest(
         [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
@@ -189,7 +186,6 @@ def _passings(run: Run, epsilon: float) -> FloatArray:
     "solve_dynamic leaves at breaks in all runs.",
 )
 def momentum(engine: Engine) -> Measured:
-    """Compare the final angular momentum with the initial one plus the impulse of the torque."""
     from exudyn_models.solver.breaks import GAP
 
     gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # in s
@@ -212,7 +208,6 @@ def momentum(engine: Engine) -> Measured:
     "with four times the step, because errors scatter with the position of an event within its step.",
 )
 def implicit(engine: Engine) -> Measured:
-    """Compare the speeds with the exact ones."""
     _check_has_epsilon(engine)
     fine, coarse = (_implicit(engine, float(step)).at(SHOWN) for step in FOLLOWED)
     return Measured(
@@ -231,7 +226,7 @@ def implicit(engine: Engine) -> Measured:
     note=f"{at_each('ε in m/s', EPSILONS)}. {OF_ORDER}",
 )
 def order_in_epsilon(engine: Engine) -> Measured:
-    """Compare the exponent of ε with 1 before the first release, whose delay contains a logarithm of ε."""
+    """Measure before the first release, whose delay contains a logarithm of ε."""
     _check_has_epsilon(engine)
     times = SHOWN[(SHOWN > ALL_SLIP_UNTIL + 0.01) & (SHOWN < LETS_GO_FROM)]
     return _order(EPSILONS, _explicit(engine), times, next_term=1.0)
@@ -244,7 +239,6 @@ def order_in_epsilon(engine: Engine) -> Measured:
     note=f"{at_each('step in s', STEPS)}; ε = {SMALL_EPSILON:g} m/s. {OF_ORDER}",
 )
 def order_in_step(engine: Engine) -> Measured:
-    """Compare the exponent of the step with 2."""
     _check_has_epsilon(engine)
     runs = [_implicit(engine, float(step)) for step in STEPS]
     return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], next_term=1.0, predicted=2.0)
@@ -288,7 +282,6 @@ def _published(values: FloatArray, predicted: FloatArray, components: tuple[str,
     named={"published speed": 0},
 )
 def published_speeds() -> Measured:
-    """Compare the published speed of the first rotor, and the slips, with the exact ones."""
     predicted = first_and_slips(_speeds(published().times))
     return _published(published().speeds, predicted, ("speed of rotor 1", *SLIPS))
 
@@ -302,7 +295,6 @@ def published_speeds() -> Measured:
     note=f"Where they differ most. {OF_PUBLISHED}",
 )
 def published_angles() -> Measured:
-    """Compare the published angles of the first rotor and between neighbours with the exact ones."""
     predicted = first_and_slips(exact().states(published().times)[0])
     return _published(
         published().angles, predicted, ("angle of rotor 1", *(f"angle of {one}" for one in SLIPS))
@@ -317,7 +309,6 @@ def published_angles() -> Measured:
     note=OF_PUBLISHED,
 )
 def published_switches() -> Measured:
-    """Compare the times of changes of a published mode with the times of the events."""
     times, modes = published().times, published().modes
     found = []
     for time, clutch, mode in switches():
@@ -330,14 +321,13 @@ def published_switches() -> Measured:
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
-# --- Figure of the coupled clutches: speeds and errors of the runs
+# --- Figure
 
 EXACT = 1e-7
 """In rad/s: lower end of the axis of errors."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the available data."""
     return {"coupled-clutches": _draw(data)} if data else {}
 
 
@@ -374,7 +364,6 @@ def _draw(data: ByEngine) -> Figure:
 
 
 def _error(panel: Axes, t: np.ndarray, off: np.ndarray, label: str, colour: str) -> None:
-    """Draw the largest error of the speeds."""
     panel.plot(t, np.maximum(np.max(np.abs(off), axis=1), EXACT), color=colour, linewidth=1.0, label=label)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
-# --- Parameters of Modelica.Mechanics.Rotational.Examples.CoupledClutches, from its sources, and of the runs
+# --- Parameters
 
 INERTIAS = (1.0, 1.0, 1.0, 1.0)
 """Inertias of the rotors in kg m²."""
@@ -109,7 +109,6 @@ NOTHING = Harmonic()
 
 
 def chain() -> Chain:
-    """Return the rotors with their clutches."""
     capacity = RADIUS * COEFFICIENT * LOAD
     falling = Harmonic(capacity, 2.0 * math.pi * OPENS)
     drive = Harmonic(TORQUE, 2.0 * math.pi * FREQUENCY, 0.0)
@@ -126,7 +125,6 @@ def chain() -> Chain:
 
 @functools.cache
 def exact() -> Motion:
-    """Return the exact motion."""
     return chain().motion([SPEED, 0.0, 0.0, 0.0], UNTIL)
 
 

@@ -1,4 +1,4 @@
-"""Figures of the drivetrain at frozen speeds: positions of rest, whirls, maps of modulation and a modulated whirl."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ NO_WHIRL = "#d0d0d0"
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the available data."""
     figures = {}
     if engines_in(data):
         figures["drivetrain-steady"] = draw_steady(data)
@@ -38,7 +37,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_steady(data: ByEngine) -> Figure:
-    """Draw the positions of rest below the onset, and radius and frequency of the whirl above it."""
     figure, (place, radius, frequency) = new_figure(ncols=3, width=13.0, height=4.0, width_ratios=(1.1, 1, 1))
     car = passenger_car()
     x0 = MM * car.offset
@@ -86,7 +84,6 @@ def draw_steady(data: ByEngine) -> Figure:
 
 
 def draw_maps(theory: Data) -> Figure:
-    """Draw the growth rate of the modulation, and where the disc touches the stop or the clutch locks up."""
     from matplotlib.colors import SymLogNorm
 
     figure, (left, right) = new_figure(ncols=2, width=12.0, height=4.4, sharey=True)
@@ -129,7 +126,6 @@ def draw_maps(theory: Data) -> Figure:
 
 
 def draw_modulated(data: ByEngine) -> Figure:
-    """Draw how radius and slip of the modulated whirl grow into a cycle on the stop."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=4.6, sharex=True)
     car = passenger_car()
     for engine in engines_in(data):

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 
-# --- Onset speed, where the disc leaves the engine's axis: closed form, reference and Exudyn
+# --- Onset speed, where the disc leaves the engine's axis
 
 IN_WORDS = [f"{torque:g} N m and {slip:g} rad/s" for torque, slip in theory.CASES]
 
@@ -60,7 +60,7 @@ ONSET_NOTE = (
     named=NAMED,
 )
 def loses_stability(engine: Engine) -> Measured:
-    """Compare the onset in Exudyn's linearisation, where the car's flywheel turns freely."""
+    """Let the car's flywheel turn freely in the linearisation."""
     from exudyn_models import build_drivetrain
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
@@ -88,7 +88,6 @@ def loses_stability(engine: Engine) -> Measured:
     named=NAMED,
 )
 def reduced_disc_loses_stability() -> Measured:
-    """Compare the onset of the reference's reduced disc."""
     car = centred_car()
 
     def matrix(speed: float, slip: float, torque: float) -> FloatArray:
@@ -162,7 +161,6 @@ class Steady(NamedTuple):
     note=NOTE,
 )
 def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
-    """Compare x and y of the disc at rest."""
     motions = _resting(engine, below)
     return _measured(
         motions,
@@ -179,7 +177,6 @@ def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
     note=NOTE,
 )
 def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
-    """Compare the distance of the centre from the axis."""
     motions = _whirling(engine, above)
     return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
 
@@ -190,7 +187,6 @@ def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
     note=NOTE,
 )
 def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
-    """Compare the angular velocity of the centre about the axis."""
     return _measured(_whirling(engine, above), 1, 0.0)
 
 
@@ -202,7 +198,6 @@ def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measur
 def slips(
     engine: Engine, below: tuple[float, ...] = theory.BELOW, above: tuple[float, ...] = theory.ABOVE
 ) -> Measured:
-    """Compare the slip of the disc."""
     return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, theory.balanced_car().offset)
 
 

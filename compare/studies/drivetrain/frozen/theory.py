@@ -45,7 +45,6 @@ if TYPE_CHECKING:
 
 
 def balanced_car() -> Drivetrain:
-    """Return the passenger car without unbalance."""
     return replace(passenger_car(), unbalance=0.0)
 
 
@@ -125,13 +124,13 @@ class CarWhirl:
 
     Parameters
     ----------
-    engine_speed, slip, frequency : float
+    engine_speed, slip, frequency
         ω, S and κ in rad/s.
-    radius : float
+    radius
         ρ in m.
-    friction_force, torque : float
+    friction_force, torque
         μN of both facings in N, and torque of the load in N m.
-    engine_torque : float
+    engine_torque
         In N m. The engine also drives the whirl, with the moment ρ·βκρ of friction about its axis.
 
     """
@@ -253,7 +252,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return the curves of steady motions and the maps of modulation, at one point in ``every``."""
+    """Compute the maps of modulation at one point in ``every``."""
     return _lines_of_reference(balanced_car(), every) | _maps_of_modulation(centred_car(), every)
 
 
@@ -323,7 +322,7 @@ def build(
     return model
 
 
-# --- The study of all claims
+# --- The study
 
 STUDY = Study.beside(
     __file__,

@@ -32,7 +32,6 @@ Matrix = Callable[[theory.CarWhirl], FloatArray]
 
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
-    """Return the state matrix from Exudyn's linearisation."""
     from exudyn_models.paper.linearisation import REGULARISATION
     from exudyn_models.solver.linear_matrices import state_matrix
 
@@ -48,7 +47,6 @@ def _by_exudyn(car: Drivetrain) -> Matrix:
     "Numerical error: the change with finer rings of the reference's annulus, and rounding.",
 )
 def linearised(engine: Engine) -> Measured:
-    """Compare the eigenvalues of three whirls."""
     car = centred_car()
     by_exudyn = _by_exudyn(car)
     found, expected, errors = [], [], []
@@ -83,7 +81,7 @@ def linearised(engine: Engine) -> Measured:
     named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
 )
 def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
-    """Compare the speeds above which the modulation grows; the search lies ``between`` two speeds in rpm."""
+    """Search ``between`` two speeds in rpm."""
     car = centred_car()
 
     def borders(matrix: Matrix) -> FloatArray:
@@ -130,7 +128,6 @@ def _border(
     "with twice the deviation, and at a smaller tolerance.",
 )
 def growth(engine: Engine) -> Measured:
-    """Compare the eigenvalue of growing deviations from the modulated whirl in a run."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)
@@ -182,7 +179,7 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
     basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
-    """Check the energy of the modulated motion up to ``until`` in s, and keep the motion for the figure."""
+    """Simulate up to ``until`` in s, and keep the motion for the figure."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     motions = [

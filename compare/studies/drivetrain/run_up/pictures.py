@@ -1,4 +1,4 @@
-"""Figures of the run-up: radius and slip over speed, the spectrum of the disc's motion, and the drivetrain in 3D."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -51,7 +51,6 @@ STEP = math.radians(48.0)
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the available data."""
     figures: dict[str, Figure] = {}
     if engines_in(data):
         figures["drivetrain-run-up"] = draw_run_up(data)
@@ -61,7 +60,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_run_up(data: ByEngine) -> Figure:
-    """Draw radius and slip over the engine's speed, with the predictions of the reference at frozen speeds."""
     figure, (radius, slip) = new_figure(nrows=2, width=9.0, height=6.0, sharex=True, height_ratios=(3, 1))
     car = passenger_car()
     for engine in engines_in(data):
@@ -158,7 +156,6 @@ def draw_waterfall(data: ByEngine) -> Figure:
 
 
 def draw_pictures(data: ByEngine) -> Figure:
-    """Draw the drivetrain below the onset, near resonance and in the whirl."""
     from exudyn_models.drivetrain.picture import draw_drivetrain
 
     found = data[engines_in(data)[0]]
@@ -173,7 +170,6 @@ def draw_pictures(data: ByEngine) -> Figure:
 
 
 def show(panel: Axes, image: Any, title: str) -> None:
-    """Show a picture without axes."""
     panel.imshow(image)
     panel.set_axis_off()
     panel.set_title(title, loc="center")

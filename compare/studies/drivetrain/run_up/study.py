@@ -1,4 +1,4 @@
-"""The car's drivetrain runs up from idle to 6000 rpm with a controlled slip of the clutch."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 )
 from reference_model.systems import FloatArray
 
-# --- The run-up: torque of the engine and control of the slip
+# --- The run-up
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -68,7 +68,7 @@ def transmitted(car: Drivetrain) -> float:
     return TORQUE * behind / (car.engine_inertia + behind)
 
 
-# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up: rest, unbalance and whirl
+# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
@@ -190,7 +190,6 @@ def _run_ups(engine: Engine, top: float) -> tuple[DrivetrainMotion, DrivetrainMo
 
 
 def _shown(motion: DrivetrainMotion) -> Data:
-    """Return the data of the spectrum and the figures."""
     return {
         "times": motion.times,
         "engine": np.column_stack((motion.engine_angle, motion.engine_speed)),
@@ -210,7 +209,7 @@ def _parameters() -> dict[str, float | str]:
     basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, top: float = TOP) -> Measured:
-    """Check the energy of the run-up to ``top`` (rpm), and keep the motion for the figures."""
+    """Simulate up to ``top`` in rpm, and keep the motion for the figures."""
     motions = _run_ups(engine, top)
     measured = balance_of([motion.energy for motion in motions], _parameters())
     return replace(measured, data=_shown(motions[0]))
@@ -221,10 +220,7 @@ def balance(engine: Engine, top: float = TOP) -> Measured:
     resolution=0.5 * LINES_APART,
 )
 def lines(engine: Engine, top: float = TOP) -> Measured | None:
-    """Compare the order of the strongest forward line in each window of the spectrum.
-
-    Return None if the run-up is shorter than a window.
-    """
+    """Return None if the run-up is shorter than a window of the spectrum."""
     motions = _run_ups(engine, top)
     if motions[0].engine_angle[-1] < 2.0 * math.pi * TURNS:
         return None

@@ -1,4 +1,4 @@
-"""Figures of the convergence study."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the error over step and ε, over tolerance, and over work."""
     figures = {
         "engine-convergence-tolerance": _draw_tolerance(data),
         "engine-convergence-work": _draw_work(data),
@@ -132,7 +131,6 @@ def _marks(engine: str, *, line: bool = False) -> dict[str, Any]:
 
 
 def _legend_below(figure: Figure, panels: tuple[Axes, ...]) -> None:
-    """Put one legend for all panels below them."""
     found: dict[str, Any] = {}
     for panel in panels:
         handles, labels = panel.get_legend_handles_labels()

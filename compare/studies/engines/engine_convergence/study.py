@@ -1,4 +1,4 @@
-"""Convergence of the engines with the tolerance, with the step, and with the slip speed that regularises friction."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("reference", "exudyn"), seconds=3.0)
 
 
-# ---------------------------------------------------------------- with the tolerance
+# --- With the tolerance
 
 
 @STUDY.claim(
@@ -33,7 +33,6 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     "scatter. Model error: the effect of the term.",
 )
 def sliding(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent of the tolerance in the error of sliding pins with 1."""
     scan = theory.SCANS[engine.name]
     errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
@@ -65,7 +64,6 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     basis="reference",
 )
 def sticking(engine: Engine, with_work: bool = True) -> Measured:
-    """Compare the exponent of the tolerance in the errors of stick and release times with 1."""
     scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(
@@ -109,7 +107,7 @@ def _exact_events() -> tuple[FloatArray, float]:
     return exact, theory.root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
 
-# ---------------------------------------------------------------- with the step
+# --- With the step
 
 
 def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Measured | None]:
@@ -130,7 +128,6 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
 
 @of_every_order
 def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
-    """Compare the order of one of Exudyn's solvers at a fixed step with its declared order."""
     if engine.name != "exudyn":
         return None
     import exudyn_models  # deferred, because the command line must start without it
@@ -160,7 +157,7 @@ def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Meas
     )
 
 
-# ---------------------------------------------------------------- with the slip speed that regularises friction
+# --- With the slip speed that regularises friction
 
 HOW = (
     f"Compared with the reference at tolerance {TRUTH:g}. Least squares with a next term smaller by ε. Numerical "
@@ -178,7 +175,6 @@ HOW = (
     + HOW,
 )
 def first_stick(engine: Engine) -> Measured | None:
-    """Compare the exponent of ε in the error of the first stick time with 2."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -229,7 +225,6 @@ class Smoothing(NamedTuple):
     note=HOW,
 )
 def later_events(engine: Engine) -> Measured | None:
-    """Compare the exponents of ε in the errors of all events after the first stick with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -256,7 +251,6 @@ def later_events(engine: Engine) -> Measured | None:
     note=HOW,
 )
 def state(engine: Engine) -> Measured | None:
-    """Compare the exponent of ε in the error of the state with 1."""
     if engine.name != "exudyn":
         return None
     import exudyn_models
@@ -307,7 +301,6 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
     "next, and at twice the step.",
 )
 def creep(engine: Engine) -> Measured | None:
-    """Compare the shift of the first release per ε with creep, for both starts of Fig. 5."""
     if engine.name != "exudyn":
         return None
     import exudyn_models

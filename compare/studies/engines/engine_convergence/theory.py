@@ -44,12 +44,12 @@ class Scan:
 
     Parameters
     ----------
-    order : int
+    order
         Order of the integrator. Its error estimate has the same order in the step. The step is therefore
         ~ tolerance^(1/order), the error ~ tolerance, and the next term is smaller by one power of the step.
     sliding, sticking, work : array
         Tolerances for both exponents, between the first few steps and rounding, and for the plot of error over work.
-    sticking_term : float
+    sticking_term
         Ratio of the next term to the first if the pin sticks, as a power of the tolerance.
 
     """
@@ -107,7 +107,6 @@ SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are our c
 
 
 def root_mean_square(values: FloatArray) -> float:
-    """Return √⟨values²⟩."""
     return float(np.sqrt(np.mean(values**2)))
 
 

@@ -1,4 +1,4 @@
-"""Reliability of the error bars of all claims: true errors of random motions compared with their estimates."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -43,7 +43,6 @@ STUDY = Study.beside(
     each=tuple(theory.PROBLEMS),
 )
 def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
-    """Count the numbers whose true error lies within the estimate, in one kind of motion."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=1.0,
@@ -66,7 +65,6 @@ def coverage(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measur
     each=tuple(theory.PROBLEMS),
 )
 def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> Measured:
-    """Compare the median ratio of estimate to true error in one kind of motion with its expected value."""
     found = calibration(engine, kind, motions)
     return Measured(
         predicted=PROPORTIONAL,
@@ -104,7 +102,7 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     )
 
 
-# --- Figures of estimates and true errors for each kind of motion
+# --- Figures
 
 SMALLEST, LARGEST = 0.3, 3e3
 """Range of the ratios in the figure; an arrow stands for larger ones."""
@@ -113,7 +111,6 @@ COLUMNS = 3
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw estimates against true errors, and the spread of their ratio."""
     return {"error-estimates": _scatter(data), "error-estimates-spread": _spread(data)}
 
 

@@ -84,13 +84,13 @@ class Problem:
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         The parameters.
     start : array of shape (4,) or (6,)
         State at ``times[0]``.
     times : array of shape (n,)
         Times in s.
-    quantity : callable
+    quantity
         Returns the numbers of a trajectory, shape (m,), or fewer if the trajectory lacks some.
     exact : array of shape (m,)
         Exact values of the numbers.
@@ -195,7 +195,6 @@ def _damped(system: System, start: complex, velocity: complex, t: float) -> tupl
 
 
 def oscillator(random: Generator) -> Problem:
-    """Draw a damped oscillation of a pin about the offset, without friction."""
     pin = replace(any_pin(random), friction_force=0.0)
     place = vector(random, abs(pin.offset))
     velocity = vector(random, abs(pin.offset) * pin.natural_frequency)
@@ -329,17 +328,14 @@ def _generic(random: Generator, system: System) -> Problem:
 
 
 def pin(random: Generator) -> Problem:
-    """Draw a motion of a pin with slip and possibly stick."""
     return _generic(random, any_pin(random))
 
 
 def ring(random: Generator) -> Problem:
-    """Draw a slipping disc on a continuous ring."""
     return _generic(random, any_disc(random, None))
 
 
 def points(random: Generator) -> Problem:
-    """Draw a slipping disc on three to six points."""
     return _generic(random, any_disc(random, int(random.integers(3, 7))))
 
 

@@ -1,4 +1,4 @@
-"""Claims about recorded motions of foreign engines: friction laws, orders, and errors over computing time."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -49,7 +49,6 @@ LAW = (
 
 
 def curves() -> Data:
-    """Return computing time and error of each recorded run."""
     return {
         f"{recording.name}: {case}": runs[:, [SECONDS, ERROR]]
         for recording in ladders.recorded()
@@ -76,7 +75,6 @@ _of_law = functools.partial(
 
 @_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
 def slides() -> Measured:
-    """Compare the orders with 1."""
     return _orders(1.0, FIRST_ORDER, ("slip",))
 
 
@@ -88,13 +86,11 @@ def slides() -> Measured:
     note=SCATTERED_ORDER,
 )
 def sticks() -> Measured:
-    """Compare the orders with 1."""
     return _orders(1.0, STICKING, ("stick-slip", "release"), scatters=True)
 
 
 @_of_order("With steps of order 1, the error of a disc on six points falls in proportion to the step")
 def disc_slides() -> Measured:
-    """Compare the orders with 1."""
     return _orders(
         1.0, tuple(name for name in FIRST_ORDER if name not in SINGLE_PRECISION + OFF_FOR_DISCS), ("disc",)
     )
@@ -104,7 +100,6 @@ def disc_slides() -> Measured:
     "With a friction pyramid or box, which differ from the cone, the errors of pin and disc do not fall with the step"
 )
 def axes_stay_off() -> Measured:
-    """Compare the orders with 0."""
     return _orders(0.0, BY_AXIS, ("slip", "disc"))
 
 
@@ -113,7 +108,6 @@ def axes_stay_off() -> Measured:
     "the step"
 )
 def disc_stays_off() -> Measured:
-    """Compare the orders with 0."""
     return _orders(0.0, OFF_FOR_DISCS, ("disc",))
 
 
@@ -151,7 +145,6 @@ def _orders(
     equation=CASES["whirl"].equation,
 )
 def box_whirls() -> Measured:
-    """Compare the deviation with our integration of a box."""
     return _as_far_off_as(box, "whirl", BOXES)
 
 
@@ -160,7 +153,6 @@ def box_whirls() -> Measured:
     equation=CASES["whirl"].equation,
 )
 def pyramid_whirls() -> Measured:
-    """Compare the deviation with our integration of a pyramid."""
     return _as_far_off_as(pyramid, "whirl", PYRAMIDS)
 
 
@@ -169,7 +161,6 @@ def pyramid_whirls() -> Measured:
     equation=CASES["release"].equation,
 )
 def box_releases() -> Measured:
-    """Compare the deviation with our integration of a box."""
     return _as_far_off_as(box, "release", BOXES)
 
 
@@ -178,7 +169,6 @@ def box_releases() -> Measured:
     equation=CASES["release"].equation,
 )
 def pyramid_releases() -> Measured:
-    """Compare the deviation with our integration of a pyramid."""
     return _as_far_off_as(pyramid, "release", PYRAMIDS)
 
 
@@ -212,7 +202,6 @@ def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
     named={"late by a box": 0, "late by a pyramid": 1},
 )
 def holds_longer() -> Measured:
-    """Compare the delay of release after Coulomb's law with the roots of (6) for these laws."""
     times, errors = np.transpose([release_by(law) for law in (box, pyramid)])
     exact = release_where(abs)
     by_axes = (
@@ -239,7 +228,6 @@ def holds_longer() -> Measured:
     "Numerical error: a unit in the last recorded digit.",
 )
 def creeps() -> Measured:
-    """Compare the deviations with positions that go from w to (1 + iωh)·w in each step of a stuck pin."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     runs = np.concatenate([by_name[name].runs["stuck"] for name in TANGENTS])
     names = [
@@ -255,7 +243,7 @@ def creeps() -> Measured:
     )
 
 
-# --- Figures of the study of foreign engines
+# --- Figures
 
 COLOURS = {
     "MuJoCo": PURPLE,
@@ -273,7 +261,6 @@ MARKERS = "os^Dv"
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the error over computing time, for a sliding pin, a sticking pin and a disc."""
     if "theory" not in data:
         return {}
     ladders = data["theory"]

@@ -87,7 +87,7 @@ def halvings(runs: FloatArray) -> FloatArray:
     return runs[strange[-1] + 1 :] if strange.size else runs
 
 
-# --- Deviations from Coulomb's law in engines: friction that depends on two axes, and stick along tangents
+# --- Deviations from Coulomb's law in engines
 
 Law = Callable[[complex, float], complex]
 """Friction as a function of the slip in m/s and the smoothing slip speed ε in m/s, as a fraction of μN."""
@@ -192,7 +192,7 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
     return float(value), float(error)
 
 
-# --- Claims of each recorded engine and case: does its motion converge to the exact one?
+# --- Claims of each recorded engine and case
 
 OUR_FORCE = "our force"
 """Setting with our force instead of the engine's own friction."""
@@ -209,7 +209,6 @@ IN_SHORT = {
 
 
 def recorded_settings() -> tuple[Recorded, ...]:
-    """Return the results of each setting for the matrix of the report."""
     return tuple(recorded_claims(recording) for recording in recorded())
 
 
@@ -249,7 +248,7 @@ def recorded_claims(recording: Recording) -> Recorded:
     )
 
 
-# --- Tables of all recorded settings: error, cost and setting
+# --- Tables of all recorded settings
 
 
 def _finest(runs: FloatArray) -> str:
@@ -279,7 +278,6 @@ def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> l
 
 
 def tables() -> tuple[Table, ...]:
-    """Return the tables of errors, costs and settings."""
     titles = tuple(case.title for case in CASES.values())
     finest = tuple((recording.name, *_of_each_case(recording, _finest)) for recording in recorded())
     cost = tuple(

@@ -97,7 +97,7 @@ MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
 """Motions for an engine that differs from another one only in its contact."""
 
-# ---------------------------------------------------------------- drawn from the whole range
+# --- Drawn from the whole range
 
 SEED = 8
 

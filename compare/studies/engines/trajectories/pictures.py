@@ -1,4 +1,4 @@
-"""Figure of the deviation of each engine from the reference over time, with its error bar."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ COLUMNS = 4
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the largest deviation of each motion from the reference up to each time, and its error bar."""
     rows = math.ceil(len(MOTIONS) / COLUMNS)
     figure, panels = new_figure(
         ncols=COLUMNS, nrows=rows, width=11.0, height=2.6 * rows, sharex=True, sharey=True

@@ -1,4 +1,4 @@
-"""Simple motions: all states compared with the reference, and integrals of velocities and forces along them."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float 
     return found
 
 
-# --- The study and its motions
+# --- The study
 
 STUDY = Study.beside(
     __file__,
@@ -120,7 +120,6 @@ NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
 
 
 def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
-    """Return single motions with given parameters, and groups of random motions by kind."""
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
@@ -158,7 +157,7 @@ def of_bodies(
     return declare
 
 
-# ---------------------------------------------------------------- the claims
+# --- The claims
 
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
@@ -182,7 +181,6 @@ def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
 )
 @together
 def moves(engine: Engine, motion: parameters.Motion) -> Measured:
-    """Compare all states with those of the reference."""
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
     # Single numbers may agree by chance, or all of them if both runs take the same steps.
@@ -216,7 +214,6 @@ def moves(engine: Engine, motion: parameters.Motion) -> Measured:
 )
 @together
 def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of position and angle in each panel with the integral of velocity and spin."""
     half = motion.system.state_size // 2
     return balance(
         engine,
@@ -238,7 +235,6 @@ def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
 )
 @together
 def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the change of momentum and angular momentum in each panel with the integral of forces and moments."""
     body = motion.system
     half = body.state_size // 2
     inertia = np.array(
@@ -297,7 +293,6 @@ def balance(
 )
 @together
 def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare start and end of all stick phases with those of the reference."""
     if not motion.sticks:
         return None
     predicted = stick_times(by_reference(motion))
@@ -318,7 +313,7 @@ def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
 )
 @together
 def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
-    """Compare the ends of stick phases with (7), if the reference contains any."""
+    """Return None if the reference contains no stick phase."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None
@@ -345,15 +340,13 @@ def of_stick(
 
 
 def started(motion: parameters.Motion) -> str:
-    """Return the start and the duration of a motion as text."""
     return f"To t = {motion.until:g} s from {motion.start}."
 
 
-# ---------------------------------------------------------------- other motions
+# --- Other motions
 
 
 def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
-    """Measure the claims of the study for the given motions instead of its own."""
     declared = []
     for one in STUDY.declared:
         (like,) = next(iter(one.each.values()))

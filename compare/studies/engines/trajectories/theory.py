@@ -88,7 +88,7 @@ def equation_of(motion: Motion) -> str:
     return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
 
 
-# --- Stick phases of a pin: start, end, and delay of the release after (7)
+# --- Stick phases of a pin
 
 
 def samples_in_stick(run: Trajectory) -> list[int]:

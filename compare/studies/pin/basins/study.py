@@ -1,4 +1,4 @@
-"""Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -80,7 +80,6 @@ STUDY = Study.beside(
     resolution=1e-4,
 )
 def closes(engine: Engine) -> Measured:
-    """Compare the state after one period with the state at the start."""
     orbit = saddle(FIG5)
     found = refined(
         lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
@@ -107,7 +106,6 @@ def closes(engine: Engine) -> Measured:
     named={"period of the saddle": 0, "stick of the saddle": 1, "multiplier of the saddle": 2},
 )
 def returns(engine: Engine) -> Measured:
-    """Compare period, stick time and multiplier of the saddle in the engine's own release map."""
     orbit = saddle(FIG5)
     releases = ReleaseMap(FIG5, ON_BOUNDARY)
 
@@ -148,7 +146,6 @@ def returns(engine: Engine) -> Measured:
     basis="reference",
 )
 def parts(engine: Engine, places: int = PLACES) -> Measured:
-    """Check the ends of starts on either side of the boundary, at this number of ``places`` on it."""
     rays = np.exp(2j * math.pi * np.arange(places) / places)
     ways = np.column_stack((rays.real, rays.imag))
     within = starts_at(*(WITHIN + np.zeros_like(ways)).T)
@@ -174,10 +171,6 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
     basis="reference",
 )
 def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
-    """Count the starts whose end does not match their side of the boundary.
-
-    The curve is interpolated, so shooting determines the side of the starts that do not match the curve.
-    """
     curve, places, ends = smooth(boundary(FIG5, cells)), places_on_grid(side), ends_on_grid(FIG5, side)
     other = ends.ravel() != np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
@@ -209,7 +202,6 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     swept=("disc_speed",),
 )
 def area(side: int = SIDE, cells: int = CELLS, pins: tuple[PinOnDisc, ...] = tuple(WHERE)) -> Measured:
-    """Compare the share of the starts with the share of the area, for each pin."""
     whole = math.prod(high - low for low, high in PLANE)
     shares = [of_grid(ends_on_finer_grid(pin, side))[EndState.SELF_CENTRED] for pin in pins]
     return Measured(
@@ -229,7 +221,6 @@ def area(side: int = SIDE, cells: int = CELLS, pins: tuple[PinOnDisc, ...] = tup
     note=f"{RECOMPUTED} starts, half of them within {ASIDE:g} of the boundary.",
 )
 def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS) -> Measured:
-    """Compare the ends of some random starts, and of some starts near the boundary."""
     curve, (places, random) = smooth(boundary(FIG5, cells)), random_places(starts)
     near = curve[random.integers(len(curve), size=count // 2)]
     near = near + random.uniform(-ASIDE, ASIDE, (count // 2, 2))
@@ -253,7 +244,6 @@ def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS
     swept=("disc_speed",),
 )
 def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measured:
-    """Compare the equilibrium's shares at neighbouring speeds, starting with the last one without a whirl."""
     shares = shares_over_speed(speeds, starts)
     rest = shares[EndState.SELF_CENTRED][:, 0]
     last = max(int(np.argmax(rest < 1.0)) - 1, 0)
@@ -269,11 +259,10 @@ def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measure
     )
 
 
-# --- Figure of the basins of Fig. 5
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw ends and boundary in the plane of starts, the saddle, and shares over the speed."""
     if "theory" not in data:
         return {}
     from matplotlib.colors import ListedColormap

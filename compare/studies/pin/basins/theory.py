@@ -73,7 +73,6 @@ AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
 def curves(
     side: int = SIDE, cells: int = CELLS, speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS
 ) -> Data:
-    """Return ends and boundary in the plane of starts, the saddle, and shares over the speed."""
     orbit = saddle(FIG5).trajectory
     held = np.zeros(len(orbit.times))
     for begin, end in orbit.stick_times.reshape(-1, 2):
@@ -129,7 +128,6 @@ def enclosed(curve: FloatArray) -> float:
 
 
 def inside(points: FloatArray, curve: FloatArray) -> NDArray[np.bool_]:
-    """Return for each point (n, 2) whether a closed curve encloses it."""
     from matplotlib.path import Path
 
     return np.asarray(Path(curve).contains_points(points))

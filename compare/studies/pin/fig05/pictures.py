@@ -1,4 +1,4 @@
-"""Figure and animation of the two motions of Fig. 5."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,6 @@ STUCK = PURPLE
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw both motions in the plane and over time, and the errors of their stick and release times."""
     from matplotlib.ticker import MaxNLocator
 
     figure, (plane, near, history, errors) = new_figure(ncols=2, nrows=2, width=9.6, height=8.0)

@@ -1,4 +1,4 @@
-"""Fig. 5: equilibrium and whirl side by side, the stick phases before them, and the critical start."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ CRITICAL_TOLERANCE = WORKING / 5.0
 """The error of the critical velocity of a regularised law is about a hundred times larger."""
 
 
-# --- The motions of Fig. 5 without an engine: simple events, the polar form and the map of stick phases
+# --- The motions of Fig. 5 without an engine
 
 
 @functools.cache
@@ -175,7 +175,6 @@ def run_of(engine: Engine, name: str, tolerance: float) -> Trajectory:
     named={"slip for 100 s": None},
 )
 def slides(engine: Engine) -> Measured:
-    """Compare the states of a sliding pin at 101 times with (10)."""
     # The error of the other integrator is its change at a larger tolerance.
     predicted, rougher = (sliding_in_polar_form(tolerance).ravel() for tolerance in (3e-14, 2e-13))
     found = refined(
@@ -199,7 +198,6 @@ def slides(engine: Engine) -> Measured:
     resolution=1e-6 * FIG5.offset,
 )
 def rests(engine: Engine) -> Measured:
-    """Compare the end of the first run with (3)."""
     found = refined(lambda tolerance: run_of(engine, "equilibrium", tolerance).at_end[:2], RUNS_TOLERANCE)
     states = run_of(engine, "equilibrium", RUNS_TOLERANCE).states
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
@@ -223,7 +221,6 @@ def rests(engine: Engine) -> Measured:
     "transient: from the slowest multiplier of the orbit and the time since the last stick phase.",
 )
 def whirls(engine: Engine) -> Measured:
-    """Compare the mean position in the last of several turns after the second run with that of the orbit."""
     orbit = whirl()
     times = np.concatenate(([0.0], orbit.period * (FURTHER_TURNS + np.linspace(0.0, 1.0, 129))))
 
@@ -255,7 +252,6 @@ def whirls(engine: Engine) -> Measured:
     each=tuple(FIG5_STARTS),
 )
 def first_stick(engine: Engine, name: str) -> Measured:
-    """Compare the first stick phase with a simple event on the slip and with (7)."""
     predicted = refined(lambda tolerance: first_stick_and_release(name, tolerance), 4e-13)
     found = _events(engine, name, lambda times: _padded(times[:2], 2))
     return Measured(
@@ -278,7 +274,6 @@ def first_stick(engine: Engine, name: str) -> Measured:
     each=tuple(FIG5_STARTS),
 )
 def all_sticks(engine: Engine, name: str) -> Measured:
-    """Compare all stick and release times with those of the reference."""
     predicted = reference_events(name)
     found = _events(engine, name, lambda times: _padded(times, len(predicted)))
     run = run_of(engine, name, RUNS_TOLERANCE)
@@ -325,7 +320,6 @@ def _padded(events: FloatArray, size: int) -> FloatArray:
     named={"dividing velocity": 0},
 )
 def critical(engine: Engine) -> Measured:
-    """Compare the critical initial velocity with that of the reference."""
     found = _critical(engine)
     return Measured(
         predicted=predicted_critical_velocity(),
@@ -346,7 +340,6 @@ def _critical(engine: Engine) -> Measurement:
     basis="self-check",
 )
 def sides(engine: Engine) -> Measured:
-    """Check the ends of both neighbours of the engine's critical velocity."""
     margins, errors = asked(functools.partial(_parted, engine), SIDES_TOLERANCE)
     if _critical(engine).largest > CAPTURE:  # the motions may then divide at another start
         errors = np.full_like(margins, math.inf)

@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -45,7 +45,6 @@ SUPPORTS = {"support": tuple(theory.PINS)}
     swept=("friction_force",),
 )
 def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    """Compare the whirls at μN = ``loads`` in N with the closed form."""
     pins = [[replace(pin, friction_force=load) for load in loads] for pin in theory.PINS.values()]
     miss = 0.0
 
@@ -76,7 +75,6 @@ def circle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     note=f"With {theory.LAWS}. Predicted: shooting with the reference at tolerance {3.0 * TRUTH:g}.",
 )
 def orbit(engine: Engine) -> Measured:
-    """Compare the whirls with an offset with those of the reference."""
     pins = [replace(pin, offset=theory.OFFSET) for pin in theory.PINS.values()]
     exact = [theory.exact_whirl(pin) for pin in pins]
 
@@ -106,7 +104,6 @@ def orbit(engine: Engine) -> Measured:
     swept=("offset",),
 )
 def harmonic_balance(engine: Engine) -> Measured:
-    """Compare the order in X0 of the error of harmonic balance with 2."""
     pins = [replace(theory.HARDENING, offset=offset) for offset in theory.OFFSETS]
     balances = [whirl_by_harmonic_balance(pin) for pin in pins]
     balanced = np.array([(balance.radius, balance.frequency) for balance in balances])
@@ -144,7 +141,6 @@ def harmonic_balance(engine: Engine) -> Measured:
     f"tolerance {TRUTH:g}.",
 )
 def slides(engine: Engine) -> Measured:
-    """Compare pins that spiral out to the whirl with the reference."""
     pins = [replace(pin, offset=theory.OFFSET) for pin in theory.PINS.values()]
     motions = [(pin, theory.SLIDING_START, theory.SLIDING_TIMES) for pin in pins]
     found = refined(
@@ -172,7 +168,6 @@ def slides(engine: Engine) -> Measured:
     note=f"Predicted: the reference at tolerance {TRUTH:g}, with (6) for the force of this support.",
 )
 def sticks(engine: Engine) -> Measured:
-    """Compare the first stick and release times with the reference."""
 
     def first_stick(asked: Engine, tolerance: float) -> tuple[float, float]:
         start = FIG5_STARTS["whirl"]
@@ -201,7 +196,6 @@ def sticks(engine: Engine) -> Measured:
     "deflection d under the force μN.",
 )
 def rests(engine: Engine) -> Measured:
-    """Compare the positions of rest with the balance of forces."""
     pins = [replace(pin, **theory.RESTING) for pin in theory.PINS.values()]
     places = [equilibrium_position(pin) for pin in pins]
 
@@ -236,7 +230,6 @@ def rests(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def growth_ends(engine: Engine) -> Measured:
-    """Compare the final radius of growth without damping, extrapolated to μN = 0, with the closed form."""
     grown: dict[tuple[str, float, float], FloatArray] = {}
 
     def ends(tolerance: float) -> list[list[float]]:
@@ -283,7 +276,6 @@ def growth(engine: Engine, pin: PinOnDisc, load: float, tolerance: float, sample
     basis="reference",
 )
 def disc_whirl(engine: Engine) -> Measured:
-    """Compare the whirl of a disc with the solution of the balances."""
     whirl = whirls(theory.DISC)[0]
 
     def coming_back(tolerance: float) -> list[float]:
@@ -303,14 +295,13 @@ def disc_whirl(engine: Engine) -> Measured:
     )
 
 
-# --- Figure of the whirl's radius over the friction force on each support, and of growth without damping
+# --- Figure
 
 LINES = {"linear": ("linear", ":"), "hardening": ("hardening", "-"), "stop": ("with a stop", "--")}
 """Label and dashes of each support."""
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radius of the whirl over the friction force, and growth without damping."""
     figure, (whirl, growing) = new_figure(ncols=2, width=10.0, height=4.0)
     if "theory" in data:
         found = data["theory"]

@@ -85,7 +85,6 @@ GROWN = 1e-6
 
 
 def curves() -> Data:
-    """Return the closed forms of the whirl, and the growth of the linear pin without damping."""
     loads = np.linspace(0.0, max(LOADS), 101)[1:]
     data = {"load": loads}
     for name, pin in {"linear": CENTRED, **PINS}.items():
@@ -120,7 +119,6 @@ def end_of_growth(pin: PinOnDisc) -> float:
 
 
 def first_circle(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Return a state on the circle where the linear spring carries the pin."""
     return GROWING_FROM, 0.0, 0.0, pin.natural_frequency * GROWING_FROM
 
 

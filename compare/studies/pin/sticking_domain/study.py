@@ -1,4 +1,4 @@
-"""Eq. 6 to 9: where the pin sticks permanently, when it is released elsewhere, and the resonance of both."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -99,7 +99,6 @@ def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = 
     swept=("disc_speed",),
 )
 def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
-    """Compare the displacement of pins that start inside the radius (9) with zero."""
     found = displaced(engine, speeds)
     return Measured(
         predicted=np.zeros_like(found.value),
@@ -118,7 +117,6 @@ def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     swept=("disc_speed",),
 )
 def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
-    """Check that pins that start inside the radius (9) always stick."""
     margins, errors = asked(lambda tolerance: two_revolutions(engine, speeds, tolerance)[1], TOLERANCE)
     if np.any(margins < 0.0) and creeps(engine, speeds):
         errors = np.full_like(margins, np.inf)
@@ -135,7 +133,6 @@ def holds(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     swept=("disc_speed",),
 )
 def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
-    """Compare the turn of the disc until the release of pins outside the radius (9) with (7)."""
 
     def turns(tolerance: float) -> FloatArray:
         motions = []
@@ -245,7 +242,6 @@ def _between(
     swept=("disc_speed",),
 )
 def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
-    """Compare the largest sticking radii with (9)."""
     found = largest_radii(engine, searched)
     predicted = np.array([sticking_radius(pin_at(speed)) for speed in searched])
     return Measured(
@@ -267,7 +263,6 @@ def largest(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
     swept=("disc_speed",),
 )
 def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
-    """Compare the speed of the largest measured radius with ω*."""
     radii, error = (each[:3] for each in largest_radii(engine, searched))
     relative = np.where(np.isfinite(radii), error / radii, error)
     found, error_of_vertex = vertex(np.array(searched[:3]) ** 2, 1.0 / radii**2, relative)
@@ -283,7 +278,6 @@ def resonance(engine: Engine, searched: Sequence[float] = SEARCHED) -> Measured:
     swept=("disc_speed", "damping"),
 )
 def resonance_of_9() -> Measured:
-    """Compare the speed of the largest radius (9) with ω*."""
     found, errors, expected = [], [], []
     for damping in DAMPINGS:
         pin = replace(PIN, damping=damping)
@@ -310,7 +304,6 @@ def resonance_of_9() -> Measured:
     swept=("disc_speed",),
 )
 def shrinks() -> Measured:
-    """Compare the radius (9) far above the resonance with its limit."""
     speeds = np.array(FAST)
     radii = np.array([sticking_radius(pin_at(speed)) for speed in FAST])
     return Measured(
@@ -323,11 +316,10 @@ def shrinks() -> Measured:
     )
 
 
-# --- Figure of the sticking radius over the disc speed, and of the release of pins outside
+# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the radius over the disc speed, the time until release, and its deviation from (7)."""
     figure, (domain, time, error) = new_figure(ncols=3, width=12.6, height=3.7)
     if "theory" in data:
         domain.semilogy(data["theory"]["speed"], data["theory"]["radius"], **curve("theory", "eq. (9)"))

@@ -1,4 +1,4 @@
-"""Figures of the whirl stability study."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the available data: the start on the circle and the deviation, the eigenvalues, and the map."""
     figures = {"whirl-motions": draw_motions(data)} if engines_in(data) else {}
     if "theory" in data:
         figures["whirl-eigenvalues"] = draw_eigenvalues(data)
@@ -26,7 +25,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def draw_motions(data: ByEngine) -> Figure:
-    """Draw the radius after a start on the circle (11), and a small deviation that decays."""
     figure, (leaving, decay) = new_figure(ncols=2, width=9.8, height=3.6)
     _draw_leaving(leaving, data)
     _draw_decay(decay, data)
@@ -70,7 +68,6 @@ def _draw_leaving(panel: Axes, data: ByEngine) -> None:
 
 
 def _draw_decay(panel: Axes, data: ByEngine) -> None:
-    """Draw the deviation inside the envelope of its modes."""
     for engine in engines_in(data):
         panel.plot(data[engine]["history_time"], data[engine]["history"], **curve(engine))
     if "theory" in data:
@@ -99,7 +96,6 @@ def _draw_decay(panel: Axes, data: ByEngine) -> None:
 
 
 def draw_eigenvalues(data: ByEngine) -> Figure:
-    """Draw decay rates and frequencies of the eigenvalues over the speed of the disc."""
     figure, (decay, oscillation) = new_figure(ncols=2, sharex=True)
     theory = data["theory"]
     for panel, part, sign in ((decay, 0, -1.0), (oscillation, 1, 1.0)):
@@ -121,7 +117,6 @@ def draw_eigenvalues(data: ByEngine) -> Figure:
 
 
 def draw_map(theory: Data) -> Figure:
-    """Draw the largest real part of the roots of (13) over speed and damping, and the boundary (16)."""
     from matplotlib.colors import SymLogNorm
 
     figure, (panel,) = new_figure(width=6.4, height=4.0)

@@ -1,4 +1,4 @@
-"""Claims about the whirl without offset and its stability."""
+"""Claims."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ STUDY = Study.beside(
 STUDY.provides(curves=theory.curves)
 
 
-# --- Eq. 12 to 16 compared with each other: the conditions of stability
+# --- Eq. 12 to 16 compared with each other
 
 BoolArray = NDArray[np.bool_]
 
@@ -53,7 +53,6 @@ BoolArray = NDArray[np.bool_]
     swept=("disc_speed", "damping"),
 )
 def same_eigenvalues() -> Measured:
-    """Compare the roots of the corrected (13) with the eigenvalues of (12) and of the Jacobian of (1)."""
     pins = [
         theory.pin_at(float(speed), float(damping))
         for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
@@ -110,7 +109,6 @@ def in_16() -> BoolArray:
     swept=("disc_speed", "damping"),
 )
 def hurwitz() -> Measured:
-    """Compare (16) with the largest real part of the eigenvalues."""
     largest, error = theory.largest_real_parts()
     return counted(np.where(in_16(), -largest, largest), error)
 
@@ -123,7 +121,6 @@ def hurwitz() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def implied() -> Measured:
-    """Check that (14) holds at all points where (16) holds."""
     return counted(~in_16() | in_14())
 
 
@@ -135,12 +132,11 @@ def implied() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def incompatible() -> Measured:
-    """Check that there is no point where both hold."""
     in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in theory.grid()])
     return counted(~(in_14() & in_15))
 
 
-# --- Eq. 11 and 12: the whirl without offset in the engines, and the evolution of deviations from it
+# --- Eq. 11 and 12
 
 SETTLING = (
     f"Starts on a circle {theory.DISPLACED:g} times as large; state after {theory.DURATION:g} s. Error: the "
@@ -189,7 +185,6 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     swept=("disc_speed",),
 )
 def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
-    """Compare the final radius with (11)."""
     found = whirls(engine, speeds)
     return Measured(
         predicted=np.full(len(speeds), whirl_radius(theory.PIN)),
@@ -208,7 +203,6 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     swept=("disc_speed",),
 )
 def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
-    """Compare the final frequency with k."""
     found = whirls(engine, speeds)
     return Measured(
         predicted=np.full(len(speeds), K),
@@ -228,7 +222,6 @@ def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measur
     swept=("disc_speed",),
 )
 def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
-    """Compare the rate of change of the angular momentum of a pin on the circle (11) with (10)."""
     if engine.contact_only:
         return None
 
@@ -263,7 +256,6 @@ def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured
     swept=("disc_speed",),
 )
 def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
-    """Compare the final angular speed of a pin that left the circle (11) below k with ω."""
     if engine.contact_only:
         return None
     below = [speed for speed in starts if speed < K]
@@ -318,7 +310,6 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     swept=("disc_speed", "damping"),
 )
 def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
-    """Compare all four eigenvalues with those of (12) and zero."""
     if engine.contact_only:
         return None
     found = rates(engine, points)
@@ -337,7 +328,6 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.P
     swept=("disc_speed", "damping"),
 )
 def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
-    """Check that all measured deviations except that of the phase decay."""
     if engine.contact_only:
         return None
     return rates(engine, points).decaying(
@@ -354,7 +344,6 @@ def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS
     "deviation.",
 )
 def history(engine: Engine) -> Measured | None:
-    """Compare a deviation of the radius over time with (12)."""
     if engine.contact_only:
         return None
     circle = whirl_radius(theory.PIN)

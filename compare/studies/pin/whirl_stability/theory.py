@@ -81,7 +81,6 @@ def on_circle(pin: PinOnDisc, scale: float = 1.0) -> FloatArray:
 
 
 def curves() -> Data:
-    """Return eigenvalues over the speed and on the grid, and the decaying deviation."""
     speeds = K * (1.0 + np.geomspace(0.01, 6.0, 240))
     return {
         "speed": speeds,
@@ -106,7 +105,6 @@ def linear_deviation(times: FloatArray) -> FloatArray:
 
 @functools.cache
 def grid() -> tuple[PinOnDisc, ...]:
-    """Return the pins of the grid, damping by damping."""
     return tuple(pin_at(K * ratio, PIN.mass * K * damping) for damping in DAMPINGS for ratio in RATIOS)
 
 

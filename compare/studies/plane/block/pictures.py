@@ -1,4 +1,4 @@
-"""Figure of the block: its stopping positions, its swings to rest, and its velocity under a transverse pull."""
+"""Figures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from compare.studies.plane.block.study import HEADINGS, SPEED, STOPPING_DISTANCE
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the stopping positions of throws, the swings on a spring, and the velocity under a transverse pull."""
     if not data:
         return {}
     figure, (plane, swings, velocity) = new_figure(ncols=3, width=13.2, height=4.2)

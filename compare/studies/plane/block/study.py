@@ -1,4 +1,4 @@
-"""Study of a block on a plane at rest: thrown, held, released, on a spring, and pulled."""
+"""Parameters, formulas and claims."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from compare.claims.parameters import at_each
 from compare.engines import Engine
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- Parameters of the block, its throws and pulls, and the sample times.
+# --- Parameters
 
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
@@ -91,7 +91,7 @@ def state_of(place: complex, velocity: complex = 0j) -> FloatArray:
     return np.array([place.real, place.imag, velocity.real, velocity.imag])
 
 
-# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip.
+# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip
 # Lengths are in m, speeds in m/s, times in s; s is the distance along a line, and v = ds/dt.
 
 STOPPING_TIME = SPEED / DECELERATION
@@ -238,7 +238,6 @@ def along(
     note="s = v₀t − μN·t²/2m.",
 )
 def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Compare throws with uniform deceleration up to 90 % of the time to rest."""
     times = STOPPING_TIME * WHILE_SLIDING
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
     return along(found, thrown(times[1:]), headings, times[1:])
@@ -250,7 +249,6 @@ def slows(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     resolution=1e-6,
 )
 def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Compare the stopping positions of throws with the closed form."""
     times = STOPPING_TIME * np.array([0.0, AT_REST])
     found = moved(engine, BLOCK, headings, (0j, SPEED + 0j), times)
     rest, stops = np.array([[STOPPING_DISTANCE, 0.0]]), found.value[:, 0, :2]
@@ -266,7 +264,6 @@ def stops(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     swept=("stiffness",),
 )
 def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    """Compare the creep of a block on a stretched spring with zero."""
     stretch, rate = FRICTION / SPRING.stiffness, FRICTION / math.sqrt(SPRING.mass * SPRING.stiffness)
     times = np.array([0.0, HELD])
     crept, errors = [], []
@@ -292,7 +289,6 @@ def holds(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     "pulls with μN.",
 )
 def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Compare a released block with the closed form halfway and after it sticks again."""
     stretch = BEYOND * FRICTION / SPRING.stiffness
     times = np.array([0.0, 0.5, 1.25]) * math.pi / SPRING.natural_frequency
     found = moved(engine, SPRING, headings, (-stretch + 0j, 0j), times)
@@ -306,7 +302,6 @@ def lets_go(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     f"at 101 %. Directions: {at_each('heading', HEADINGS)} degrees.",
 )
 def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Check at eight positions close to the friction cone whether a block moves."""
 
     def margins(tolerance: float) -> FloatArray:
         places = [
@@ -331,7 +326,6 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
     "every quarter of a swing.",
 )
 def swings(engine: Engine) -> Measured:
-    """Compare a block on a stiff spring with the closed form until after it rests."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     quarters = np.arange(2.0 * SWINGS + 2.0)
     times = np.asarray(0.5 * math.pi / k * quarters)
@@ -357,7 +351,6 @@ def swings(engine: Engine) -> Measured:
     "acceleration is uniform to within a hundredth.",
 )
 def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
-    """Compare a block thrown along the pull with the closed form."""
     stretch = PULL * FRICTION / AFAR.stiffness
     found = moved(engine, AFAR, headings, (-stretch + 0j, SPEED + 0j), PULLED)
     way = pulled(AFAR, SPEED, stretch, PULLED[1:])
@@ -373,7 +366,6 @@ def pulled_along(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measur
     "with the velocity. Model error: the change of the spring's pull along the path.",
 )
 def pulled_across(engine: Engine) -> Measured:
-    """Compare a block thrown along y and pulled along x with the closed form."""
     start = state_of(0j, SPEED * 1j)
 
     def velocities(tolerance: float) -> FloatArray:

@@ -99,7 +99,7 @@ def _slope(p: Polynomial, u: float) -> float:
 
 
 @inlined
-def place_on(step: DenseOutput, u: float) -> complex:
+def position_on(step: DenseOutput, u: float) -> complex:
     """Return z(u)."""
     return complex(_value(step.x, u), _value(step.y, u))
 
@@ -169,5 +169,5 @@ def way_along(step: DenseOutput, u: float, disc_speed: float) -> float:
     total: float = 0.0
     for place, weight in GAUSS:
         at = u * place
-        total += weight * size_of(velocity_on(step, at) - complex(0.0, disc_speed) * place_on(step, at))
+        total += weight * size_of(velocity_on(step, at) - complex(0.0, disc_speed) * position_on(step, at))
     return total * u * step.span

@@ -1,11 +1,11 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
 Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit an explicit step long after the fast motion has died out. They do not limit this method (Hairer
-and Wanner, Solving Ordinary Differential Equations II, IV.5).
+β/m. These rates limit an explicit step long after the fast motion has died out, but not this method (Hairer and
+Wanner, Solving Ordinary Differential Equations II, IV.5).
 
 The unknowns of Newton's method are the components of slip at the nodes: (u_x, u_y) of a pin, and also r of a disc.
-The position of the centre depends on slip only, and linearly. Friction is the gradient of a mean slip speed P, so its
+The position of the centre depends on slip linearly. Friction is the gradient of a mean slip speed P, so its
 derivative −g·P'' is symmetric and zero along the slip. The component along the slip is removed from the differences,
 because rounding would spoil it.
 """
@@ -73,21 +73,16 @@ def collocate_with(
 ) -> float:
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
-    It also computes the rates ``f`` and the mean slip speed ``power`` (NODES,). ``z``, ``angle`` and ``start``
-    describe the start of the step, ``law`` is that of a disc, and ``friction`` is like ``laws.ring_friction``.
-    Returns how fast friction draws slip to its direction at the end, as a rate, or -1 without convergence.
-
-    It is one function because functions that take functions are inlined into their callers, so parts of it would be
-    too.
+    ``z``, ``angle`` and ``start`` describe the start of the step. The rates ``f`` and the mean slip speed ``power``
+    (NODES,) are results too. Returns how fast friction draws slip to its direction at the end, as a rate, or -1
+    without convergence.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
     linear, rest = matrix.reshape(NODES, d, NODES, d), change.reshape(NODES, d)
     slopes = zeros(NODES * d * d).reshape(NODES, d, d)
-    by_place = -law.stiffness - (law.damping + 1j * law.disc_speed) * 1j * law.disc_speed
-    by_slip = -(law.damping + 1j * law.disc_speed)
     turns = _turns(law.disc_speed, step)
-    reach = _reach(step, by_place, turns)
+    reach = _reach(step, law, turns)
     for _ in range(MOST_ITERATIONS):
         for j in range(NODES):
             ux, uy = w[j, 0], w[j, 1]
@@ -99,7 +94,9 @@ def collocate_with(
             s = math.sqrt(ux * ux + uy * uy + r * r)
             apart = APART * s
             fx, fy, fr, power[j] = friction(ux, uy, r, turned, law)
-            a = pull(_place(z, w, step, j, turns), complex(ux, uy), law) + law.friction * complex(fx, fy)
+            a = pull(_position_at_node(z, w, step, j, turns), complex(ux, uy), law) + law.friction * complex(
+                fx, fy
+            )
             f[j, 0], f[j, 1] = a.real, a.imag
             if d == 3:
                 f[j, 2] = -law.shaft_rate * (r + law.lag) + law.friction * fr
@@ -111,19 +108,25 @@ def collocate_with(
                 slopes[j, 1, k] = law.friction * (moved[1] - fy) / apart
                 if d == 3:
                     slopes[j, 2, k] = law.friction * (moved[2] - fr) / apart
-            _free_of(slopes[j], w[j], s)
-            slopes[j, 0, 0] += by_slip.real
-            slopes[j, 0, 1] -= by_slip.imag
-            slopes[j, 1, 0] += by_slip.imag
-            slopes[j, 1, 1] += by_slip.real
-            if d == 3:
-                slopes[j, 2, 2] -= law.shaft_rate
+            _complete(slopes[j], w[j], s, law)
         _linearise(w, f, slopes, start, step, reach, linear, rest)
         if not solve(matrix, change):
             return -1.0
         if _corrected(w, rest, step):
             return _size_of(slopes[-1])
     return -1.0
+
+
+@scalar
+def _complete(slopes: FloatArray, along: FloatArray, size: float, law: DiscLaw) -> None:
+    """Complete the slopes of friction at a node, computed by differences, to those of the rates of slip."""
+    _free_of(slopes, along, size)
+    slopes[0, 0] -= law.damping
+    slopes[0, 1] += law.disc_speed
+    slopes[1, 0] -= law.disc_speed
+    slopes[1, 1] -= law.damping
+    if len(along) == 3:
+        slopes[2, 2] -= law.shaft_rate
 
 
 @scalar
@@ -137,8 +140,9 @@ def _turns(disc_speed: float, step: float) -> ComplexArray:
 
 
 @scalar
-def _reach(step: float, by_place: complex, turns: ComplexArray) -> ComplexArray:
+def _reach(step: float, law: DiscLaw, turns: ComplexArray) -> ComplexArray:
     """Return d(step times the pull at a node)/d(slip at another node), through the position."""
+    by_place = -law.stiffness - (law.damping + 1j * law.disc_speed) * 1j * law.disc_speed
     reach = complex_zeros(NODES * NODES).reshape(NODES, NODES)
     for i in range(NODES):
         for k in range(NODES):
@@ -247,11 +251,11 @@ def stride_with(
     z: complex, angle: float, start: FloatArray, guess: FloatArray, span: float, least: float, tolerance: float,
     law: DiscLaw, collocate: Collocation,
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
-    """Make an implicit step of ``span``, or a shorter one if its error requires it, but at least ``least``.
+    """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
     ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns the position, the
-    components of slip, the angle, the duration of the step, the slip distance and the proposed next step. The
-    duration is zero if the step is not worthwhile.
+    components of slip, the angle, the duration (zero if the step is not worthwhile), the slip distance and the
+    proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
@@ -283,7 +287,7 @@ def stride_with(
                 turned += law.curling * span * INTEGRAL[NODES - 1, j] * w[j, 2]
         last = w[NODES - 1]
         r = last[2] if d == 3 else 0.0
-        there = place_after(z, w, span, law)
+        there = position_after(z, w, span, law)
         return there, last[0], last[1], r, turned, span, way, span * min(factor, GROWTH)
     return z, 0.0, 0.0, 0.0, angle, 0.0, 0.0, span
 
@@ -308,14 +312,14 @@ def patience(planned: float) -> float:
 
 
 @scalar
-def place_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
-    """Return the position of the centre at the end of a step; relative to the master disc it depends on slip only."""
-    return _place(z, w, step, NODES - 1, _turns(law.disc_speed, step))
+def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
+    """Return the position of the centre at the end of a step."""
+    return _position_at_node(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 
 @inlined
-def _place(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
-    """Return the position of the centre at a node; ``turns`` is the rotation of the master disc up to the nodes."""
+def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
+    """Return the position of the centre at a node; relative to the master disc it depends on slip only."""
     way = 0j
     for j in range(NODES):
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])

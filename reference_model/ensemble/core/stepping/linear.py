@@ -67,10 +67,7 @@ def solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 @scalar
 def powers_vanish(matrix: FloatArray) -> bool:
-    """Return whether the powers of a square matrix vanish, so that all its eigenvalues have a modulus below 1.
-
-    The matrix is squared until its powers vanish or grow.
-    """
+    """Return whether the powers of a square matrix vanish, so that all its eigenvalues have a modulus below 1."""
     n = len(matrix)
     power, square = matrix.copy(), zeros(n * n).reshape(n, n)
     for _ in range(SQUARINGS):

@@ -1,7 +1,7 @@
-"""One step of Dormand and Prince's eighth-order Runge-Kutta method, for any number of unknowns.
+"""One step of Dormand and Prince's eighth-order Runge-Kutta method, with the coefficients of SciPy's DOP853 (Hairer).
 
-The coefficients are those of Hairer's DOP853, taken from SciPy. The unknowns are a tuple of numbers and the step is
-branch-free code, so a loop over lanes that calls it is vectorised as a whole.
+The unknowns are a tuple of numbers and the step is branch-free code, so a loop over lanes that calls it is
+vectorised.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numba
 from numba.extending import overload
 from scipy.integrate import DOP853
 
-from reference_model.ensemble.core.jit import INLINED, inlined
+from reference_model.ensemble.core.jit import INLINED, generated, inlined
 from reference_model.numerics.explicit import TIGHTEST
 
 intrinsic: Any = numba.extending.intrinsic  # not fully typed
@@ -114,14 +114,7 @@ def _squares(differences: Any, before: Any, after: Any) -> Callable[..., Any]:
         f"(differences[{v}] / (1.0 + max(abs(before[{v}]), abs(after[{v}])))) ** 2"
         for v in range(len(before))
     ]
-    return _written_out("differences, before, after", [" + ".join(terms)])
-
-
-def _written_out(arguments: str, terms: list[str]) -> Callable[..., Any]:
-    namespace: dict[str, Any] = {}
-    exec(f"def sums({arguments}):\n    return ({', '.join(terms)},)", namespace)
-    function: Callable[..., Any] = namespace["sums"]
-    return function
+    return generated("differences, before, after", [f"return ({' + '.join(terms)},)"])
 
 
 @inlined
@@ -131,7 +124,7 @@ def step(
     """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
 
     ``rates(y, law)`` returns the rates of ``y``; numbers that do not affect the rates may follow. ``k1`` are the
-    rates at ``y``. Means and differences are tuples of the same length as the result of ``rates``.
+    rates at ``y``.
     """
     k2 = rates(moved(y, h, A2, (k1,)), law)
     k3 = rates(moved(y, h, A3, (k1, k2)), law)
@@ -152,7 +145,7 @@ def step(
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
     """Return the error of a step as a multiple of the tolerance, by Hairer's estimate from both differences.
 
-    The error is absolute for unknowns below 1 and relative for larger ones.
+    It is absolute for unknowns below 1 and relative for larger ones.
     """
     high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)

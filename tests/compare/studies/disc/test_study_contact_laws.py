@@ -1,5 +1,3 @@
-"""The study of contact laws: claims about the theory differ for broken laws."""
-
 import math
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""The study of Figs. 9 and 10: wrong formulas differ, and the curve of whirls is complete."""
-
 import numpy as np
 import pytest
 from tested_studies import FIG09

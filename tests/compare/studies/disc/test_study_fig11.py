@@ -1,5 +1,3 @@
-"""The study of Fig. 11: fits and spectra of known signals."""
-
 from __future__ import annotations
 
 import math

@@ -1,5 +1,3 @@
-"""The study of the free ring: errors of an engine's own time of rest."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""The study of the simulated map: impossible ends differ, and the disc of Fig. 11 is modulated."""
-
 import numpy as np
 import pytest
 from tested_studies import SIMULATED_MAP

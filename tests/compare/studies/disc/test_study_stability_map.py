@@ -1,5 +1,3 @@
-"""The study of the stability map: its text contains its results."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""The study of the coupled clutches: Exudyn's built-in connector, and wrong records."""
-
 from dataclasses import replace
 
 import numpy as np

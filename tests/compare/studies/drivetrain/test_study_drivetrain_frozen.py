@@ -1,5 +1,3 @@
-"""The car's drivetrain at frozen speeds: its eigenvalues are those of the reference."""
-
 from dataclasses import replace
 
 import numpy as np

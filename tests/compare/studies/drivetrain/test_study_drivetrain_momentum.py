@@ -1,5 +1,3 @@
-"""The study of an isolated drivetrain contains every pair of bodies, which exchange angular momentum."""
-
 from itertools import combinations
 
 from compare.studies.drivetrain.momentum import DRIVETRAINS, KINDS

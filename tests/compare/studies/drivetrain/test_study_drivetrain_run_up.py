@@ -1,5 +1,3 @@
-"""The run-up: figures from any data, and the spectrum of a known whirl."""
-
 import numpy as np
 import pytest
 from studies_under_test import Patched

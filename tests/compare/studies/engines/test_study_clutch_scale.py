@@ -1,5 +1,3 @@
-"""The study of the clutch's scale: its systems are the paper's in other units."""
-
 from tested_studies import CLUTCH_SCALE
 
 

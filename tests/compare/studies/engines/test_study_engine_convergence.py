@@ -1,5 +1,3 @@
-"""The study of convergence: known exponents, orders and shifts by creep are found."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""The study of error estimates: coverage and overestimate of known errors."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,5 +1,3 @@
-"""The study of power: every second sample covers the whole motion."""
-
 from dataclasses import replace
 
 from studies_under_test import (

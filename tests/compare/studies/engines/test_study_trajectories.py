@@ -1,5 +1,3 @@
-"""The study of trajectories: random motions, pooled claims and integrals of forces."""
-
 from dataclasses import replace
 
 import numpy as np

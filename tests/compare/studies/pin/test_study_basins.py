@@ -1,5 +1,3 @@
-"""The study of the basins: claims about the theory differ for wrong ends of motions."""
-
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +12,7 @@ from reference_model.ensemble import EndState
 
 
 @pytest.fixture
-def anew(monkeypatch):
+def fresh(monkeypatch):
     """Clear the caches of the theory before and after the test, and return a ``MonkeyPatch``."""
     cached = (theory.ends_on_grid, theory.ends_on_finer_grid, theory.shares_over_speed)
     for each in cached:
@@ -43,28 +41,28 @@ def test_a_wrong_share_of_the_basin_differs(monkeypatch):
     assert claim.measured[claim.named["share at 1.5 rad/s"]] == pytest.approx(0.25, abs=4e-3)
 
 
-def test_ends_of_shifted_starts_differ(anew):
+def test_ends_of_shifted_starts_differ(fresh):
     """Shift x0 by 4 mm, the spacing of the grid."""
     right = theory.ensemble_of
 
     def shifted(starts, *pin, **parameters):
         return right(np.add(starts, (0.004, 0.0, 0.0, 0.0)), *pin, **parameters)
 
-    anew.setattr(theory, "ensemble_of", shifted)
+    fresh.setattr(theory, "ensemble_of", shifted)
     assert all_differ("divides", few={"divides": {"side": 200, "cells": 6}})
 
 
-def test_a_basin_that_grows_with_the_speed_differs(anew):
+def test_a_basin_that_grows_with_the_speed_differs(fresh):
     right = theory.ensemble_of
 
     def slower(starts, *pin, **parameters):
         return right(starts, *pin, **{name: 4.1 - values for name, values in parameters.items()})
 
-    anew.setattr(theory, "ensemble_of", slower)
+    fresh.setattr(theory, "ensemble_of", slower)
     assert all_differ("shrinks")
 
 
-def test_an_ensemble_with_swapped_ends_differs(anew):
+def test_an_ensemble_with_swapped_ends_differs(fresh):
     right = theory.ensemble_of
 
     def swapped(starts, *pin, **parameters):
@@ -72,7 +70,7 @@ def test_an_ensemble_with_swapped_ends_differs(anew):
         return replace(found, end=np.where(found.end == 1, 2, 1).astype(np.uint8))
 
     for module in (theory, study):
-        anew.setattr(module, "ensemble_of", swapped)
+        fresh.setattr(module, "ensemble_of", swapped)
     assert all_differ("divides", "recomputes")
 
 

@@ -1,5 +1,3 @@
-"""The study of Fig. 3: how the limit (5) is extrapolated."""
-
 import numpy as np
 import pytest
 

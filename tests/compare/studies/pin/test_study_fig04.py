@@ -1,5 +1,3 @@
-"""The study of Fig. 4: the theory alone bounds the error of (18)."""
-
 import numpy as np
 import pytest
 from studies_under_test import engine_named

@@ -1,5 +1,3 @@
-"""The study of Fig. 5: stick phases, the critical velocity and the animation."""
-
 import io
 import itertools
 import math

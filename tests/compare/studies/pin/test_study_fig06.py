@@ -1,5 +1,3 @@
-"""The study of Fig. 6: its curves are those of the branch."""
-
 from dataclasses import replace
 
 import numpy as np

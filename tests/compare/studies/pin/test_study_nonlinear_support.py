@@ -1,5 +1,3 @@
-"""The study of nonlinear supports: its motions pass the gap of the stops."""
-
 from dataclasses import replace
 
 import numpy as np

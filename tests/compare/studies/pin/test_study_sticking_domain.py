@@ -1,5 +1,3 @@
-"""The study of sticking: creep leaves release open."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""The study of the whirl: wrong formulas differ."""
-
 import numpy as np
 import pytest
 from studies_under_test import DIFFERS, theory_of

@@ -1,5 +1,3 @@
-"""The study of the block: missing abilities, and the error bound of a closed form."""
-
 from dataclasses import replace
 
 import numpy as np

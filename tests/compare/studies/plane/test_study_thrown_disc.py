@@ -1,5 +1,3 @@
-"""The study of thrown discs: missing abilities are reported, and its numbers are consistent."""
-
 import pytest
 from tested_studies import THROWN_DISC
 

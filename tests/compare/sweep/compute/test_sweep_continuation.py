@@ -8,9 +8,9 @@ import pytest
 from compare.claims.parameters import FIG5
 from compare.claims.shares import of_counts
 from compare.sweep.compute.executors import InProcess
-from compare.sweep.compute.known import known_branches
 from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.run import run
+from compare.sweep.compute.theory import theory_branches
 from compare.sweep.distributions import Uncertain
 from compare.sweep.plan import Continuation, plan_as_json, plan_from_json
 from compare.sweep.quantities import Axis
@@ -103,18 +103,18 @@ def test_shares_and_radii_along_the_speed(store):
 
 
 def test_motions_lie_on_the_branches_that_formulas_and_continuation_give(store):
-    result, known = store.get("result"), store.get("branches")
-    assert known["known"].values.tolist() == ["self-centred", "whirl"]
+    result, theory = store.get("result"), store.get("branches")
+    assert theory["theory"].values.tolist() == ["self-centred", "whirl"]
     for radius in ("least", "largest"):
-        found, expected = result[f"motion_{radius}"].values, known[f"known_{radius}"].values
+        found, expected = result[f"motion_{radius}"].values, theory[f"theory_{radius}"].values
         there = np.isfinite(found)
         np.testing.assert_allclose(found[there], expected[there], rtol=2e-3)  # samples of an orbit
-    assert np.all(known["known_stable"].values[np.isfinite(expected)] == 1.0)
+    assert np.all(theory["theory_stable"].values[np.isfinite(expected)] == 1.0)
 
 
 def test_branches_without_offset_are_those_of_the_formulas():
     centred = replace(PLAN, system=replace(FIG5, offset=0.0))
-    (branch,) = known_branches(centred)
+    (branch,) = theory_branches(centred)
     for i, one in branch.items():
         (whirl,) = whirls(replace(centred.system, disc_speed=PLAN.x.values[i]))
         assert (one.meaning, one.largest, one.stable) == ("whirl", whirl.radius, whirl.stable)

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 
 from compare.claims.parameters import FIG5, FIG11
-from compare.sweep.compute.known import MEANINGS, NODES, PIN, curves
+from compare.sweep.compute.theory import MEANINGS, NODES, PIN, curves
 from compare.sweep.plan import Map
 from compare.sweep.quantities import Axis
 from reference_model.steady.bifurcation_curves import ParameterPlane, crossings

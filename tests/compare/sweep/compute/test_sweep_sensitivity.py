@@ -10,7 +10,6 @@ def ishigami(x):
 
 
 def table_of(function, rows, quantities):
-    """Return the results in the plan's design for uniform numbers between −π and π."""
     uniform = np.pi * (2.0 * uniform_rows(2, 0, rows, 2 * quantities) - 1.0)
     first, second = uniform[:, :quantities], uniform[:, quantities:]
     columns = [function(first), function(second)]

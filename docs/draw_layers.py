@@ -1,7 +1,7 @@
-"""Draw the layers of the packages from the actual imports: ``python docs/draw_floors.py``.
+"""Draw the layers of the packages from the actual imports: ``python docs/draw_layers.py``.
 
 The layers are the contracts in ``pyproject.toml``, which import-linter checks. The arrows are the imports between the
-modules of a package. The description in ``floors.svg`` contains its data, so a test can detect an outdated figure.
+modules of a package. The description in ``layers.svg`` contains its data, so a test can detect an outdated figure.
 """
 
 import ast
@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 ROOT = Path(__file__).parents[1]
-PICTURE = Path(__file__).with_name("floors.svg")
+PICTURE = Path(__file__).with_name("layers.svg")
 PLACES = {
     "compare": (0.0, 2.4),
     "exudyn_models": (8.0, 0.0),
@@ -46,7 +46,7 @@ MOST_NAMED = 3
 """Largest number of modules named next to such an arrow."""
 
 
-def floors():
+def layers_of():
     """Return the layers of each package, top layer first, each a list of modules."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["importlinter"][
         "contracts"
@@ -65,37 +65,39 @@ def imports():
     found = set()
     for package in PLACES:
         for path in (ROOT / package).rglob("*.py"):
-            here = room_of(path.relative_to(ROOT).with_suffix("").parts)
+            here = module_of(path.relative_to(ROOT).with_suffix("").parts)
             for node in ast.walk(ast.parse(path.read_text("utf-8"))):
                 names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
                 if isinstance(node, ast.ImportFrom):
                     names = [f"{node.module}.{alias.name}" for alias in node.names]
-                found |= {(here, room_of(name.split("."))) for name in names if name.split(".")[0] in PLACES}
+                found |= {
+                    (here, module_of(name.split("."))) for name in names if name.split(".")[0] in PLACES
+                }
     return sorted((here, there) for here, there in found if here and there and here != there)
 
 
-def room_of(parts):
+def module_of(parts):
     """Return "package.module" for a dotted name, or "" for a name that the package itself exports."""
-    package, room = [*parts, ""][:2]
-    inside = (ROOT / package / room).is_dir() or (ROOT / package / f"{room}.py").is_file()
-    return f"{package}.{room}" if room and room != "__init__" and inside else ""
+    package, module = [*parts, ""][:2]
+    inside = (ROOT / package / module).is_dir() or (ROOT / package / f"{module}.py").is_file()
+    return f"{package}.{module}" if module and module != "__init__" and inside else ""
 
 
 def drawn_from():
     """Return the contents of the figure as JSON."""
-    return json.dumps({"floors": floors(), "imports": imports()})
+    return json.dumps({"layers": layers_of(), "imports": imports()})
 
 
 def places():
     """Return the centre of each module, by "package.module"."""
     found = {}
-    for package, layers in floors().items():
+    for package, layers in layers_of().items():
         left, low = PLACES[package]
         widest = max(map(len, layers))
-        for i, rooms in enumerate(reversed(layers)):
-            for j, room in enumerate(rooms):
-                x = left + (WIDTH + GAP) * (j + 0.5 * (widest - len(rooms)) + 0.5)
-                found[f"{package}.{room}"] = (x, low + LINE * (i + 0.5))
+        for i, modules in enumerate(reversed(layers)):
+            for j, module in enumerate(modules):
+                x = left + (WIDTH + GAP) * (j + 0.5 * (widest - len(modules)) + 0.5)
+                found[f"{package}.{module}"] = (x, low + LINE * (i + 0.5))
     return found
 
 
@@ -133,18 +135,18 @@ def draw():
         start, end = (x, y - HEIGHT / 2), (to_x, to_y + HEIGHT / 2)
         panel.annotate("", xy=end, xytext=start, arrowprops=look, zorder=1)
     for name, (x, y) in middle.items():
-        package, room = name.split(".")
+        package, module = name.split(".")
         corner = (x - WIDTH / 2, y - HEIGHT / 2)
         box = FancyBboxPatch(corner, WIDTH, HEIGHT, boxstyle="round,pad=0,rounding_size=0.1", zorder=2)
         box.set(facecolor="white", edgecolor=COLOURS[package], linewidth=1.5)
         panel.add_patch(box)
-        panel.text(x, y, room.replace("_", " "), ha="center", va="center", fontsize=9, zorder=3)
-    for package, layers in floors().items():
+        panel.text(x, y, module.replace("_", " "), ha="center", va="center", fontsize=9, zorder=3)
+    for package, layers in layers_of().items():
         left, low = PLACES[package]
         high = low + LINE * len(layers)
         panel.text(left, high, package, color=COLOURS[package], fontsize=13, weight="bold")
     for (package, other), ((x, y), (to_x, to_y), beside) in BETWEEN.items():
-        rooms = sorted(
+        modules = sorted(
             {there for here, there in imports() if here.startswith(package) and there.startswith(other)}
         )
         panel.annotate(
@@ -155,9 +157,9 @@ def draw():
             zorder=0,
         )
         words = (
-            "\n".join(room.split(".")[1] for room in rooms)
-            if len(rooms) <= MOST_NAMED
-            else f"{len(rooms)} modules"
+            "\n".join(module.split(".")[1] for module in modules)
+            if len(modules) <= MOST_NAMED
+            else f"{len(modules)} modules"
         )
         panel.text(
             (x + to_x) / 2, (y + to_y) / 2 + beside, words, ha="center", va="bottom", fontsize=8, color="0.4"
@@ -168,5 +170,5 @@ def draw():
 
 
 if __name__ == "__main__":
-    with rc_context({"svg.hashsalt": "floors", "svg.fonttype": "none"}):
+    with rc_context({"svg.hashsalt": "layers", "svg.fonttype": "none"}):
         draw().savefig(PICTURE, metadata={"Description": drawn_from(), "Date": None})

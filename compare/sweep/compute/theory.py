@@ -1,4 +1,4 @@
-"""Results of formulas and continuation: motions along one parameter, and curves in the plane of a map."""
+"""Theory by formulas and continuation: motions along one parameter, and curves in the plane of a map."""
 
 from __future__ import annotations
 
@@ -10,34 +10,34 @@ from typing import Any, NamedTuple, get_args
 
 import numpy as np
 
-from compare.sweep.compute.motions import Known, matched
+from compare.sweep.compute.motions import TheoryMotion, matched
 from compare.sweep.plan import Continuation, Map
 from reference_model import Orbit, self_centred_equilibria, whirl_orbit, whirls
 from reference_model.formulas.pin import largest_load_with_equilibrium
 from reference_model.steady.bifurcation_curves import Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-# --- Steady and periodic motions along one parameter.
+# --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
 """Number of samples of an orbit for its radii; between two, the radius of a nearly circular orbit varies by 1e-3."""
 
 
-def known_branches(plan: Continuation) -> list[dict[int, Known]]:
+def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
     """Return branches of motions; each maps indices of the axis's values to motions."""
-    return matched(list(_known(plan)), lambda one: one.meaning)
+    return matched(list(_motions_along(plan)), lambda one: one.meaning)
 
 
-def _known(plan: Continuation) -> Iterator[list[Known]]:
+def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
     """Yield the motions at each value.
 
-    With an offset, the search for the whirl starts from the whirl of the previous value.
+    The search for a whirl with an offset starts from the whirl of the previous value.
     """
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
         system = replace(plan.system, **change)
-        here: list[Known] = []
+        here: list[TheoryMotion] = []
         with suppress(ValueError):  # no formula covers a disc on single points
             rests = self_centred_equilibria(system)
             here += [_circle("self-centred", math.hypot(one.x, one.y), one.stable) for one in rests]
@@ -48,7 +48,7 @@ def _known(plan: Continuation) -> Iterator[list[Known]]:
             orbit = _orbit(system, orbit, plan.tolerance)
             if orbit is not None:
                 radii = orbit.trajectory.radius
-                here.append(Known("whirl", float(radii.min()), float(radii.max()), orbit.stable))
+                here.append(TheoryMotion("whirl", float(radii.min()), float(radii.max()), orbit.stable))
         yield here
 
 
@@ -60,11 +60,11 @@ def _orbit(system: System, before: Orbit | None, tolerance: float) -> Orbit | No
     return None
 
 
-def _circle(meaning: str, radius: float, stable: bool) -> Known:
-    return Known(meaning, radius, radius, stable)
+def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
+    return TheoryMotion(meaning, radius, radius, stable)
 
 
-# --- Boundaries between motions according to formulas, as curves in the plane of a map.
+# --- Boundaries between motions according to formulas, as curves in the plane of a map
 #
 # All except (5) hold without offset; a disc is treated as a continuous ring.
 

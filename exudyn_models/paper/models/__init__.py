@@ -1,1 +1,0 @@
-"""Models of the pin and the disc, built from bodies, support and friction."""
