@@ -42,6 +42,10 @@ def dying(*arguments, **options):
 def hanging(*arguments, **options):
     time.sleep(1000.0)
 
+def picky(system, *arguments, tolerance=1e-9):
+    assert system.disc_speed < 2.0, "no fast discs"
+    return reference_model.simulate(system, *arguments, tolerance=tolerance)
+
 def sliding(*arguments, tolerance=1e-9):
     return reference_model.simulate(*arguments, tolerance=tolerance)
 sliding.sticks = False
@@ -187,14 +191,28 @@ def test_an_engine_without_an_answer_fails_with_the_reason(engine, judged):
         assert FAILING[engine] in text
 
 
-def test_an_engine_that_never_returns_fails_at_the_limit(tmp_path, monkeypatch):
+@pytest.mark.parametrize(("options", "failed"), [((), 1), (("--level", "quick"), 0)])
+def test_a_study_out_of_time_fails_at_most_the_claim_it_was_measuring(options, failed, tmp_path, monkeypatch):
     monkeypatch.setattr("compare.diagnosis.run.IN_SHORT", 1.0)
-    status, _, cases = judge(tmp_path, "sticking-domain", "mine:hanging", options=("--study-limit", "1"))
-    assert status == 1
-    assert set(cases) == set(CLAIMS["sticking-domain"])  # a single engine is not named
-    for tag, text in cases.values():
-        assert tag == "failure"
-        assert "no result: not finished within 1 s" in text
+    _, output, cases = judge(tmp_path, "fig04", "mine:hanging", options=("--study-limit", "1", *options))
+    assert set(cases) == set(CLAIMS["fig04"])  # a single engine is not named
+    texts = [text for tag, text in cases.values() if tag == "failure"]
+    assert len(texts) == failed
+    assert all("no result: not finished within 1 s" in text for text in texts)
+    remedy = "use --level full" if options else "use a larger --study-limit"
+    reason = f"the study fig04 takes longer than 1 s with mine:hanging; {remedy}"
+    assert f"not attempted: {reason} ({len(cases) - failed} claims)" in output
+
+
+def test_an_exception_costs_only_the_claims_that_need_the_motion(tmp_path):
+    _, output, cases = judge(tmp_path, "fig04", "mine:picky")
+    tags = {claim: tag for claim, (tag, _) in cases.items()}
+    assert set(tags.values()) == {"passed", "failure"}
+    assert all("no fast discs" in text for tag, text in cases.values() if tag == "failure")
+    assert (
+        f"{list(tags.values()).count('failure')} claims failed. Tests with single blocks alone find: "
+        in output
+    )
 
 
 def of_pins_that_slide(claim):
