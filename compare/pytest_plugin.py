@@ -1,16 +1,17 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
-Each study is a file and each of its claim sentences a test, collected without measuring. The first test of a study
-measures the whole study in a separate process with a time limit. A test fails if the claim differs or the engine has
-no answer. Claims that the engine does not support are "not attempted", claims that its errors leave open are
-"inconclusive", and claims that exceed the time limit are "not finished"; none of these is a pass.
+Each study is a file and each of its claim sentences a test, collected without measuring. A separate process measures
+the claims, and all claims of a study share a time limit. A test fails if the claim differs or the engine has no
+answer. A claim is "not attempted" if the engine does not support it or its study has no time left, "inconclusive" if
+the errors leave it open, and "not finished" if it exceeds the limit. None of these is a pass.
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
 """
 
 from __future__ import annotations
 
-from collections import Counter
+import time
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -37,6 +38,15 @@ PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
 
+LIMITS = {"quick": 12.0, "full": 120.0}
+"""Time limits in s for one study of one engine, by level. The quick level has about seven studies."""
+
+START_UP = 60.0
+"""Additional time in s for the start of a process, which imports the engine and the study."""
+
+NO_CLAIM = "-"
+"""Selector that fits no claim."""
+
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
 def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Parser) -> None:
@@ -57,9 +67,10 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
     group.addoption(
         "--level",
         dest="friction_discs_level",
-        choices=("quick", "full"),
+        choices=tuple(LIMITS),
         default="full",
-        help="Studies to measure: all, or only those that take seconds (default: full)",
+        help="Studies to measure: all, or only those that take seconds. At the quick level, a claim that exceeds the "
+        "time limit is not attempted instead of failed (default: full)",
     )
     group.addoption(
         "--seed",
@@ -81,9 +92,9 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         "--study-limit",
         dest="friction_discs_limit",
         type=float,
-        default=120.0,
         metavar="SECONDS",
-        help="Time limit in s for one study of one engine (default: 120)",
+        help="Time limit in s for all claims of one study about one engine "
+        f"(default: {LIMITS['full']:g}, or {LIMITS['quick']:g} at the quick level)",
     )
     group.addoption(
         "--min-conclusive",
@@ -121,7 +132,8 @@ def pytest_configure(config: pytest.Config) -> None:
     from compare.run.runner import seed_of
     from compare.studies import studies
 
-    limit = config.getoption("friction_discs_limit")
+    level, limit = config.getoption("friction_discs_level"), config.getoption("friction_discs_limit")
+    limit = LIMITS[level] if limit is None else limit
     if not 0.0 < limit < float("inf"):
         raise pytest.UsageError(f"--study-limit {limit:g}: it must be > 0 s")
     try:
@@ -130,8 +142,8 @@ def pytest_configure(config: pytest.Config) -> None:
         studies(config.getoption("friction_discs_studies"))
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
-    level, seed = (config.getoption(f"friction_discs_{name}") for name in ("level", "seed"))
-    config.stash[_BENCH] = Bench(limit, seed_of(level, seed))
+    seed = seed_of(level, config.getoption("friction_discs_seed"))
+    config.stash[_BENCH] = Bench(limit, seed, quick=level == "quick")
     config.pluginmanager.register(config.stash[_BENCH])
 
 
@@ -214,7 +226,9 @@ class ClaimTest(pytest.Item):
         from compare.claims.claim import Verdict
         from compare.run.workers import Failure
 
-        outcome = self.config.stash[_BENCH].outcome(self.study, self.engine, self._asked_with())
+        outcome = self.config.stash[_BENCH].outcome(
+            self.study, self.engine, self.study.sentences()[self.sentence]
+        )
         if isinstance(outcome, Failure) and outcome.unfinished:
             self._without_verdict(NOT_FINISHED, outcome.reason)
         if isinstance(outcome, Failure):
@@ -237,40 +251,51 @@ class ClaimTest(pytest.Item):
 
         return _account(claim, command(self.study.name, self.engine, self.config.stash[_BENCH].seed))
 
-    def _asked_with(self) -> tuple[str, ...]:
-        """Return the parts of the study that this run selects, including by -k, -m or node ids."""
-        parts = self.study.sentences()
-        tests = (test for test in self.session.items if isinstance(test, ClaimTest))
-        mine = (test for test in tests if (test.study, test.engine) == (self.study, self.engine))
-        return tuple(parts[test.sentence] for test in mine)
-
     def _without_verdict(self, why: str, reason: str) -> NoReturn:
         self.user_properties.append((PROPERTY, why))
         pytest.skip(reason)
 
 
 class Bench:
-    """Measures the selected parts of each study once for each engine, at its first claim.
+    """Measures one claim at a time, within the time that the other claims of its study leave.
 
     It is also a plugin that counts the results of each engine, including those from other processes.
     """
 
-    def __init__(self, limit: float, seed: int | None) -> None:
+    def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
         from compare.run.workers import Workers
 
         self.seed = seed
-        self._workers = Workers(1, limit)
-        self._outcomes: dict[tuple[str, str], Findings | Failure] = {}
+        self._workers = Workers(1)
+        self._limit, self._quick = limit, quick
+        self._spent: defaultdict[tuple[str, str], float] = defaultdict(float)
         self.counts: Counter[tuple[str, str]] = Counter()
 
-    def outcome(self, study: Study, engine: str, parts: tuple[str, ...]) -> Findings | Failure:
-        """Return the findings of ``parts`` of ``study`` for the engine of that name, or the failure."""
+    def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
+        """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure.
+
+        Later claims reuse the motions of earlier claims, because one process measures them all.
+        """
+        from compare.claims.study import Findings
         from compare.run.runner import measured
 
         key = (study.name, engine)
-        if key not in self._outcomes:
-            self._outcomes[key] = self._workers.ask(measured, study, engine, parts, self.seed, owner=engine)
-        return self._outcomes[key]
+        left = self._limit - self._spent[key]
+        longer = f"the study {study.name} takes longer than {self._limit:g} s with {engine}; "
+        longer += "use --level full" if self._quick else "use a larger --study-limit"
+        if left <= 0.0:
+            return Findings(not_simulated=longer)
+        self._workers.limit = self._limit + START_UP
+        self._workers.ask(
+            measured, study, engine, (NO_CLAIM,), self.seed, owner=engine
+        )  # imports do not count
+        began, self._workers.limit = time.monotonic(), left
+        found: Findings | Failure = self._workers.ask(
+            measured, study, engine, (part,), self.seed, owner=engine
+        )
+        self._spent[key] += time.monotonic() - began
+        out_of_time = self._spent[key] >= self._limit and not isinstance(found, Findings)
+        return Findings(not_simulated=longer) if out_of_time and self._quick else found
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count the result of a test."""
@@ -371,8 +396,11 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
     if failed and _engines(config) and not hasattr(config, "workerinput"):
         from compare.diagnosis.run import in_short
 
-        for line in in_short(dict.fromkeys(filter(None, map(_engine_of, failed)))):
-            terminalreporter.write_line(f"diagnosis: {line}")
+        fails = Counter(filter(None, map(_engine_of, failed)))
+        for line, number in zip(in_short(fails), fails.values(), strict=True):
+            terminalreporter.write_line(
+                f"{number} claim{'s' if number > 1 else ''} failed. Tests with single blocks alone find: {line}"
+            )
     for why in NO_VERDICT:
         reports = terminalreporter.stats.get(why, [])
         reasons = Counter(report.longrepr[2].removeprefix("Skipped: ").splitlines()[0] for report in reports)

@@ -19,6 +19,7 @@ from compare.claims.prose import Prose, Table
 from compare.claims.validation import Validation
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Figure
+from reference_model.orbits import NoOrbitError
 from reference_model.systems import FloatArray, System
 
 Data = dict[str, FloatArray]
@@ -295,7 +296,15 @@ class Study:
         few: Mapping[str, Any],
         engine: Engine | None,
     ) -> tuple[Claim, Data] | None:
-        measured = declared.function(*(() if engine is None else (engine,)), *arguments, **few)
+        try:
+            measured = declared.function(*(() if engine is None else (engine,)), *arguments, **few)
+        except NoOrbitError as error:
+            if engine is None:
+                raise
+            raise RuntimeError(
+                f"{engine.name} has no periodic motion near that of exact Coulomb friction, so this claim cannot be "
+                f"measured; check its friction law and shorten its step ({str(error).partition(';')[0]})"
+            ) from None
         if measured is None:
             return None
         return self._claim_of(declared, case, measured, engine), _arrays(measured.data)

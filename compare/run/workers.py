@@ -91,12 +91,13 @@ class _Work:
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager.
 
-    A piece of work that takes longer than ``limit`` (in s) fails. Leaving the context kills all processes.
+    A piece of work that takes longer than ``limit`` (in s) fails. The limit may change while no work is pending.
+    Leaving the context kills all processes.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
         self._jobs = jobs
-        self._limit = limit
+        self.limit = limit
         self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
@@ -169,16 +170,16 @@ class Workers:
         """Wait for the first result or time limit, and yield all results and timeouts up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
         left = None
-        if self._limit is not None and busy:
+        if self.limit is not None and busy:
             oldest = min(worker.started for worker in busy.values())
-            left = max(0.0, oldest + self._limit - time.monotonic())
+            left = max(0.0, oldest + self.limit - time.monotonic())
         ready = wait(list(busy), left) if busy else []
         for connection, worker in busy.items():
             if connection in ready:
                 done = worker.result()
-            elif self._limit is not None and time.monotonic() >= worker.started + self._limit:
-                late = Failure(f"not finished within {self._limit:g} s", unfinished=True)
-                done = Done(worker.key, late, self._limit)
+            elif self.limit is not None and time.monotonic() >= worker.started + self.limit:
+                late = Failure(f"not finished within {self.limit:g} s", unfinished=True)
+                done = Done(worker.key, late, self.limit)
                 worker.end()
             else:
                 continue

@@ -28,7 +28,7 @@ LANGUAGES = {".py": "python", ".c": "c", ".js": "javascript"}
 
 SECTIONS = {
     "Tutorials": ("tutorial-judge", "tutorial-model", "tutorial-motions"),
-    "Engines": ("judge-your-engine", "foreign-engines", "verdicts", "tolerance-tubes"),
+    "Engines": ("judge-your-engine", "benchmark", "foreign-engines", "verdicts", "tolerance-tubes"),
     "Models": ("friction-in-your-own-model", "from-modelica", "fmu"),
     "Motions": ("findings", "equations", "sweeps"),
     "Look up": ("glossary", "gallery", "latest-report"),

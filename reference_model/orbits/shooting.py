@@ -219,10 +219,17 @@ class Orbit:
         return all(abs(multiplier) < 1.0 for multiplier in nearest_to_one[shifts:])
 
 
+class NoOrbitError(RuntimeError):
+    """Shooting found no periodic orbit near its guess."""
+
+
 def shoot(
     problem: ShootingProblem, unknowns: FloatArray, sought: list[int], samples: int, what: str
 ) -> Orbit:
-    """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit."""
+    """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit.
+
+    Raises ``NoOrbitError`` if the iteration does not converge.
+    """
     scale, period = problem.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
     units = problem.size(unknowns)[sought]
@@ -252,7 +259,7 @@ def shoot(
         last, unknowns = size, unknowns.copy()
         unknowns[sought] += units * step
     if not smallest < problem.converged:
-        raise RuntimeError(
+        raise NoOrbitError(
             f"no {what} near the guess for friction_force = {unknowns[LOAD]:g} N, disc_speed = "
             f"{problem.system.disc_speed:g} rad/s: shooting stopped at a relative residual of {smallest:.1e}; "
             "start from the orbit of a nearby load; if it does not cross "

@@ -13,6 +13,7 @@ from compare.claims.study import Study
 from compare.engines import Engine, UnsupportedSystemError
 from compare.report.numbers import worst
 from reference_model import simulate
+from reference_model.orbits import NoOrbitError
 
 LOADS = (0.02, 0.05)
 ENGINE = Engine("exact", simulate)
@@ -219,3 +220,13 @@ def test_prose_without_title_word_or_group_is_rejected(folder):
     folder.parent.rename(elsewhere)
     with pytest.raises(ValueError, match="not 'elsewhere'"):
         Prose.of(elsewhere / "title" / "claims.py", {})
+
+
+def test_a_failed_search_for_an_orbit_is_reported_in_terms_of_the_engine():
+    def whirls(engine):
+        raise NoOrbitError("no whirl: shooting stopped at a relative residual of 1.1e+01; start elsewhere")
+
+    study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
+    study.claim("It whirls", resolution=1.0)(whirls)
+    with pytest.raises(RuntimeError, match=r"^exact has no periodic motion near .* residual of 1.1e\+01\)$"):
+        study.measure(ENGINE)

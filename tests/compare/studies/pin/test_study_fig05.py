@@ -1,3 +1,4 @@
+import functools
 import io
 import itertools
 import math
@@ -33,6 +34,25 @@ def never_released(system, initial_state, times, *, tolerance=1e-9):
     states[stuck] = np.column_stack((z.real, z.imag, v.real, v.imag))
     before = trajectory.phases[: trajectory.phases.index(first)]
     return replace(trajectory, states=states, phases=(*before, replace(first, end=float(times[-1]))))
+
+
+@pytest.mark.parametrize(("shift", "verdict"), [(5e-8, Verdict.AGREES), (2e-7, Verdict.DIFFERS)])
+def test_stick_times_without_change_may_deviate_by_1e_5_of_the_resolution(shift, verdict):
+    @functools.cache
+    def exact():
+        return simulate(study.FIG5, FIG5_STARTS["equilibrium"], [0.0, study.UNTIL])
+
+    def late(*_, tolerance):
+        """Return the same phases at all tolerances, as if the change were zero by chance."""
+        starts = [one.start + shift if one.start > 0.0 else 0.0 for one in exact().phases]
+        ends = [*starts[1:], study.UNTIL]
+        moved = zip(exact().phases, starts, ends, strict=True)
+        return replace(exact(), phases=tuple(replace(one, start=start, end=end) for one, start, end in moved))
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "SAMPLES", 2)
+        (claim,) = STUDY.measure(Engine("late", late), only=("all_sticks/equilibrium",)).claims
+    assert claim.verdict is verdict
 
 
 def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times():

@@ -1,0 +1,136 @@
+"""Coulomb friction benchmark: closed-form cases for any physics engine, in one file that needs only NumPy.
+
+Copy this file into your project. Write ``simulate(case, times)`` for your engine and call ``run(simulate)``, or
+
+    python friction_benchmark.py mymodule:simulate > results.json
+"""
+
+import importlib
+import json
+import math
+import sys
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Case:
+    """A point mass on a horizontal plate that may rotate about the origin; SI units.
+
+    The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``
+    (the coefficient times the normal force). ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed.
+    """
+
+    name: str
+    friction: float
+    start: tuple[float, float, float, float]
+    until: float
+    measured: str  # "x", "distance", "heading" or "radius" at the end
+    expected: float
+    scale: float  # the error divided by this is the relative error
+    formula: str
+    mass: float = 1.0
+    force: tuple[float, float] = (0.0, 0.0)
+    stiffness: float = 0.0
+    damping: float = 0.0
+    plate_speed: float = 0.0
+
+
+TOLERANCES = {"exact": 1e-6, "good": 1e-3, "fair": 1e-2}
+"""Largest relative error of each grade. An error of 1e-2 of a stopping distance is visible, 1e-3 hardly is."""
+
+GRAVITY = 9.81
+
+
+def ramps():
+    """Yield a mass released on slopes: it rests up to tan θ = μ, then slides with g·(sin θ − μ·cos θ)."""
+    for mu in (0.1, 0.3, 0.6):
+        for slope in (0.5, 0.99, 1.01, 1.5):  # tan θ/μ; 0.5 shows creep, 0.99 and 1.01 show breakaway
+            theta = math.atan(slope * mu)
+            pull, hold = GRAVITY * math.sin(theta), GRAVITY * mu * math.cos(theta)
+            path = 0.5 * max(0.0, pull - hold) * 2.0**2
+            name = f"ramp, μ = {mu:g}, tan θ = {slope:g} μ"
+            formula = "x = t²·g·(sin θ − μ·cos θ)/2, at least 0"
+            yield Case(name, hold, (0.0,) * 4, 2.0, "x", path, path or 2.0 * hold, formula, force=(pull, 0.0))
+
+
+def at_rest_after_swings(start, least):
+    """Return where a mass on a spring, released at ``start`` > 0, stops; friction holds it up to ``least`` = F/C."""
+    swings = max(0, math.ceil((start - least) / (2.0 * least)))
+    return (-1.0) ** swings * (start - 2.0 * swings * least)
+
+
+def cases():
+    """Return all cases."""
+    rest = at_rest_after_swings(9.5, 1.0)
+    stop = (0.0, 0.0, 0.6, 0.8)
+    swings = "x = (−1)ⁿ·(x₀ − 2n·F/C) after n half swings, with the first |x| ≤ F/C"
+    found = [*ramps()]
+    for mass in (0.01, 1.0, 100.0):
+        path = mass * 1.0**2 / (2.0 * 3.0 * mass)
+        name = f"stopping distance, {mass:g} kg"
+        found.append(Case(name, 3.0 * mass, stop, 1.0, "distance", path, path, "m·v²/(2F)", mass=mass))
+    for angle in (10.0, 45.0, 80.0):
+        start = (0.0, 0.0, math.cos(math.radians(angle)), math.sin(math.radians(angle)))
+        expected = math.radians(angle)
+        found.append(
+            Case(f"heading, {angle:g}°", 3.0, start, 1.0, "heading", expected, 1.0, "the path is straight")
+        )
+    found += [
+        Case(
+            "creep for 100 s at half load", 1.0, (0.0,) * 4, 100.0, "x", 0.0, 1.0, "x = 0", force=(0.5, 0.0)
+        ),
+        Case(
+            "spring, position of rest", 1.0, (9.5, 0.0, 0.0, 0.0), 20.0, "x", rest, 9.5, swings, stiffness=1.0
+        ),
+        Case(
+            "whirl on a turntable",
+            0.2,
+            (1.0, 0.0, 0.0, 1.0),
+            400.0,
+            "radius",
+            2.0,
+            2.0,
+            "r = F/(c·√(C/m)), if the turntable is faster than √(C/m)",
+            stiffness=1.0,
+            damping=0.1,
+            plate_speed=2.0,
+        ),
+    ]
+    return tuple(found)
+
+
+def measured(case, states):
+    """Return the measured number of a case from its first and last state."""
+    x, y = np.asarray(states[-1])[:2] - (0.0 if case.measured == "radius" else np.asarray(states[0])[:2])
+    if case.measured == "x":
+        return float(states[-1][0])
+    return float(math.atan2(y, x) if case.measured == "heading" else math.hypot(x, y))
+
+
+def run(simulate):
+    """Return the results of all cases as a dictionary that JSON can hold.
+
+    ``simulate(case, times)`` returns the states (x, y, vx, vy) at both times, shape (2, 4).
+    """
+    results = []
+    for case in cases():
+        value = measured(case, simulate(case, [0.0, case.until]))
+        error = abs(value - case.expected) / case.scale
+        grade = next((name for name, largest in TOLERANCES.items() if error <= largest), "fails")
+        numbers = {"value": value, "error": error}
+        known = {name: number if math.isfinite(number) else None for name, number in numbers.items()}
+        results.append({**asdict(case), **known, "grade": grade})
+    score = {name: sum(one["grade"] == name for one in results) for name in (*TOLERANCES, "fails")}
+    return {"score": score, "cases": results}
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2 or ":" not in sys.argv[1]:
+        sys.exit("usage: python friction_benchmark.py MODULE:FUNCTION")
+    module, _, function = sys.argv[1].partition(":")
+    sys.path.insert(0, "")
+    json.dump(
+        run(getattr(importlib.import_module(module), function)), sys.stdout, indent=1, ensure_ascii=False
+    )
