@@ -33,7 +33,7 @@ from compare.studies.pin.nonlinear_support import STUDY as NONLINEAR_SUPPORT
 from compare.studies.pin.sticking_domain import STUDY as STICKING_DOMAIN
 from compare.studies.pin.whirl_stability import STUDY as WHIRL_STABILITY
 from compare.studies.plane.block import STUDY as BLOCK
-from compare.studies.plane.pushes.study import STUDY as PUSHES
+from compare.studies.plane.pushes import STUDY as PUSHES
 from compare.studies.plane.thrown_disc import STUDY as THROWN_DISC
 
 STUDIES: tuple[Study, ...] = (

@@ -220,8 +220,8 @@ PUSHES = Tested(
     STUDY["pushes"],
     few={"final_poses": {"every": 25}},
     sound=("exudyn",),
-    gross={"a hand without friction": Patched(wrong.hand_with_friction(0.0), name="exudyn")},
-    small={"the hand's friction 2 % too small": Patched(wrong.hand_with_friction(0.49), name="exudyn")},
+    gross={"a hand without friction": Patched(wrong.hand_with_friction(0.0))},
+    small={"the hand's friction 2 % too small": Patched(wrong.hand_with_friction(0.49))},
 )
 
 # ---------------------------------------------------------------- the drivetrain
