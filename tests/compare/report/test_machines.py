@@ -2,6 +2,7 @@
 
 import json
 import xml.etree.ElementTree as ET
+from dataclasses import asdict
 
 import jsonschema
 import numpy as np
@@ -10,6 +11,7 @@ from fake_studies import AGREEMENT, GOOD, claim, fake, measure_verdicts
 
 from compare.claims.as_json import claim_from_json
 from compare.claims.study import Findings
+from compare.claims.validation import Validation
 from compare.report import results_json as arrays
 from compare.report.results_json import read_results, schema
 from compare.report.write import write_report
@@ -87,6 +89,42 @@ def test_a_table_contains_unit_and_place_of_each_number(tmp_path, monkeypatch, l
     if large:
         table = (tmp_path / first["arrays"]).read_text(encoding="utf-8").splitlines()
         assert table[4] == f'good,1,3,"b, angle in rad",rad,{1 / 3!r},{1 / 3!r},0.5,inf'
+
+
+FITS = Validation(
+    "Theory predicts with an error of 5.0 ± 0.5 degrees.",
+    "heading",
+    "degrees",
+    5.0,
+    0.5,
+    2.0,
+    0.1,
+    0.01,
+    0.5,
+    40,
+)
+
+
+def one_validation():
+    return (FITS,)
+
+
+def test_a_validation_is_on_the_page_and_in_the_results_but_never_counted(tmp_path):
+    study = fake("agreement", "Agreement", "Any.", measure_verdicts)
+    plain, validated = tmp_path / "plain", tmp_path / "validated"
+    write_report(run((study,), (GOOD,), folder=tmp_path / "data"), plain)
+    study.provides(validations=one_validation)
+    write_report(run((study,), (GOOD,), folder=tmp_path / "data"), validated)
+    without, with_it = (
+        json.loads((one / "results.json").read_text(encoding="utf-8")) for one in (plain, validated)
+    )
+    CHECKED.validate(with_it)
+    assert (without["validations"], with_it["validations"]) == ([], [{"study": "agreement"} | asdict(FITS)])
+    assert (with_it["totals"], with_it["evidence"]) == (without["totals"], without["evidence"])
+    page = (validated / "index.html").read_text(encoding="utf-8")
+    assert FITS.sentence in page
+    assert "50 % of 40" in page
+    assert 'id="validation"' not in (plain / "index.html").read_text(encoding="utf-8")
 
 
 def test_a_badge_counts_agreement_and_is_red_for_differences(reported, tmp_path):
