@@ -8,62 +8,48 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
-from compare.claims.parameters import FIG11
 from exudyn_models.forces.friction_laws import NONE_HELD, friction_of
-from exudyn_models.forces.laws.places import ring_places, table_of
+from exudyn_models.forces.laws.places import table_of
 from reference_model import Points, PointsOnRing
-from reference_model.systems import Place
+from reference_model.systems import FloatArray, Place
 
-REPETITIONS, CALLS = 100, 400
-
-
-def uneven(number: int) -> Points:
-    """Return points at random places within the ring, with random shares."""
-    rng = np.random.default_rng(number)
-    shares = rng.uniform(0.5, 1.5, number)
-    x, y = rng.uniform(-0.5, 0.5, (2, number)) * FIG11.contact_radius
-    return Points(np.column_stack((x, y, shares / shares.sum())).tolist())
-
-
-def law_of_reference(contact: Points) -> Callable[[], object]:
-    """Return a function that evaluates the reference's law many times."""
-    return lambda: [contact.force_and_moment(0.2 + 0.1j, 1.3, 0.4) for _ in range(CALLS)]
+REPETITIONS, CALLS, RADIUS = 100, 400, 0.12
+MOTION = 0.2 + 0.1j, 1.3, 0.4
+"""Slip in m/s, relative spin in rad/s and angle in rad."""
 
 
 def law_of_exudyn(places: tuple[Place, ...]) -> Callable[[], object]:
-    """Return a function that evaluates the connector's law many times."""
-    contact = FIG11.contact_radius, len(places), 1.0, 1e-6, NONE_HELD, table_of(places)
-    return lambda: [friction_of(0.2, 0.1, 1.3, 0.4, contact) for _ in range(CALLS)]
+    """Return a function that evaluates the connector's law."""
+    contact = RADIUS, len(places), 1.0, 1e-6, NONE_HELD, table_of(places)
+    return lambda: friction_of(MOTION[0].real, MOTION[0].imag, *MOTION[1:], contact)
 
 
-def least_times(*functions: Callable[[], object]) -> list[float]:
-    """Return the least time in s of each function."""
-    best = [np.inf] * len(functions)
-    for _ in range(REPETITIONS):
+def least_times(*functions: Callable[[], object]) -> FloatArray:
+    """Return the least time of each function in microseconds."""
+    times = np.full((REPETITIONS, len(functions)), np.inf)
+    for repetition in times:
         for i, function in enumerate(functions):
             began = time.perf_counter()
-            function()
-            best[i] = min(best[i], time.perf_counter() - began)
-    return best
-
-
-def main() -> None:
-    """Print microseconds per evaluation from Python, and their ratio."""
-    print("law                                    on a ring  anywhere   ratio")
-    for number in (3, 6, 24):
-        ring, points = PointsOnRing(FIG11.contact_radius, number), uneven(number)
-        on_ring = ring_places(FIG11.contact_radius, number)
-        rows = {
-            "reference": (law_of_reference(ring), law_of_reference(points)),
-            "connector in Exudyn": (law_of_exudyn(on_ring), law_of_exudyn(tuple(points))),
-        }
-        for name, laws in rows.items():
-            first, second = (1e6 / CALLS * found for found in least_times(*laws))
-            print(f"{name + f', {number} points':38} {first:9.3f} {second:9.3f} {second / first:7.2f}")
+            for _ in range(CALLS):
+                function()
+            repetition[i] = 1e6 * (time.perf_counter() - began) / CALLS
+    return times.min(axis=0)
 
 
 if __name__ == "__main__":
-    main()
+    print("law, in µs per call from Python         on a ring  anywhere   ratio")
+    for number in (3, 6, 24):
+        rng = np.random.default_rng(number)
+        shares, (x, y) = rng.uniform(0.5, 1.5, number), rng.uniform(-0.5, 0.5, (2, number)) * RADIUS
+        laws = PointsOnRing(RADIUS, number), Points(np.column_stack((x, y, shares / shares.sum())).tolist())
+        reference = [partial(law.force_and_moment, *MOTION) for law in laws]
+        for name, calls in {
+            "reference": reference,
+            "Exudyn": [law_of_exudyn(tuple(law)) for law in laws],
+        }.items():
+            ring, points = least_times(*calls)
+            print(f"{name + f', {number} points':38} {ring:10.3f} {points:9.3f} {points / ring:7.2f}")

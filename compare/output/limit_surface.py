@@ -3,43 +3,35 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from compare.output.figures import PALETTE, Axes, axis
 from reference_model.contact import IsotropicContact, Points, largest_wrench
-from reference_model.systems import FloatArray
 
-
-def section(
-    contact: IsotropicContact | Points, direction: float, lever: float, samples: int = 181
-) -> FloatArray:
-    """Return the closed curve where a plane cuts the limit surface, shape (samples, 2).
-
-    The plane contains the moment's axis and the forces with an angle of ``direction`` in rad to the x-axis of a disc
-    at φ = 0. The columns are the force along that direction in N and the moment in m, per newton of μN. The samples
-    have equal angles in the plane of the force and of the moment over ``lever`` in m.
-    """
-    turn = complex(math.cos(direction), math.sin(direction))
-    loads = np.exp(2j * math.pi * np.linspace(0.0, 1.0, samples))
-    wrenches = [largest_wrench(contact, load.real * turn, lever * load.imag) for load in loads.tolist()]
-    return np.array([((force * turn.conjugate()).real, moment) for force, moment in wrenches])
+SAMPLES = 181
+"""Samples of each curve."""
 
 
 def draw_limit_surface(
     panel: Axes,
     contact: IsotropicContact | Points,
-    directions: tuple[float, ...] = (0.0, math.pi / 2.0),
+    directions: Sequence[float] = (0.0, math.pi / 2.0),
     **look: Any,
 ) -> None:
-    """Draw the sections of a limit surface for several ``directions`` of the force, in rad.
+    """Draw the curves where planes through the axis of the moment cut the limit surface of a disc at φ = 0.
 
-    ``look`` are options of matplotlib for the curves. Forces are over μN, moments over μN in m.
+    The force has an angle of ``directions`` in rad to the x-axis. ``look`` are options of matplotlib for the curves.
+    Forces are over μN, moments over μN in m.
     """
     lever = max(abs(largest_wrench(contact, 0j, sign)[1]) for sign in (1.0, -1.0))
+    loads = np.exp(2j * math.pi * np.linspace(0.0, 1.0, SAMPLES)).tolist()
     for i, direction in enumerate(directions):
-        force, moment = section(contact, direction, lever).T
-        label = f"force at {math.degrees(direction):.0f}°"
-        panel.plot(force, moment, **{"color": PALETTE[i % len(PALETTE)], "label": label} | look)
+        turn = complex(math.cos(direction), math.sin(direction))
+        held = [largest_wrench(contact, load.real * turn, lever * load.imag) for load in loads]
+        options = {"color": PALETTE[i % len(PALETTE)], "label": f"force at {math.degrees(direction):.0f}°"}
+        along = [(force * turn.conjugate()).real for force, _ in held]
+        panel.plot(along, [moment for _, moment in held], **options | look)
     panel.set(xlabel=axis(r"F/\mu N"), ylabel=axis(r"M/\mu N", "m"))

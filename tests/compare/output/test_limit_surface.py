@@ -1,18 +1,16 @@
 """The picture of a limit surface shows loads that the contact just holds."""
 
-import math
-
 import numpy as np
 import pytest
 
 from compare.output.figures import new_figure
 from compare.output.limit_surface import draw_limit_surface
-from reference_model.contact import Annulus, Pin, Points, Ring
+from reference_model.contact import Points, Ring
 
 FEET = Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)])
 
 
-@pytest.mark.parametrize("contact", [FEET, Ring(0.1), Annulus(0.05, 0.1)])
+@pytest.mark.parametrize("contact", [FEET, Ring(0.1)])
 def test_no_slip_takes_more_power_from_a_drawn_load_than_friction_dissipates(contact):
     _, (panel,) = new_figure()
     draw_limit_surface(panel, contact, directions=(0.0, 1.0))
@@ -33,11 +31,3 @@ def test_no_slip_takes_more_power_from_a_drawn_load_than_friction_dissipates(con
             most = np.maximum(most, power / dissipated)
         assert most.max() < 1.0 + 1e-12
         assert most.min() > 0.99  # 3000 slips leave gaps between them
-
-
-def test_a_pin_holds_force_alone():
-    _, (panel,) = new_figure()
-    draw_limit_surface(panel, Pin(), directions=(math.pi / 2.0,))
-    forces, moments = panel.get_lines()[0].get_data()
-    assert (min(forces), max(forces)) == (pytest.approx(-1.0), pytest.approx(1.0))
-    assert np.all(moments == 0.0)
