@@ -11,6 +11,7 @@ Exudyn's build without range checks, no difference.
 
 from __future__ import annotations
 
+import ctypes
 import math
 import time
 from collections.abc import Callable
@@ -33,6 +34,8 @@ from exudyn_models import (
     simulate,
 )
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
+from exudyn_models.forces.laws.calls import number_at
+from exudyn_models.forces.laws.places import ring_places, table_of
 from exudyn_models.forces.load_and_coefficient import NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
 
@@ -97,9 +100,15 @@ def constant(*arguments: Any) -> list[float]:
     return [0.0, 0.0, 0.0, 0.0]
 
 
+def on_circle(radius: float, points: int, epsilon: float) -> Contact:
+    """Return the contact for compiled code of a pin, of points on a circle or of the whole circle."""
+    last = radius if points == CONTINUOUS else table_of(ring_places(radius, points))
+    return radius, points, FIG5.friction_force, epsilon, NONE_HELD, last
+
+
 def plain_python(radius: float, points: int) -> AddContact:
     """Return a function that adds our connector with the same law in plain Python."""
-    law, contact = in_python(ring_friction), (radius, points, FIG5.friction_force, 1e-6, NONE_HELD, radius)
+    law, contact = in_python(ring_friction), on_circle(radius, points, 1e-6)
 
     def force(mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
         _, x, y, angle = q
@@ -110,11 +119,20 @@ def plain_python(radius: float, points: int) -> AddContact:
     return with_force(force)
 
 
+def number_in_table(address: float, place: int) -> float:
+    """Return element ``place`` of an array of floats at an address."""
+    return ctypes.c_double.from_address(int(address) + 8 * place).value
+
+
 def in_python(function: Any) -> Callable[..., Any]:
     """Return a compiled function, with all functions that it calls, as plain Python."""
     plain = function.py_func
     names = {
-        name: in_python(value) if hasattr(value, "py_func") else value
+        name: in_python(value)
+        if hasattr(value, "py_func")
+        else number_in_table
+        if value is number_at
+        else value
         for name, value in plain.__globals__.items()
         if name in plain.__code__.co_names or name == "__builtins__"
     }
@@ -261,7 +279,7 @@ def cost_of_kernels() -> None:
         ("24 points", 0.12, 24),
         ("continuous ring", 0.12, CONTINUOUS),
     ):
-        contact = (radius, points, FIG5.friction_force, 1e-7, NONE_HELD, radius)
+        contact = on_circle(radius, points, 1e-7)
         for where, fastest in (("around U = W", 0.048), ("U up to 20 W", 0.48)):
             best = math.inf
             for _ in range(200):

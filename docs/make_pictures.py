@@ -1,10 +1,14 @@
-"""Draw the figure of symbols in the guide: ``python docs/make_pictures.py``."""
+"""Draw the figures of the guide, its symbols and the limit surfaces: ``python docs/make_pictures.py``."""
 
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+
+from compare.output.figures import new_figure, paper_style
+from compare.output.limit_surface import draw_limit_surface
+from reference_model.contact import Points, polygon_patch
 
 MASTER, DISC, FRICTION = "tab:blue", "tab:orange", "tab:red"
 CENTRE, SHAFT, RADIUS = 0.55 + 0.5j, 1.3 + 0.0j, 0.9
@@ -53,3 +57,14 @@ panel.set(xlim=(-1.85, 1.95), ylim=(-1.8, 1.8), aspect="equal", xlabel="x", ylab
 
 if __name__ == "__main__":
     figure.savefig(Path(__file__).parent / "conventions.png", dpi=100)
+    contacts = {
+        "Three feet": Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)]),
+        "Triangle": polygon_patch([(0.0, 0.1), (-0.1, -0.05), (0.1, -0.05)], divisions=4),
+    }
+    with paper_style():
+        limits, panels = new_figure(ncols=2)
+        for panel, (name, contact) in zip(panels, contacts.items(), strict=True):
+            draw_limit_surface(panel, contact)
+            panel.set_title(name)
+        panels[0].legend()
+        limits.savefig(Path(__file__).parent / "limit_surface.png", dpi=100)

@@ -6,7 +6,7 @@ Modules and packages:
 - ``systems``, ``trajectory``: parameters and results;
 - ``support``: the force of a support that may harden or have a stop;
 - ``simulation``: :func:`simulate`;
-- ``contact``: friction laws of a pin, points, a ring and an annulus, and the limit surface;
+- ``contact``: friction laws of a pin, points, a patch, a ring and an annulus, and the limit surface;
 - ``formulas``: the paper's closed forms for the ``pin`` and the ``disc``, harmonic balance for a hardening support,
   torque balances, characteristic polynomials, and ``power_balance``, which checks any engine;
 - ``motion``: the event-driven simulation of slip and stick;

@@ -19,7 +19,7 @@ from exudyn_models.paper.alternating_solvers import (
 from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.nondimensional import Units
 from exudyn_models.paper.scales import Scales
-from exudyn_models.parts.ring_friction import add_ring_friction, checked_regularisation
+from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIXED_STEP
 from reference_model.systems import (
     DiscOnDisc,
@@ -28,7 +28,7 @@ from reference_model.systems import (
     checked_state,
     checked_times,
     checked_tolerance,
-    finite_number,
+    positive_number,
 )
 from reference_model.trajectory import Solution, Trajectory, phases_of
 
@@ -106,7 +106,7 @@ def simulate(
     tolerance = checked_tolerance(tolerance)
     if solver not in METHODS:
         raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
-    epsilon = None if regularisation is None else checked_regularisation(regularisation)
+    epsilon = None if regularisation is None else positive_number("regularisation", regularisation, "m/s")
     run = Run.of(system, state, grid, tolerance, epsilon)
     return run.trajectory(
         METHODS[solver], run.explicit() if solver == "explicit" else run.implicit(), friction
@@ -130,10 +130,8 @@ def simulate_fixed_step(
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
-    epsilon = checked_regularisation(regularisation)
-    step = finite_number("step", step)
-    if step <= 0.0:
-        raise ValueError(f"step = {step:g} s: it must be > 0")
+    epsilon = positive_number("regularisation", regularisation, "m/s")
+    step = positive_number("step", step, "s")
     if integrator not in FIXED_STEP:
         raise ValueError(f"integrator = {integrator!r}: it must be one of {', '.join(FIXED_STEP)}")
     run = Run.of(system, state, grid, math.nan, epsilon)

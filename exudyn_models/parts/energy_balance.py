@@ -18,7 +18,7 @@ import numpy as np
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.solver_run import quiet
-from reference_model.systems import FloatArray, finite_number
+from reference_model.systems import FloatArray, positive_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
@@ -116,7 +116,7 @@ def add_energy_balance(
         potential energy. The last check needs a model that can be assembled; otherwise the run reports it.
 
     """
-    unit = _checked_unit(unit)
+    unit = positive_number("unit", unit, "J")
     for name in gains:
         if name in losses:
             raise ValueError(f"{name!r} is both a gain and a loss: it must be one of them")
@@ -138,13 +138,6 @@ def add_energy_balance(
         return balance
 
     return read
-
-
-def _checked_unit(unit: float) -> float:
-    number = finite_number("unit", unit)
-    if number <= 0.0:
-        raise ValueError(f"unit = {number:g} J: it must be > 0")
-    return number
 
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:

@@ -26,7 +26,7 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.mounts import check_axes, checked_sides, nodes_and_kinds
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.stick.planar_stick import PlanarStick
-from reference_model.systems import FloatArray, Place, checked_places, finite_number
+from reference_model.systems import FloatArray, Place, checked_places, finite_number, positive_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
@@ -249,15 +249,15 @@ def _checked_geometry(
     regularisation = UNREGULARISED if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
-        points = CONTINUOUS if places is None else len(places)
-        last = radius if places is None else table_of(places)
+        points, last = (CONTINUOUS, radius) if places is None else (len(places), table_of(places))
         if pressure != "uniform":
             raise ValueError(
                 f"pressure = {pressure!r}: it needs an annulus, with inner_radius and outer_radius"
             )
     else:
         last, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
-        points, epsilon = density_of(pressure, last, radius), checked_regularisation(regularisation)
+        points = density_of(pressure, last, radius)
+        epsilon = positive_number("regularisation", regularisation, "m/s")
     if held is not None and held not in range(1, 1 + points):  # a whole circle has none
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
@@ -269,27 +269,27 @@ def checked_contact(
     regularisation: float, contact_radius: float | None, contact_points: ContactPoints | None
 ) -> tuple[float, tuple[Place, ...] | None, float]:
     """Return R, places, None for the whole circle, and ε; raise ``ValueError`` if one is out of range."""
+    epsilon = positive_number("regularisation", regularisation, "m/s")
     if isinstance(contact_points, Iterable):
         places = checked_places("contact_points", contact_points)
         if contact_radius is not None:
             raise ValueError(
                 f"contact_radius = {contact_radius}: it cannot be combined with places of points"
             )
-        return max(math.hypot(x, y) for x, y, _ in places), places, checked_regularisation(regularisation)
+        return max(math.hypot(x, y) for x, y, _ in places), places, epsilon
     radius = finite_number("contact_radius", contact_radius)
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
-    if contact_points is not None and (
-        isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1
-    ):
+    if radius == 0.0 and contact_points is None:
+        contact_points = 1  # a pin
+    if contact_points is None:
+        return radius, None, epsilon
+    if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:
         raise ValueError(
             f"contact_points = {contact_points}: it must be a whole number >= 1, places of points, or None for the "
             "continuous ring"
         )
-    epsilon = checked_regularisation(regularisation)
-    if radius == 0.0:  # a pin, whatever the number of points
-        contact_points = 1
-    return radius, None if contact_points is None else ring_places(radius, int(contact_points)), epsilon
+    return radius, ring_places(radius, int(contact_points) if radius > 0.0 else 1), epsilon
 
 
 def _checked_annulus(
@@ -307,11 +307,3 @@ def _checked_annulus(
     if outer <= inner:
         raise ValueError(f"outer_radius = {outer:g} m: it must be > inner_radius = {inner:g} m")
     return inner, outer
-
-
-def checked_regularisation(value: float) -> float:
-    """Return ε in m/s as a float; raise ``ValueError`` if it is not a finite number > 0."""
-    epsilon = finite_number("regularisation", value)
-    if epsilon <= 0.0:
-        raise ValueError(f"regularisation = {epsilon:g} m/s: it must be > 0")
-    return epsilon

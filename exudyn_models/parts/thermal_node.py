@@ -18,7 +18,7 @@ import exudyn.itemInterface
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.load_and_coefficient import Coefficient
 from exudyn_models.solver.model import IN_MEMORY
-from reference_model.systems import finite_number
+from reference_model.systems import finite_number, positive_number
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
@@ -130,9 +130,7 @@ def add_thermal_node(
         If a number is out of range.
 
     """
-    capacity = finite_number("heat_capacity", heat_capacity)
-    if capacity <= 0.0:
-        raise ValueError(f"heat_capacity = {capacity:g} J/K: it must be > 0")
+    capacity = positive_number("heat_capacity", heat_capacity, "J/K")
     loss, outside = (
         checked_not_negative("conductance", conductance, " W/K"),
         finite_number("surroundings", surroundings),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,38 +41,36 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
 
     """
     require_whole("divisions", divisions, least=1)
-    around = _checked_corners(corners)
-    pieces = np.concatenate([_divided(np.array(triangle), divisions) for triangle in _triangles(around)])
-    areas = np.array([_doubled_area(*piece) for piece in pieces])
+    triangles = _triangles(_checked_corners(corners))
+    pieces = np.concatenate([_divided(np.array(triangle), divisions) for triangle in triangles])
+    areas = _doubled_area(*pieces.T)
     places = (pieces @ INSIDE).ravel()
-    shares = np.repeat(areas / (3.0 * areas.sum()), 3)
-    return Points(np.column_stack((places.real, places.imag, shares)).tolist())
+    return Points(
+        np.column_stack((places.real, places.imag, np.repeat(areas / (3.0 * areas.sum()), 3))).tolist()
+    )
 
 
 def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
+    """Return the corners in counterclockwise order."""
     try:
-        given = [(finite_number("corners", x), finite_number("corners", y)) for x, y in corners]
+        around = [complex(finite_number("corners", x), finite_number("corners", y)) for x, y in corners]
     except TypeError:
         raise ValueError(f"corners = {corners!r}: it must be a list of (x, y) in m") from None
-    if len(given) < 3:
-        raise ValueError(f"corners = {given}: a polygon has at least three corners")
-    around = [complex(x, y) for x, y in given]
-    doubled_area = sum(_doubled_area(0j, a, b) for a, b in zip(around, [*around[1:], around[0]], strict=True))
-    return around if doubled_area > 0.0 else around[::-1]
+    if len(around) < 3:
+        raise ValueError(f"corners = {corners}: a polygon has at least three corners")
+    return around if _doubled_area(0j, np.array(around), np.roll(around, -1)).sum() > 0.0 else around[::-1]
 
 
-def _triangles(around: Sequence[complex]) -> list[tuple[complex, complex, complex]]:
-    """Cut ears off a polygon whose corners are in counterclockwise order.
-
-    A triangle of neighbours is an ear if it turns left and contains no other corner.
-    """
-    left, result = list(around), []
+def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
+    """Cut ears off a polygon: triangles of neighbours that turn left and contain no other corner."""
+    left = list(around)
+    result: list[tuple[complex, ...]] = []
     while len(left) > 2:
         for i in range(len(left)):
-            ear = (left[i - 1], left[i], left[(i + 1) % len(left)])
-            if _doubled_area(*ear) > 0.0 and not any(
-                _contains(ear, corner) for corner in left if corner not in ear
-            ):
+            ear = a, b, c = left[i - 1], left[i], left[(i + 1) % len(left)]
+            others = np.array([corner for corner in left if corner not in ear])
+            outside = [_doubled_area(*side, others) < 0.0 for side in ((a, b), (b, c), (c, a))]
+            if _doubled_area(*ear) > 0.0 and np.all(np.any(outside, axis=0)):
                 result.append(ear)
                 del left[i]
                 break
@@ -81,22 +80,16 @@ def _triangles(around: Sequence[complex]) -> list[tuple[complex, complex, comple
     return result
 
 
-def _contains(triangle: tuple[complex, complex, complex], point: complex) -> bool:
-    a, b, c = triangle
-    return all(_doubled_area(start, end, point) >= 0.0 for start, end in ((a, b), (b, c), (c, a)))
-
-
-def _doubled_area(a: complex, b: complex, c: complex) -> float:
-    """Return twice the area of a triangle, negative if the corners are in clockwise order."""
-    return ((b - a).conjugate() * (c - a)).imag
+def _doubled_area(a: Any, b: Any, c: Any) -> Any:
+    """Return twice the area of triangles, negative if the corners are in clockwise order."""
+    return (np.conj(b - a) * (c - a)).imag
 
 
 def _divided(triangle: ComplexArray, n: int) -> ComplexArray:
     """Return n² equal triangles, shape (n², 3)."""
     a, b, c = triangle
     first, second = (b - a) / n, (c - a) / n
-    upright = [a + i * first + j * second for i in range(n) for j in range(n - i)]
-    inverted = [a + i * first + j * second for i in range(1, n + 1) for j in range(1, n + 1 - i)]
-    return np.array(
-        [[p, p + first, p + second] for p in upright] + [[p, p - first, p - second] for p in inverted]
-    )
+    upright = [[i * first + j * second, 1.0] for i in range(n) for j in range(n - i)]
+    inverted = [[i * first + j * second, -1.0] for i in range(1, n + 1) for j in range(1, n + 1 - i)]
+    starts, signs = np.array(upright + inverted).T
+    return np.asarray(a + starts[:, np.newaxis] + np.multiply.outer(signs, [0j, first, second]))

@@ -16,7 +16,7 @@ from reference_model.systems import (
     PinOnDisc,
     System,
     checked_tolerance,
-    finite_number,
+    positive_number,
     require_system,
 )
 
@@ -72,9 +72,7 @@ def simulate_ensemble(
     starts = _checked_starts(system, initial_states)
     varied = {name: _checked_parameter(system, name, values) for name, values in (parameters or {}).items()}
     n = _number_of(len(starts), varied)
-    duration = finite_number("duration", duration)
-    if duration <= 0.0:
-        raise ValueError(f"duration = {duration:g} s: it must be > 0")
+    duration = positive_number("duration", duration, "s")
     tolerance = checked_tolerance(tolerance)
     threads = _checked_threads(threads)
 

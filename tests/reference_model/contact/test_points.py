@@ -82,16 +82,6 @@ def test_square_that_turns_about_its_centre_meets_the_moment_of_its_mean_distanc
 
 
 @POLYGONS
-def test_patch_has_the_area_and_the_centre_of_its_polygon(corners):
-    patch = polygon_patch(corners, 3)
-    around = np.array([complex(*corner) for corner in corners])
-    cross = (around.conjugate() * np.roll(around, -1)).imag
-    centre = np.sum((around + np.roll(around, -1)) * cross) / (3.0 * cross.sum())
-    assert np.dot(patch.arms(0.0), patch.shares) == pytest.approx(centre, abs=1e-14)
-    assert math.fsum(patch.shares) == pytest.approx(1.0, abs=1e-14)
-
-
-@POLYGONS
 def test_patch_converges_with_order_4_to_a_turn_about_a_point_outside(corners):
     for pole in (1.2 + 1.5j, -0.9 + 0.3j, 0.45 - 1.6j):
         exact, errors = friction_of_polygon(corners, pole), []
