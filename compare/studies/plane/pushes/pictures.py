@@ -6,9 +6,9 @@ import numpy as np
 
 from compare.claims import ByEngine, Figures
 from compare.output.figures import BLACK, GREY, Axes, Figure, axis, new_figure
+from compare.output.limit_surface import draw_limit_surface
 from compare.studies.plane.pushes.theory import (
     LEGS,
-    PUSHER,
     SLIDING_FORCES,
     Motion,
     by_series,
@@ -20,13 +20,9 @@ from compare.studies.plane.pushes.theory import (
     measured,
     surface,
 )
-from reference_model.contact.limit_surface import wrench_of_slip
 
 SHOWN = ("10_130_10_10_10_130", "patch")
 """Series whose forces the first figure shows."""
-
-TURNS = np.linspace(-0.5 * np.pi, 0.5 * np.pi, 181)
-"""Angles that describe all ratios of turning to sliding along one direction."""
 
 
 def draw(data: ByEngine) -> Figures:
@@ -68,20 +64,13 @@ LENGTH = 6.0
 
 def _limit_surface(panel: Axes, series: str) -> None:
     """Draw the limit surface of a series and its measured wrenches."""
-    load, contact = SLIDING_FORCES[surface(series)], contact_of(series)
-    for direction in np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)):
-        slips = [(np.cos(turn) * direction, np.sin(turn) / PUSHER) for turn in TURNS]
-        curve = [wrench_of_slip(contact, complex(slip), float(spin)) for slip, spin in slips]
-        forces, moments = zip(*curve, strict=True)
-        panel.plot(np.abs(forces), np.array(moments) / PUSHER, color="tab:orange", linewidth=0.5)
+    load = SLIDING_FORCES[surface(series)]
+    directions = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False).tolist()
+    draw_limit_surface(panel, contact_of(series), directions, color="tab:orange", linewidth=0.5)
     for push in by_series()[series]:
         wrench = measured(push)
-        panel.plot(abs(wrench.force) / load, wrench.moment / PUSHER / load, ".", color=BLACK)
-    panel.set(
-        xlabel=r"force over $\mu N$",
-        ylabel=r"moment over $\mu N\cdot 50$ mm",
-        title=f"Limit surface: {_title(series)}",
-    )
+        panel.plot(abs(wrench.force) / load, wrench.moment / load, ".", color=BLACK)
+    panel.set(xlim=(0.0, None), title="Limit surface of the feet on the left")
 
 
 def _errors() -> Figure:
