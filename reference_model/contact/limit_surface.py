@@ -13,7 +13,8 @@ For a disc under a force and a torque Dahmen et al. measured a limit that depend
 Coulomb's law alone. The experiments of Weidman and Malhotra confirmed only partially how two-tier discs come to rest.
 
 S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.
-P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb friction (2007).
+P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb friction,
+2007.
 """
 
 from __future__ import annotations
