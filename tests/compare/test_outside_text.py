@@ -78,10 +78,12 @@ def hostile(tmp_path, monkeypatch):
     return "hostile_engine:simulate"
 
 
-@pytest.mark.parametrize("command", ["report verdicts", "matrix --output out", "simulate pin"])
+@pytest.mark.parametrize(
+    ("command", "status"), [("report verdicts", 1), ("matrix --output out", 3), ("simulate pin", 1)]
+)
 @pytest.mark.usefixtures("in_this_process")
-def test_hostile_text_of_an_engine_is_shown_and_written_escaped(command, hostile, tmp_path, capfd):
-    assert cli.status([*command.split(), "--engine", hostile], fake_studies.ALL) == 1
+def test_hostile_text_of_an_engine_is_shown_and_written_escaped(command, status, hostile, tmp_path, capfd):
+    assert cli.status([*command.split(), "--engine", hostile], fake_studies.ALL) == status
     out, err = capfd.readouterr()
     assert is_clean(out + err)
     assert SHOWN in out + err

@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
 from exudyn_models import add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models.forces.laws.places import ring_places, table_of
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model import simulate
 from reference_model.systems import DiscOnDisc, PinOnDisc
@@ -311,7 +312,7 @@ def test_the_load_share_is_one_on_the_limit_surface():
     for contact in (
         (0.1, 0, 1.0, 1e-200, -1, 0.1),
         (0.1, 0, 1.0, 1e-200, -1, 0.03),
-        (0.0, 1, 1.0, 1e-200, -1, 0.0),
+        (0.0, 1, 1.0, 1e-200, -1, table_of(ring_places(0.0, 1))),
     ):
         stick = PlanarStick((4, 1, None), np.zeros(3), Geometry(contact), 1.0)
         stick.allow(np.eye(3))
