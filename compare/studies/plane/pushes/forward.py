@@ -134,7 +134,7 @@ class QuasiStatic:
 
     def _sticking(self, arm: complex, velocity: complex) -> tuple[complex, float, complex]:
         """Return slip, spin and the hand's force if the hand sticks to the body."""
-        size = abs(velocity) / abs(LEGS * MM)
+        size = abs(velocity) / (LEGS * MM)
 
         def power(spin: float) -> float:
             return float(self._shares @ abs(velocity + 1j * spin * (self._arms - arm)))
@@ -176,7 +176,6 @@ def measured_motion(push: Push) -> tuple[complex, float]:
 
 STIFFNESS = 1e6
 """Stiffness of the edge in N/m; 4 N press the hand in by 4 µm."""
-
 
 STEPS = 300
 """Steps of the Exudyn model."""

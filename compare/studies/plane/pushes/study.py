@@ -99,14 +99,14 @@ def on_limit_surface() -> Measured:
 # --- Pushes simulated forward.
 
 EVERY = 10
-"""One of so many pushes of each series is simulated forward."""
+"""Interval between the pushes of a series that are simulated forward."""
 
 EPSILON = 2e-5
 """Regularisation in m/s of the Exudyn model; the speed of the hand is 2.45 mm/s."""
 
 
 def simulated(every: int = EVERY) -> list[Push]:
-    """Return one of ``every`` pushes of each series."""
+    """Return every ``every``-th push of each series."""
     return [push for pushes in theory.by_series().values() for push in pushes[::every]]
 
 
