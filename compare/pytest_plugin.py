@@ -69,8 +69,8 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
         dest="friction_discs_level",
         choices=tuple(LIMITS),
         default="full",
-        help="Studies to measure: all, or only those that take seconds. At the quick level, a claim that exceeds the "
-        "time limit is not attempted instead of failed (default: full)",
+        help="Studies to measure: all, or only those that take seconds. A claim that exceeds the time limit is not "
+        "finished at the full level, and not attempted at the quick level (default: full)",
     )
     group.addoption(
         "--seed",
