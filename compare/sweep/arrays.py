@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -127,34 +128,28 @@ class Group:
 
     def seal(self) -> None:
         """Write the checksum of all descriptions, which makes the group valid."""
-        digest = checksum({name: digest_of(content) for name, content in self._described().items()})
-        self.files.write({f"{self.name}/{DESCRIPTION}": group_content({CHECKSUM: digest})})
+        self.files.write({f"{self.name}/{DESCRIPTION}": _seal(self._described())})
 
-    def has_seal(self) -> bool:
-        """Return whether the group has a seal; a corrupted description counts as one."""
-        content = self.files.read(f"{self.name}/{DESCRIPTION}")
-        try:
-            return content is not None and json.loads(content)["attributes"] != {}
-        except (ValueError, KeyError, TypeError):
-            return True
+    def is_intact(self, names: Sequence[str] = ()) -> bool | None:
+        """Return whether the group matches its seal, and all pieces of the arrays ``names`` (default: of all) exist.
 
-    def is_sealed(self) -> bool:
-        """Return whether the descriptions match the seal and describe arrays that sweeps write."""
+        Pieces must be readable. The result is None for a group without a seal, which is unfinished; a corrupted
+        description counts as damage.
+        """
+        seal = self.files.read(f"{self.name}/{DESCRIPTION}")
+        with suppress(ValueError, KeyError, TypeError):
+            if seal is None or json.loads(seal)["attributes"] == {}:
+                return None
         described = self._described()
-        digest = checksum({name: digest_of(content) for name, content in described.items()})
-        sealed = self.files.read(f"{self.name}/{DESCRIPTION}") == group_content({CHECKSUM: digest})
-        return sealed and all(map(is_ours, described.values()))
+        if seal != _seal(described) or not all(map(is_ours, described.values())):
+            return False
+        return all(map(self._is_whole, names or described))
 
-    def is_whole(self, names: Sequence[str] = ()) -> bool:
-        """Return whether all pieces of the arrays ``names`` (default: of all arrays) are present and readable."""
-        arrays = {name: self.array(name) for name in names or self._described()}
-        return all(
-            array.nchunks_initialized == array.nchunks
-            and all(
-                self.can_read(name, slice(first, first + array.chunks[0]))
-                for first in range(0, array.shape[0], array.chunks[0])
-            )
-            for name, array in arrays.items()
+    def _is_whole(self, name: str) -> bool:
+        array = self.array(name)
+        pieces = range(0, array.shape[0], array.chunks[0])
+        return array.nchunks_initialized == array.nchunks and all(
+            self.can_read(name, slice(first, first + array.chunks[0])) for first in pieces
         )
 
     def can_read(self, name: str, where: slice) -> bool:
@@ -179,6 +174,11 @@ def _opened(group: Group, name: str) -> Any:
     with store_errors(files.url, "read from"):
         place = f"{group.name}/{name}"
         return zarr.open_array(files.url, path=place, mode="r", zarr_format=3, storage_options=files.options)
+
+
+def _seal(described: Mapping[str, bytes]) -> bytes:
+    """Return the sealed description of a group whose arrays are ``described``."""
+    return group_content({CHECKSUM: checksum({name: digest_of(one) for name, one in described.items()})})
 
 
 def is_ours(description: bytes) -> bool:

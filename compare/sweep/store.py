@@ -215,13 +215,12 @@ class SweepStore:
         """
         if group.name in self._whole:
             return True
-        if not group.has_seal():
-            return False
-        if group.is_sealed() and group.is_whole(names):
+        intact = group.is_intact(names)
+        if intact:
             self._whole.add(group.name)
-            return True
-        self.broken.append(called)
-        return False
+        elif intact is not None:
+            self.broken.append(called)
+        return bool(intact)
 
 
 def archive_of(place: str) -> Path | None:

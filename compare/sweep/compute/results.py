@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -68,61 +69,47 @@ class Labelled(NamedTuple):
     motions: list[list[Motion]]
 
 
+def _layout(plan: Plan) -> tuple[tuple[str, ...], tuple[int, ...], int, int]:
+    """Return dimensions and shape of the labelled arrays, trajectories per row, and rows per block.
+
+    Rows lie along the last dimension but one, or along the only one.
+    """
+    if isinstance(plan, RandomBasin):
+        return ("sample",), (plan.samples,), 1, BLOCK
+    if isinstance(plan, Uncertainty):
+        size = min(plan.samples // GROUPS, 1 << (BLOCK // plan.row).bit_length() - 1)
+        return ("sample",), (BASES * plan.samples,), plan.row, size
+    if isinstance(plan, Continuation):
+        dimensions, shape = (plan.x.name, "sample"), (plan.x.points, plan.samples)
+    else:
+        assert isinstance(plan, Basin | Map)
+        dimensions, shape = (plan.y.name, plan.x.name), (plan.y.points, plan.x.points)
+    size = max(1, BLOCK // shape[-1])
+    if isinstance(plan, Map):
+        return ("start", *dimensions), plan.shape, shape[-1], size
+    return dimensions, shape, shape[-1], size
+
+
 def blocks_of(plan: Plan) -> list[Block]:
     """Return the blocks of a plan's trajectories; they do not depend on chunks or threads."""
-    if isinstance(plan, RandomBasin):
-        return [Block(i, j, (slice(i, j),)) for i, j in _ranges(plan.samples, BLOCK)]
-    if isinstance(plan, Uncertainty):
-        rows = min(plan.samples // GROUPS, 1 << (BLOCK // plan.row).bit_length() - 1)
-        ranges = _ranges(plan.samples, rows)
-        return [Block(i * plan.row, j * plan.row, (slice(BASES * i, BASES * j),)) for i, j in ranges]
-    if isinstance(plan, Continuation):
-        ranges = _ranges(plan.x.points, _rows(plan))
-        across = plan.samples
-        return [Block(i * across, j * across, (slice(i, j), slice(0, across))) for i, j in ranges]
-    assert isinstance(plan, Basin | Map)
-    rows, across = _rows(plan), plan.x.points
-    planes = len(plan.starts) if isinstance(plan, Map) else 1
+    _, shape, across, size = _layout(plan)
+    labels = BASES if isinstance(plan, Uncertainty) else 1  # labelled trajectories per row
+    *planes, rows = shape[:-1] or (shape[0] // labels,)
+    inside = tuple(slice(0, count) for count in shape[1:][-1:])
     blocks = []
-    for plane in range(planes):
-        before = plane * plan.y.points
-        for i, j in _ranges(plan.y.points, rows):
-            where: tuple[slice, ...] = (slice(i, j), slice(0, across))
-            if isinstance(plan, Map):
-                where = (slice(plane, plane + 1), *where)
-            blocks.append(Block((before + i) * across, (before + j) * across, where))
+    for plane in range(math.prod(planes)):
+        outside = tuple(slice(plane, plane + 1) for _ in planes)
+        for i in range(0, rows, size):
+            j = min(i + size, rows)
+            first, last = ((plane * rows + row) * across for row in (i, j))
+            blocks.append(Block(first, last, (*outside, slice(labels * i, labels * j), *inside)))
     return blocks
-
-
-def _ranges(count: int, size: int) -> list[tuple[int, int]]:
-    return [(first, min(first + size, count)) for first in range(0, count, size)]
-
-
-def _rows(plan: Basin | Map | Continuation) -> int:
-    """Return the number of rows of a plane, or of values of a continuation, per block."""
-    if isinstance(plan, Continuation):
-        return max(1, min(plan.x.points, BLOCK // plan.samples))
-    return max(1, min(plan.y.points, BLOCK // plan.x.points))
 
 
 def large_of(plan: Plan) -> dict[str, Large]:
     """Return the labelled arrays with one value per trajectory."""
-    dimensions: tuple[str, ...]
-    shape: tuple[int, ...]
-    pieces: tuple[int, ...]
-    if isinstance(plan, Basin | Map):
-        dimensions, shape = (plan.y.name, plan.x.name), (plan.y.points, plan.x.points)
-        pieces = (_rows(plan), plan.x.points)
-        if isinstance(plan, Map):
-            dimensions, shape, pieces = ("start", *dimensions), plan.shape, (1, *pieces)
-    elif isinstance(plan, Continuation):
-        dimensions, shape = (plan.x.name, "sample"), (plan.x.points, plan.samples)
-        pieces = (_rows(plan), plan.samples)
-    else:
-        assert isinstance(plan, RandomBasin | Uncertainty)
-        block = blocks_of(plan)[0].where[0].stop
-        dimensions, pieces = ("sample",), (block,)
-        shape = (plan.samples * (BASES if isinstance(plan, Uncertainty) else 1),)
+    dimensions, shape, *_ = _layout(plan)
+    pieces = tuple(at.stop - at.start for at in blocks_of(plan)[0].where)
 
     def large(dtype: str, attributes: dict[str, Any]) -> Large:
         return Large(dimensions, shape, pieces, dtype, attributes)
@@ -187,7 +174,7 @@ def label(
         drawn = np.arange(block.first, block.last).reshape(-1, plan.row)[:, :BASES].ravel()
         values = plan.values(drawn) | {name: all_[drawn - block.first] for name, all_ in found.items()}
     shape = tuple(at.stop - at.start for at in block.where)
-    region = dict(zip(large_of(plan)["end"].dimensions, block.where, strict=True))
+    region = dict(zip(_layout(plan)[0], block.where, strict=True))
     group.write({name: one.reshape(shape) for name, one in values.items()}, region)
     ends = values["end"].reshape(-1, plan.samples) if isinstance(plan, Continuation) else [values["end"]]
     counts = np.array([shares.counted(row) for row in ends])

@@ -16,7 +16,7 @@ from compare.sweep.plan import Numbers, Plan
 from compare.sweep.quantities import RESULTS
 from reference_model import simulate
 from reference_model.ensemble import EndState
-from reference_model.systems import COLUMNS, FloatArray, System
+from reference_model.systems import FloatArray, System
 from reference_model.trajectory import SimulationError, Trajectory
 
 DOUBLINGS = 3
@@ -216,32 +216,18 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times in s and radii in m of passages of the positive x-axis in the master disc's sense of rotation."""
-    velocities = COLUMNS[type(trajectory.system)].index(("vx", "m/s"))
+    """Return times in s and radii in m of passages of the positive x-axis in the master disc's sense of rotation.
+
+    They are interpolated linearly: a radius hardly changes between samples, unlike x and y.
+    """
     x, y = trajectory.states.T[:2]
-    vx, vy = trajectory.states.T[velocities : velocities + 2]
-    y, vy = (math.copysign(1.0, trajectory.system.disc_speed) * values for values in (y, vy))
-    at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (trajectory.times[:-1] >= since))
-    step = trajectory.times[at + 1] - trajectory.times[at]
-    # two Newton steps to the zero of the cubic through y and its slope at both ends
+    y = math.copysign(1.0, trajectory.system.disc_speed) * y
+    at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (x[1:] > 0.0) & (trajectory.times[:-1] >= since))
     share = y[at] / (y[at] - y[at + 1])
-    for _ in range(2):
-        value, slope = _cubic(y, vy, at, step, share)
-        share = share - value / slope
-    radius, _ = _cubic(x, vx, at, step, share)
-    ahead = radius > 0.0
-    return (trajectory.times[at] + share * step)[ahead], radius[ahead]
-
-
-def _cubic(
-    values: FloatArray, slopes: FloatArray, at: Any, step: FloatArray, share: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Return the Hermite cubic between samples ``at`` and ``at`` + 1, and its slope with respect to ``share``."""
-    low, high = values[at], values[at + 1]
-    left, right = slopes[at] * step, slopes[at + 1] * step
-    second, third = 3.0 * (high - low) - 2.0 * left - right, 2.0 * (low - high) + left + right
-    value = low + share * (left + share * (second + share * third))
-    return value, left + share * (2.0 * second + 3.0 * share * third)
+    times, radii = (
+        (1.0 - share) * values[at] + share * values[at + 1] for values in (trajectory.times, np.hypot(x, y))
+    )
+    return times, radii
 
 
 def _spreads(times: FloatArray, radii: FloatArray, middle: float) -> tuple[float, float]:
