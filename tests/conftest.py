@@ -1,7 +1,4 @@
-"""Tests of the page need a browser: without one they are deselected, except where CI promises one.
-
-Garbage is looked for less often than Python does by default, which costs a tenth of all tests' time.
-"""
+"""Tests of the page need a browser: without one they are deselected, except in CI."""
 
 from __future__ import annotations
 
@@ -14,7 +11,7 @@ import pytest
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 FIXTURE = "browser_path"
 
-gc.set_threshold(50_000, 10, 10)  # all that is imported is looked through each time: a tenth of the time
+gc.set_threshold(50_000, 10, 10)  # collecting all imported objects more often costs a tenth of the time
 
 
 def find_browser() -> str | None:

@@ -1,4 +1,4 @@
-"""Slip by the plain equations, integrated to rounding error, an independent reference for all engines."""
+"""Slip by the plain equations to rounding error, independent of all engines."""
 
 import math
 
@@ -10,7 +10,7 @@ from reference_model.contact.contact_law import contact_of
 
 
 def slide(system, start, times, friction=None, **options):
-    """Return SciPy's solution of (1) or (19) from ``times[0]`` to ``times[-1]``, with states at ``times``.
+    """Return SciPy's solution of (1) or (19) at ``times``.
 
     The default friction is the contact law of the system; others have the form of ``plain.on_ring``.
     """
@@ -22,7 +22,7 @@ def slide(system, start, times, friction=None, **options):
 
 
 def slide_past_stop(pin, start, times):
-    """Return the states at ``times``; a run ends at each time and where contact with the stop begins or ends."""
+    """Return the states at ``times``; runs end where contact with the stop begins or ends."""
 
     def beyond(_, state):
         return math.hypot(state[0] - pin.offset, state[1]) - pin.stop_gap

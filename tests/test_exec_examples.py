@@ -1,4 +1,4 @@
-"""The examples in other languages are engines, over ``exec:``, wherever there is what runs them."""
+"""Examples in other languages are engines over ``exec:``."""
 
 import shlex
 import shutil
@@ -26,7 +26,7 @@ in_javascript = pytest.mark.skipif(NODE is None, reason="there is no node")
 
 @pytest.fixture(scope="session")
 def compiled(tmp_path_factory):
-    """The engine of the example in C, compiled without a word of warning."""
+    """The example in C, compiled without warnings."""
     program = tmp_path_factory.mktemp("in c") / "exec_pin"
     options = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O2"]
     source = EXAMPLES / "exec_pin.c"

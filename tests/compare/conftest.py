@@ -1,4 +1,4 @@
-"""Fixtures: workers in this process, and one report of the fake studies for all tests."""
+"""Workers in this process, and one report of the fake studies for all tests."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Process = subprocess.CompletedProcess[str]
 
 
 class WorkerHere:
-    """A worker that runs in this process and so needs no time to start."""
+    """A worker without a process, which needs no time to start."""
 
     def __init__(self, temporary: str) -> None:
         self.key, self.owner, self.started, self.dead, self.connection = None, "", math.inf, False, self
@@ -38,7 +38,7 @@ class WorkerHere:
 
 
 def work_here(patch: pytest.MonkeyPatch) -> None:
-    """Run all workers in this process, where a test's patches apply to them too."""
+    """Run workers in this process, where a test's patches apply to them."""
     patch.setattr(workers, "_Worker", WorkerHere)
     patch.setattr(workers, "wait", lambda connections, left: connections)
     patch.setattr(workers, "pickle", SimpleNamespace(dumps=lambda work: work, loads=lambda work: work))
@@ -46,13 +46,12 @@ def work_here(patch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def in_this_process(monkeypatch) -> None:
-    """Run all workers in this process for a test."""
     work_here(monkeypatch)
 
 
 @pytest.fixture(scope="module")
 def all_in_this_process() -> Iterator[None]:
-    """Run all workers in this process for a module."""
+    """Like ``in_this_process``, for a module."""
     with pytest.MonkeyPatch.context() as patch:
         work_here(patch)
         yield
@@ -60,7 +59,7 @@ def all_in_this_process() -> Iterator[None]:
 
 @pytest.fixture(scope="session")
 def reported(tmp_path_factory) -> tuple[Process, Path]:
-    """Return the process and folder of a report with every verdict, a failed engine, an array claim and figures."""
+    """Process and folder of a report with every verdict, a failed engine and figures."""
     folder = tmp_path_factory.mktemp("report")
     registered = {engine.name: engine for engine in (fake_studies.GOOD, fake_studies.FAILING)}
     arguments = ["report", "verdicts", "agreement", "--jobs", "1", "--output", str(folder)]

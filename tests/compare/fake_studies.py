@@ -1,7 +1,6 @@
-"""Small studies and engines with known verdicts, which test the infrastructure of real studies.
+"""Small studies and engines with known verdicts.
 
-They have a separate module because functions are sent to other processes by name. ``fake_command`` is the command
-line with these studies.
+They have their own module because functions are sent to other processes by name.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ LOADS = np.linspace(0.0, 0.1, 21)
 
 
 class Fake(Study):
-    """A study without declared claims, measured by one function for engines and one for the theory."""
+    """A study measured by one function for engines and one for the theory."""
 
     def measure(self, engine, few=None, only=()):
         return self.provided["measure"](engine)
@@ -40,13 +39,11 @@ class Fake(Study):
 
 
 def fake(name, title, paper, measure, *, finding="", captions=None, provided=None, **more):
-    """Return a study measured by ``measure``; ``provided`` are its other functions."""
     prose = Prose(title, paper, finding=finding, figures=captions or {})
     return Fake(name, prose, provided={"measure": measure, **(provided or {})}, **more)
 
 
 def straight(system, initial_state, times, *, tolerance=1e-9):
-    """Return a motion at constant velocity."""
     positions, velocities = np.split(np.asarray(initial_state, dtype=float), 2)
     elapsed = (np.asarray(times) - times[0])[:, np.newaxis]
     states = np.hstack((positions + velocities * elapsed, velocities + 0.0 * elapsed))
@@ -83,7 +80,7 @@ def claim(sentence, engine, predicted, measured, numerical, **more):
 
 
 def recorded(engine, setting, off, *, resolution, own=True, cases=None):
-    """Return a recorded setting; ``off`` maps sentences to deviations and errors in m."""
+    """Return a setting; ``off`` maps sentences to deviations and errors in m."""
     claims = tuple(
         claim(sentence, f"{engine}, {setting}", 0.0, difference, error, equation="", resolution=resolution)
         for sentence, (difference, error) in off.items()
@@ -179,7 +176,7 @@ def measure_agreement(engine):
 
 
 def measure_agreement_and_count(engine):
-    """Append a mark to the file COUNT at each call."""
+    """Append a line to the file COUNT."""
     with open(os.environ["COUNT"], "a", encoding="utf-8") as stream:
         stream.write(f"{engine.name}\n")
     return measure_agreement(engine)
@@ -222,7 +219,7 @@ DEATH = fake("death", "A process that dies", "Compiled code may do so.", measure
 
 
 def measure_unending(engine):
-    """Create the file RUNNING, then never finish with the first engine."""
+    """Create the file RUNNING, then never finish, except for ``GOOD``."""
     if engine.name == GOOD.name:
         return measure_agreement(engine)
     Path(os.environ["RUNNING"]).touch()
@@ -242,7 +239,6 @@ SYSTEMS = {PIN: FIG5, POINTS: replace(FIG11, contact_points=6), RING: FIG11}
 
 
 def measure_what_is_promised(engine):
-    """Return a claim for each kind of system that the engine simulates."""
     mine = {sentence: system for sentence, system in SYSTEMS.items() if engine.simulates(system)}
     claims = tuple(
         claim(
@@ -258,7 +254,7 @@ def measure_what_is_promised(engine):
 
 
 def measure_a_ring(engine):
-    """Simulate a ring without checking for support, as a study of rings alone may do."""
+    """Omit the check for support, as a study of rings alone may do."""
     moved = engine.simulate(FIG11, [0.0] * 6, [0.0, 1.0]).at_end[0]
     return Findings((claim(RING, engine.name, 0.0, moved, 0.0),), {"moved": np.array([moved])})
 

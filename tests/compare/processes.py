@@ -1,4 +1,4 @@
-"""The command line as a process, with the paper's studies (REAL) or the fake ones (FAKE)."""
+"""The command line as a process, with the paper's studies or the fake ones."""
 
 from __future__ import annotations
 
@@ -19,17 +19,16 @@ PATIENCE = 900.0
 
 
 def environment(**more: str) -> dict[str, str]:
-    """Return an environment in which the packages can be imported without installation."""
+    """Return an environment for the packages without installation."""
     return os.environ | {"PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"} | more
 
 
 def interruptible() -> None:
-    """Enable Ctrl-C, which background processes ignore; used as ``preexec_fn``."""
+    """Enable Ctrl-C, which background processes ignore."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def wait_until(condition: Callable[[], bool]) -> None:
-    """Wait until ``condition`` holds; fail after ``PATIENCE``."""
     deadline = time.monotonic() + PATIENCE
     while not condition():
         assert time.monotonic() < deadline
@@ -37,5 +36,5 @@ def wait_until(condition: Callable[[], bool]) -> None:
 
 
 def wait_for(process: subprocess.Popen[str], *paths: Path) -> None:
-    """Wait until a process has written all files or has ended."""
+    """Wait until all files exist or the process has ended."""
     wait_until(lambda: all(path.exists() for path in paths) or process.poll() is not None)

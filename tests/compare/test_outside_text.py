@@ -1,4 +1,4 @@
-"""Any text of foreign engines and files can be written, parsed and shown."""
+"""Any text of foreign engines and files can be written and shown."""
 
 import json
 import xml.etree.ElementTree as ET
@@ -71,7 +71,7 @@ def test_no_cell_of_a_table_is_a_formula(tmp_path):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """Return the name of an engine with a hostile version that raises a hostile exception."""
+    """Name of an engine with a hostile version and exception."""
     monkeypatch.chdir(tmp_path)
     code = f"def simulate(*_, **__):\n    raise ValueError({HOSTILE!a})\nsimulate.version = {HOSTILE!a}\n"
     (tmp_path / "hostile_engine.py").write_text(code)

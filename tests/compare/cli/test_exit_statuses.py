@@ -25,7 +25,7 @@ def dying(*arguments, **accuracy):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """A folder with engines that do not answer, and an engine that ends the importing process."""
+    """A folder with engines that do not answer, or end the importing process."""
     (tmp_path / "hostile.py").write_text(ENGINES)
     (tmp_path / "exiting.py").write_text("import os\nos._exit(0)")
     monkeypatch.chdir(tmp_path)
@@ -60,7 +60,6 @@ def test_status_is_not_0_if_an_engine_measured_nothing(command, status, hostile,
 
 
 def measure_with_another(engine):
-    """Return an independent claim and a claim that it implies."""
     independent = fake_studies.measure_agreement(engine).claims
     implied = fake_studies.claim("It follows", engine.name, 0.5, 0.5, 0.0, implied_by=independent[0].sentence)
     return Findings((*independent, implied))

@@ -1,4 +1,4 @@
-"""Every example in help texts and documents is a valid command; fast examples are run."""
+"""Examples in help texts and documents are valid commands."""
 
 import re
 import shlex
@@ -28,7 +28,7 @@ def help_texts(command=None, path="friction-discs"):
 
 
 def examples(text):
-    """Return the lines that begin with the command, each joined with its indented continuation lines."""
+    """Return the lines that begin with the command, joined with their continuation lines."""
     found, margin = [], None
     for line in text.splitlines():
         indent = len(line) - len(line.lstrip())
@@ -58,7 +58,7 @@ DOCUMENTS = [
 
 
 class Understood(BaseException):
-    """The arguments are valid, and the work would begin."""
+    """The arguments are valid."""
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def idle(monkeypatch, tmp_path):
 
 
 def at_hand(arguments):
-    """Return the arguments with engines of this project in place of engines that may not be installed."""
+    """Replace engines that may not be installed."""
     ours = iter(("reference", "exudyn"))
     return [
         next(ours)

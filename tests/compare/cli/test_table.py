@@ -1,4 +1,4 @@
-"""Answers of the command line before any work: a table of arguments, exit status and message."""
+"""Arguments, exit status and message of the command line."""
 
 import errno
 import os
@@ -271,7 +271,7 @@ TABLE = [
     ("arguments", "status", "sentence"), TABLE, ids=[row[0] or "nothing" for row in TABLE]
 )
 def test_arguments_give_status_and_message(arguments, status, sentence, tmp_path, monkeypatch, capsys):
-    """Expect one line on the error stream unless the status is 0, and no written files."""
+    """Expect one line on the error stream unless the status is 0, and no files."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
     (tmp_path / "file").touch()

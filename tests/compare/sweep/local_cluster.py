@@ -1,4 +1,4 @@
-"""Dask clusters of real processes on this machine."""
+"""Dask clusters of processes on this machine."""
 
 import json
 import subprocess
@@ -34,7 +34,7 @@ def started(*arguments, signalled=""):
 def cluster(folder, workers, signalled=""):
     """Yield a scheduler with workers of one thread each; the first is ``signalled`` while it writes.
 
-    Choose its first chunk if the signal must occur, because other workers may take over all later ones.
+    Only its first chunk is certain, because other workers may take over later ones.
     """
     file = folder / "scheduler.json"
     processes = [started("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))]

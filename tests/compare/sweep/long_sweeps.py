@@ -1,4 +1,4 @@
-"""Sweeps of many small chunks in separate processes, to allow interference, and the contents of their stores."""
+"""Sweeps of many small chunks in separate processes, and the contents of their stores."""
 
 import resource
 import subprocess
@@ -21,9 +21,9 @@ CHUNKS = ["--chunk", "20"]
 
 
 def long_sweep(folder, *more, limit=None, signalled=None):
-    """Start the command; ``limit`` is the largest file in bytes that it may write.
+    """Start the command with a file-size limit in bytes.
 
-    ``signalled`` contains the name of a signal, the process (0 for itself) and the number of the half-written chunk.
+    ``signalled`` is a signal, a process (0 for itself) and the number of the half-written chunk.
     """
     restrict = None if limit is None else lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     command = REAL if signalled is None else [sys.executable, str(SIGNALLING), *map(str, signalled)]
@@ -40,7 +40,6 @@ def long_sweep(folder, *more, limit=None, signalled=None):
 
 
 def marks(folder: Path) -> set[str]:
-    """Return the chunks with complete results."""
     chunks = folder / "sweep.zarr" / "round-0"
     there = [{path.name for path in (chunks / name / "c").glob("*")} for name in RESULTS]
     return {chunk for chunk in set.intersection(*there) if chunk.isdigit()}
@@ -52,12 +51,12 @@ def finished_by(process):
 
 
 def resumed(folder, *more):
-    """Complete the sweep in this process, which has all libraries loaded, and return the exit status."""
+    """Complete the sweep in this process and return the exit status."""
     return cli.status([*LONG, *CHUNKS, "--output", str(folder), "--resume", *more])
 
 
 def content(path):
-    """Return all arrays of a store, packed or not, by group and name."""
+    """Return all arrays of a store by group and name."""
     archive = Path(f"{path}.zip")
     store = ZipStore(archive, mode="r") if archive.exists() else path
     return {

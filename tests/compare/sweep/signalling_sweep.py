@@ -1,9 +1,8 @@
-"""Sends a signal while a chunk of a sweep is being written, on machines of any speed.
+"""Sends a signal while a chunk is being written, on machines of any speed.
 
-``python signalling_sweep.py NAME PID CHUNK ...`` runs ``friction-discs`` with the remaining arguments. It signals a
-process, 0 for itself, when its CHUNK-th chunk is partly written, or, if workers write the chunks, when the
-CHUNK-th is reported. ``dask worker --preload signalling_sweep.py`` with NAME, PID and CHUNK in the variable SIGNALLED
-makes a worker do the same.
+``python signalling_sweep.py NAME PID CHUNK ...`` runs ``friction-discs ...`` and signals the process (0 for itself)
+during the CHUNK-th chunk, or when workers report it. With ``dask worker --preload`` the variable SIGNALLED contains
+these three.
 """
 
 import os
@@ -16,7 +15,7 @@ from compare.sweep.compute.executors import Cluster
 
 
 def signalling(name, process, chunk):
-    """Send the signal while this process writes its ``chunk``-th chunk; chunks are written one after the other."""
+    """Send the signal during the ``chunk``-th chunk; chunks are written one after the other."""
     write, lock, written = Chunks.write, threading.Lock(), 0
 
     def counted(self, place, results):

@@ -1,4 +1,4 @@
-"""Command line of sweeps: output, figures, and stores that it must not overwrite."""
+"""Command line of sweeps."""
 
 import re
 from dataclasses import asdict
@@ -58,7 +58,7 @@ def files(folder):
 
 
 def test_the_code_of_the_page_about_sweeps_runs(finished, tmp_path, monkeypatch):
-    """Run the examples except the last block, which needs a batch system."""
+    """Omit the last block, which needs a batch system."""
     (tmp_path / "basin").symlink_to(finished[0])
     monkeypatch.chdir(tmp_path)
     text = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")

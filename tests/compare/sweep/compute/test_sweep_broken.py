@@ -1,7 +1,4 @@
-"""Messages for stores with missing, truncated or changed files; all are repaired or rejected.
-
-``test_sweep_store_states`` damages every file of a store.
-"""
+"""Messages for damaged stores, and their repair; ``test_sweep_store_states`` damages every file."""
 
 import json
 import shutil
@@ -29,7 +26,7 @@ def most_may_be_undecided():
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    """The folder of a finished sweep with an unpacked store, and its contents."""
+    """Folder and contents of a finished, unpacked sweep."""
     folder = tmp_path_factory.mktemp("whole")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(store, "SMALL", 0)
@@ -77,7 +74,7 @@ def another_seed(path):
 
 
 def foreign(**changes):
-    """Return a function that changes the description of an array and corrects the group's checksum."""
+    """Return a function that changes an array's description and corrects the checksum."""
 
     def described(path):
         path.write_text(json.dumps(json.loads(path.read_text()) | changes))
@@ -162,7 +159,6 @@ def test_missing_parts_are_recomputed(copied, whole, capsys):
 
 @pytest.fixture
 def packed(copied, monkeypatch, capsys):
-    """The same sweep, packed into one file."""
     monkeypatch.setattr(store, "SMALL", 10)
     assert cli.status([*MAP, "--output", str(copied), "--resume"]) == 0
     capsys.readouterr()

@@ -1,4 +1,4 @@
-"""Sweeps on Dask clusters of real processes on this machine."""
+"""Sweeps on local Dask clusters."""
 
 import signal
 import socket
@@ -23,7 +23,6 @@ from compare.sweep.store import SweepStore
 
 
 def test_results_survive_a_killed_driver_and_a_killed_worker(undisturbed, tmp_path, monkeypatch, capsys):
-    """Store in fsspec's local file system, which needs no server."""
     monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     url = f"file://{tmp_path}"
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
@@ -105,8 +104,6 @@ def store(tmp_path):
 
 
 class Elsewhere(InProcess):
-    """Workers with a difference from this process."""
-
     def __init__(self, otherwise):
         self.otherwise = otherwise
 

@@ -1,4 +1,4 @@
-"""Motions along one parameter: separated, matched between values, and compared with formulas."""
+"""Branches of motions along one parameter."""
 
 from dataclasses import replace
 

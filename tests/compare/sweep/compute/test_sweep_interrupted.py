@@ -1,4 +1,4 @@
-"""Sweeps in separate processes that are killed, interrupted or run out of disk space."""
+"""Sweeps that are killed, interrupted or run out of disk space."""
 
 import signal
 from shutil import copytree
@@ -9,14 +9,13 @@ from long_sweeps import assert_same, content, finished_by, long_sweep, marks, re
 
 @pytest.fixture(scope="module")
 def interrupted(undisturbed, tmp_path_factory):
-    """The folder of a sweep interrupted by Ctrl-C, its exit status and its output."""
+    """Folder, exit status and output of an interrupted sweep."""
     folder = tmp_path_factory.mktemp("interrupted")
     return folder, finished_by(long_sweep(folder, signalled=("SIGINT", 0, 11)))
 
 
 @pytest.fixture
 def unfinished(interrupted, tmp_path):
-    """A copy of that folder."""
     return copytree(interrupted[0], tmp_path / "unfinished")
 
 
@@ -26,10 +25,7 @@ def test_a_keyboard_interrupt_is_reported(interrupted):
 
 
 def said(err):
-    """Return the lines on standard error, except for compilation notes and warnings at import.
-
-    Compilation notes appear on slow machines, warnings with old versions of a library.
-    """
+    """Return standard error without compilation notes and warnings from old libraries."""
     lines = (line for line in err.splitlines() if not line.startswith((" ", "Compiling for this machine")))
     return [line for line in lines if "Warning" not in line]
 
@@ -46,7 +42,7 @@ def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_kill(undisturbe
 
 
 def times(folder):
-    """Return the times at which the files of complete chunks were written."""
+    """Return the modification times of complete chunks."""
     chunks = folder / "sweep.zarr" / "round-0"
     return {
         mark: [(chunks / name / "c" / mark).stat().st_mtime_ns for name in ("end", "time", "steps")]

@@ -1,4 +1,4 @@
-"""Ends of single trajectories of the plain reference for motions with known ends."""
+"""Ends that the plain reference finds."""
 
 from dataclasses import replace
 
@@ -77,7 +77,7 @@ def test_a_continued_motion_equals_one_simulated_at_once(system, start):
 
 
 def recomputed(monkeypatch, start, time, end):
-    """Return the end of a start of Fig. 5, and the durations of its simulations."""
+    """Return the end of a start of Fig. 5 and the simulated durations."""
     durations = []
 
     def watching(function):

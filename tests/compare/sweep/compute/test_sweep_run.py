@@ -1,4 +1,4 @@
-"""Sweeps in this process: contents of their stores, and resumption."""
+"""Contents and resumption of sweeps in this process."""
 
 import json
 import time
@@ -45,7 +45,7 @@ def silent(what, done, total):
 
 
 class Recording(InProcess):
-    """Records the arguments of its tasks, and may be interrupted after some of them."""
+    """Records its tasks; stops after ``until`` tasks."""
 
     def __init__(self, until=10**9):
         self.calls, self.until = [], until

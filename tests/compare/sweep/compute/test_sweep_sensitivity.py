@@ -21,7 +21,7 @@ def table_of(function, rows, quantities):
 
 
 def indices_of(table, blocks=GROUPS):
-    """Return the indices of a table, shape (rows, 2 + quantities), computed block by block."""
+    """Return the indices of a table, shape (rows, 2 + quantities)."""
     return indices([moments(part[np.newaxis]) for part in np.split(table, blocks)])
 
 

@@ -1,4 +1,4 @@
-"""Refinement of regions with known boundaries instead of basins."""
+"""Refinement of regions with known boundaries."""
 
 import numpy as np
 import pytest
@@ -19,12 +19,12 @@ def rings(x, y):
 
 
 def comb(x, y):
-    """A connected region with teeth thinner than the coarse grid."""
+    """A region with teeth thinner than the coarse grid."""
     return (y < 0.3) | ((y < 0.8) & (x % 0.08 < 0.012))
 
 
 def refine(shape, coarse, region):
-    """Return the grid, the true region, and the numbers of all rounds."""
+    """Return the grid, the region, and the numbers of all rounds."""
     y, x = np.mgrid[0.0 : 1.0 : shape[0] * 1j, 0.0 : 1.0 : shape[1] * 1j]
     truth = region(x, y).astype(np.uint8)
     rounds = refined(shape, coarse)

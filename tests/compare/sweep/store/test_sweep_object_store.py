@@ -1,4 +1,4 @@
-"""Sweeps in object stores, with file systems of fsspec that need no server."""
+"""Sweeps in object stores of fsspec that need no server."""
 
 import fsspec
 import pytest

@@ -1,4 +1,4 @@
-"""Kills, damage and resumption in any order: a store always reaches the same results."""
+"""Kills, damage and resumption in any order."""
 
 import shutil
 import tempfile
@@ -29,7 +29,7 @@ CHUNK = 3
 
 
 class Counting(InProcess):
-    """Counts the simulated chunks, and stops after a number of tasks."""
+    """Counts simulated chunks; stops after some tasks."""
 
     def __init__(self, tasks=10**9):
         self.left, self.simulated = tasks, 0
@@ -48,8 +48,6 @@ def silent(what, done, total):
 
 
 class Store(RuleBasedStateMachine):
-    """Kills, damages and resumes one store."""
-
     whole = None
 
     @initialize()
@@ -63,7 +61,7 @@ class Store(RuleBasedStateMachine):
             assert ("round-1", "end") in Store.whole
 
     def files(self):
-        """Return all files except the description of the store, which is required to open it."""
+        """Return all files but the description, which is needed to open the store."""
         found = sorted(path for path in (self.folder / "sweep.zarr").rglob("*") if path.is_file())
         return [path for path in found if path != self.folder / "sweep.zarr" / "zarr.json"]
 
