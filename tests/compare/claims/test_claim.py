@@ -11,7 +11,7 @@ from compare.report.numbers import in_short, worst
     [
         (0.5e-9, 1e-9, 0.0, 1e-6, Verdict.AGREES),
         (1.0, 1.0, 0.0, 1.0, Verdict.AGREES),  # the bounds are inclusive
-        (1.5e-9, 1e-9, 0.0, 1e-6, Verdict.DIFFERS),
+        (1.001e-9, 1e-9, 0.0, 1e-6, Verdict.DIFFERS),
         (1.5e-9, 1e-9, 1e-9, 1e-6, Verdict.AGREES),
         (0.1, 0.5, 0.0, 1e-6, Verdict.INCONCLUSIVE),
         (0.1, 0.0, 0.5, 1e-6, Verdict.INCONCLUSIVE),

@@ -50,6 +50,9 @@ def test_equilibrium_solves_the_equations_of_motion(offset, disc_speed, load_rat
     x, y = formulas.equilibrium_position(pin)
     assert np.abs(residual_of_eq_1(pin, x, y, 0.0, 0.0, 0.0, 0.0)).max() < ROUNDING
     assert formulas.semicircle_residual(pin, x, y) == pytest.approx(0.0, abs=ROUNDING)
+    angle, radius = formulas.equilibrium_angle(pin), formulas.equilibrium_radius(pin)
+    assert (radius * math.cos(angle), radius * math.sin(angle)) == pytest.approx((x, y), abs=ROUNDING)
+    assert abs(angle) <= math.pi
 
 
 def test_equilibrium_at_the_largest_load_is_on_the_axis():
