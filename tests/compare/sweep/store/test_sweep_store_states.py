@@ -107,8 +107,8 @@ class Store(RuleBasedStateMachine):
 
 
 Store.TestCase.settings = settings(
-    max_examples=10,
-    stateful_step_count=5,
+    max_examples=5,
+    stateful_step_count=7,
     deadline=None,
     suppress_health_check=list(HealthCheck),
     phases=(Phase.reuse, Phase.generate),  # shrinking an example takes minutes
