@@ -58,15 +58,8 @@ class Large(NamedTuple):
 class Group:
     """A group of a store, which any process may open.
 
-    Parameters
-    ----------
-    files
-        Files of the store.
-    description
-        Checksum of the store's description, because another machine may have another store at the same path.
-    name
-        Name in the store.
-
+    ``description`` is the digest of the store's description, because another machine may have another store at the
+    same path.
     """
 
     files: Files

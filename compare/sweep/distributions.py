@@ -73,20 +73,8 @@ def in_words() -> str:
 class Uncertain:
     """An uncertain parameter or component of the initial state.
 
-    Parameters
-    ----------
-    name
-        The parameter or component.
-    kind
-        One of ``KINDS``.
-    numbers
-        Numbers of the distribution in the order of its arguments, in the quantity's SI unit.
-
-    Raises
-    ------
-    ValueError
-        For an unknown distribution, or numbers that it does not allow.
-
+    ``kind`` is one of ``KINDS``, and ``numbers`` are its arguments in the quantity's SI unit. Raises ``ValueError``
+    for an unknown distribution, or numbers that it does not allow.
     """
 
     name: str

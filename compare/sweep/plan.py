@@ -1,7 +1,7 @@
 """Plans of sweeps: initial state and parameters of each trajectory by its number.
 
-A plan is data that can be sent to other processes and written as JSON. It numbers its trajectories from 0 and divides
-them into rounds: a single one, or, for a refined basin, one for each step of the refinement.
+A plan is data that can be sent to other processes and written as JSON. A refined basin has a round of trajectories
+for each step of the refinement; other plans have one round.
 """
 
 from __future__ import annotations
@@ -35,19 +35,10 @@ BASES = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Plan(ABC):
-    """A plan, with the fields that all plans share.
+    """Fields that all plans share.
 
-    Parameters
-    ----------
-    system
-        Parameters that are not swept.
-    duration
-        Longest duration of a trajectory, in s; it ends earlier once its end is certain.
-    tolerance
-        Requested relative accuracy.
-    seed
-        Random seed.
-
+    The ``system`` contains the parameters that are not swept. A trajectory lasts at most ``duration`` (s) and ends
+    once its end is certain; ``tolerance`` is its relative accuracy.
     """
 
     kind: ClassVar[str]
@@ -70,15 +61,7 @@ class Plan(ABC):
 class Basin(Plan):
     """Starts on a grid in a plane of two state components, numbered y·(points of x) + x.
 
-    Parameters
-    ----------
-    start
-        Initial state; the grid replaces two of its components.
-    x, y
-        Axes of these components.
-    coarse
-        Least number of points along each axis of the first grid.
-
+    The axes replace two components of ``start``. The first grid has at least ``coarse`` points along each axis.
     """
 
     kind = "basin"
@@ -101,16 +84,7 @@ class Basin(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class RandomBasin(Plan):
-    """Uniformly distributed starts in a plane of two state components.
-
-    Parameters
-    ----------
-    start, x, y
-        See :class:`Basin`; the axes' numbers of points are not used.
-    samples
-        Number of starts.
-
-    """
+    """Uniformly distributed starts in a plane; see :class:`Basin`. The axes' numbers of points are not used."""
 
     kind = "random basin"
 
@@ -135,15 +109,9 @@ class RandomBasin(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class Map(Plan):
-    """A grid in a plane of two parameters, numbered (start·(points of y) + y)·(points of x) + x.
+    """A grid in a plane of two parameters, each combined with all initial states ``starts``.
 
-    Parameters
-    ----------
-    starts : tuple of tuple of float
-        Initial states, each combined with all parameters.
-    x, y
-        Axes of the parameters.
-
+    Trajectories are numbered (start·(points of y) + y)·(points of x) + x.
     """
 
     kind = "map"
@@ -172,18 +140,9 @@ class Map(Plan):
 class Uncertainty(Plan):
     """Random parameters and starts in the design for Sobol indices by Saltelli et al. (2010).
 
-    Each row contains two independent draws A and B and, for each uncertain quantity, a mixture with this quantity
-    from B and the others from A. Trajectories are numbered row·(2 + quantities) + position in the row.
-
-    Parameters
-    ----------
-    start
-        Initial state, for components that are not uncertain.
-    varied
-        Uncertain quantities.
-    samples
-        Number of rows.
-
+    Each of the ``samples`` rows contains two independent draws A and B and, for each quantity in ``varied``, a
+    mixture with this quantity from B and the others from A. Trajectories are numbered row·(2 + quantities) + position
+    in the row.
     """
 
     kind = "uncertainty"
@@ -220,19 +179,9 @@ class Uncertainty(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class Continuation(Plan):
-    """Random starts, the same at each value of one parameter, numbered value·samples + start.
+    """Random starts, the same at each value of the parameter ``x``, numbered value·samples + start.
 
-    Parameters
-    ----------
-    start
-        Initial state, for components that are not random.
-    x
-        Axis of the parameter.
-    varied
-        Random components of the initial state.
-    samples
-        Number of starts.
-
+    The components in ``varied`` are random; ``start`` contains the others.
     """
 
     kind = "continuation"
@@ -260,7 +209,7 @@ PLANS: dict[str, type[Plan]] = {
 
 
 def count(plan: Plan) -> int:
-    """Return the number of trajectories, or of the points of a basin's finest grid."""
+    """Return the number of trajectories, or of points of a basin's finest grid."""
     if isinstance(plan, Basin):
         return plan.x.points * plan.y.points
     return len(next(plan.rounds()))

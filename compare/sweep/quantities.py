@@ -83,22 +83,9 @@ MOST_POINTS = 100_000
 
 @dataclass(frozen=True)
 class Axis:
-    """Equally spaced values of a component of the state or of a parameter.
+    """Equally spaced values of a component of the state or of a parameter, in its SI unit.
 
-    Parameters
-    ----------
-    name
-        Component or parameter.
-    low, high
-        First and last value, in its SI unit; low < high.
-    points
-        Number of values, from 2 to 100,000.
-
-    Raises
-    ------
-    ValueError
-        If the range is empty or not finite, or the number of points is not allowed.
-
+    Raises ``ValueError`` unless low < high are finite and ``points`` lies between 2 and 100,000.
     """
 
     name: str

@@ -71,18 +71,8 @@ class Grid:
 def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Grid]:
     """Yield the points to simulate in each round, numbered y·(points of x) + x; receive their ends.
 
-    Parameters
-    ----------
-    shape
-        Number of points of the finest grid along y and x.
-    coarse
-        Least number of points along each axis of the first grid.
-
-    Returns
-    -------
-    Grid
-        The finished grid.
-
+    The finest grid has the ``shape`` (y, x). The first grid has at least ``coarse`` points along each axis. The
+    finished grid is returned.
     """
     grid = Grid(shape)
     stride = first_stride(shape, coarse)

@@ -1,12 +1,11 @@
 """Results of a sweep on disk or in an object store: a Zarr store of xarray Datasets that is always valid.
 
-- ``round-0``, ``round-1``, ...: trajectories of each round; the workers that simulate them write their regions
-  (:mod:`compare.sweep.arrays`).
+- ``round-0``, ``round-1``, ...: trajectories, written region by region (:mod:`compare.sweep.arrays`).
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
-A group is valid once it is sealed (:meth:`compare.sweep.arrays.Group.seal`). The attributes of the store contain the
-plan, the digest of the code and their checksum. Damaged groups and chunks are recomputed. A finished store of few
-trajectories in a local folder becomes one file (:meth:`SweepStore.pack`).
+A group is valid once it is sealed. The attributes of the store contain the plan, the digest of the code and their
+checksum. Damaged groups and chunks are recomputed. A finished store of few trajectories in a local folder becomes one
+file.
 """
 
 from __future__ import annotations
@@ -51,19 +50,8 @@ ROUND = "round-{}"
 class SweepStore:
     """An open store.
 
-    Parameters
-    ----------
-    files
-        Files of the store.
-    plan
-        Plan of the sweep.
-    chunk
-        Number of trajectories that are computed and written together.
-    stamp
-        Digest of the code that computes them.
-    place
-        Requested URL, if ``files`` belong to an unpacked archive.
-
+    Code with the digest ``stamp`` computes and writes ``chunk`` trajectories together. ``place`` is the requested URL
+    if ``files`` belong to an unpacked archive.
     """
 
     def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str, place: str = "") -> None:

@@ -70,22 +70,10 @@ class InProcess:
 
 
 class Cluster:
-    """The workers of a Dask scheduler, each task on one thread; use it as a context manager.
+    """The workers of the Dask scheduler at "tcp://host:port", each task on one thread; a context manager.
 
-    Parameters
-    ----------
-    address
-        Address of the scheduler, "tcp://host:port".
-
-    Raises
-    ------
-    ValueError
-        If the address is invalid.
-    ClusterError
-        If no scheduler answers, it has no workers or lacks this package, or it is lost later.
-    ModuleNotFoundError
-        If Dask is not installed.
-
+    Raises ``ValueError`` for an invalid address, ``ModuleNotFoundError`` without Dask, and ``ClusterError`` if no
+    scheduler answers, if it has no workers or lacks this package, or if it is lost later.
     """
 
     threads = 1
