@@ -1,7 +1,4 @@
-"""Measurement of studies in tests, with sound engines and with deliberate faults.
-
-A claim is useful only if it fails for wrong engines. ``tested_studies`` lists the faults for each study.
-"""
+"""Measurement of studies with sound engines and with deliberate faults, see ``tested_studies``."""
 
 from __future__ import annotations
 
@@ -27,12 +24,11 @@ from compare.engines import EVERY_KIND, Engine, engines
 
 
 def with_changed(change):
-    """Return the reference with the parameters that ``change`` returns for a system."""
     return Engine("changed", functools.partial(with_parameters, change), EVERY_KIND)
 
 
 def altered(**factors):
-    """Return the reference with parameters multiplied by ``factors``, if a system has them."""
+    """Return the reference with parameters multiplied by ``factors``."""
 
     def change(system):
         found = {}
@@ -49,7 +45,6 @@ def made(**make):
 
 
 def fault(name):
-    """Return a wrong engine of the catalogue."""
     return next(fault for fault in FAULTS if fault.name == name)
 
 
@@ -57,9 +52,7 @@ def fault(name):
 def engine_named(name):
     """Return a registered engine, the independent plain one ("intact"), or the reference "as reported".
 
-    "reference" is compiled if possible and caches its trajectories during the tests, also for engines under other
-    names that support less. ``test_engines`` checks that repeated runs are equal. Reports use the reference without
-    cache.
+    "reference" caches its trajectories, also under other names; ``test_engines`` checks that repeated runs are equal.
     """
     if name == "intact":
         return SOUND[1]
@@ -70,7 +63,6 @@ def engine_named(name):
 
 
 def remembering(function):
-    """Return an engine's ``function`` with a cache of its trajectories."""
     store = {}
 
     def simulated(system, initial_state, times, *, tolerance=1e-9):
@@ -88,19 +80,9 @@ def remembering(function):
 
 @dataclass(frozen=True)
 class Patched:
-    """A fault in the code that a sound engine or the study itself calls.
+    """A fault that ``put`` inserts in the code of a sound engine or of the study.
 
-    Parameters
-    ----------
-    put : callable
-        Inserts the fault with a ``MonkeyPatch``.
-    engine : str
-        Name of the measured engine.
-    name : str
-        Temporary name of the engine; new by default, so no cached results of another engine are used.
-    only : tuple of str
-        Functions of the claims to try; all by default.
-
+    A new ``name`` of the engine, the default, prevents the use of cached results. ``only`` restricts the claims.
     """
 
     put: Callable[[pytest.MonkeyPatch], None]
@@ -144,31 +126,15 @@ SMALL = {
 class Tested:
     """Test settings of one study.
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    few : mapping
-        Arguments of the claims' functions, and of "curves", that reduce the measurement.
-    sound : tuple of str
-        Engines that must agree with every claim.
-    parts : mapping
-        Claims to measure with a slow engine, by engine: functions, or "function/case".
-    not_claimed : mapping
-        Functions that claim nothing about an engine, by engine.
-    gross, small : mapping
-        Faults by description, tried in this order until every claim has failed: obvious ones, and ones of about 1 %
-        or less.
-    few_of_faults : mapping, optional
-        Replaces ``few`` for faults.
-    blind : mapping
-        Claims that no small fault can break, with the reason. Claims with an error budget above 1 % of the prediction
-        and claims that count answers need no entry.
-    open_theory : tuple of str
-        Claims of the theory that the ``few`` numbers leave inconclusive.
-    drawn : bool
-        True if the ``few`` numbers suffice for the figures.
-
+    - ``few``: arguments of claims and "curves" that reduce the measurement; ``few_of_faults`` replaces it for faults.
+    - ``sound``: engines that must agree with every claim.
+    - ``parts``: claims to measure with a slow engine, functions or "function/case".
+    - ``not_claimed``: functions that claim nothing about an engine.
+    - ``gross``, ``small``: faults, obvious ones and ones of about 1 %, tried until every claim has failed.
+    - ``blind``: claims that no small fault can break, with the reason. Claims with an error budget above 1 % and
+      claims that count answers need no entry.
+    - ``open_theory``: claims of the theory that ``few`` leaves inconclusive.
+    - ``drawn``: whether ``few`` suffices for the figures.
     """
 
     __test__ = False  # pytest would collect the class by its name
@@ -187,7 +153,7 @@ class Tested:
 
     @functools.cache  # noqa: B019, the table of all studies lives as long as the tests
     def found(self, name):
-        """Return the findings about a sound engine, or "theory", measured once for all tests."""
+        """Return the findings about a sound engine or "theory", measured once."""
         with redirect_stdout(io.StringIO()) as printed:
             if name == "theory":
                 findings = self.study.measure_theory(self.few)
@@ -197,7 +163,6 @@ class Tested:
         return findings
 
     def claims_of_fault(self, fault, only):
-        """Return the claims measured with a fault, restricted to the functions ``only``."""
         few = self.few if self.few_of_faults is None else self.few_of_faults
         if isinstance(fault, Engine):
             return self.study.measure(fault, few, only).claims
@@ -208,17 +173,15 @@ class Tested:
 
 
 def verdicts(findings):
-    """Return the verdict of every sentence."""
     return {claim.sentence: claim.verdict for claim in findings.claims}
 
 
 def sentences(findings, verdict):
-    """Return the sentences with a verdict."""
     return {sentence for sentence, found in verdicts(findings).items() if found is verdict}
 
 
 def theory_of(study, *functions, few=None):
-    """Return the verdicts of a study's claims about the theory from ``functions``, by their names."""
+    """Return the verdicts of claims about the theory by their functions."""
     found = study.measure_theory(few or {}, only=functions).claims
     assert len(found) == len(functions)
     return dict(zip(functions, (claim.verdict for claim in found), strict=True))
