@@ -1,7 +1,5 @@
 """Error estimates of engines with low precision."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,6 +7,7 @@ import reference_model
 from compare.claims.error_estimates import COARSENING, refined
 from compare.claims.parameters import FIG5, FIG5_STARTS
 from compare.engines import Engine, reference
+from compare.engines.precision import blurred_start
 from reference_model import Trajectory, whirl_orbit
 
 SLIDES = ((0.9, 0.0, 0.0, 0.9), (0.0, 5.0, 10.0, 15.0))
@@ -64,11 +63,14 @@ def test_the_noise_is_reproducible():
     assert np.array_equal(one[0], SLIDES[0])
 
 
-def test_noise_does_not_end_an_initial_stick():
-    start = np.array([0.05, 0.0, 0.0, 0.05 * FIG5.disc_speed])
-    times = [0.0, 1.0]
-
-    assert engine().simulate(replace(FIG5, offset=0.0), start, times).phases[0].kind == "stick"
+def test_noise_moves_a_start_without_changing_its_slip():
+    start = np.array([0.05, 0.02, 0.3, -0.1])
+    moved = blurred_start(FIG5, start, 1e-3, 1e-9)
+    assert np.all(moved[:2] != start[:2])
+    before, after = (
+        state[2:] - FIG5.disc_speed * np.array([-state[1], state[0]]) for state in (start, moved)
+    )
+    assert after == pytest.approx(before, abs=1e-15)
 
 
 def test_stick_is_found_in_noise():
