@@ -85,7 +85,7 @@ def test_an_orbit_is_found_to_the_precision_of_its_engine():
     exact = whirl_orbit(FIG5)
 
     with pytest.raises(RuntimeError, match="relative residual"):
-        whirl_orbit(FIG5, simulate=engine().simulate, tolerance=1e-9)
+        whirl_orbit(FIG5, simulate=engine().simulate, tolerance=1e-9, precision=1e-9)
     found = whirl_orbit(FIG5, simulate=engine().simulate, tolerance=1e-9, precision=1e-6)
     assert found.mean == pytest.approx(exact.mean, abs=1e-5)
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -96,3 +97,10 @@ def test_pin_without_a_harmonic_balance_is_refused():
     assert "ends by sticking" in refusal(whirl_by_harmonic_balance, replace(HARD, disc_speed=1.1))
     with pytest.raises(RuntimeError, match="offset = 50 m: too large for harmonic balance"):
         whirl_by_harmonic_balance(replace(HARD, offset=50.0))
+
+
+def test_a_solution_that_leaves_a_residual_is_refused(monkeypatch):
+    nearly = SimpleNamespace(x=np.array([1.0, 1.0, 1e-6, 0.0]))
+    monkeypatch.setattr("reference_model.formulas.harmonic_balance.root", lambda *args, **more: nearly)
+    with pytest.raises(RuntimeError, match="too large for harmonic balance"):
+        whirl_by_harmonic_balance(HARD)

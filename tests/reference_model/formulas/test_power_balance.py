@@ -69,6 +69,9 @@ def test_phases_without_samples_are_integrated_between_their_bounds(samples):
     balance = power_balance(trajectory)
     bounds = [phase.start for phase in trajectory.phases]
     assert set(bounds) <= set(balance.times)
+    spacing = trajectory.times[1] - trajectory.times[0]
+    for omitted in set(trajectory.times) - set(balance.times):
+        assert np.min(np.abs(np.array(bounds) - omitted)) <= 0.05 * spacing
     assert np.all(np.diff(balance.friction_heat) > -1e-3)
     assert np.all(np.isfinite(balance.residual))
     assert np.all(np.diff(balance.times) >= 0.0)
