@@ -109,5 +109,6 @@ def test_rounding_of_a_heavy_flywheel_is_not_an_imbalance():
     stored = np.array([1e18, 1e18 + 128.0])
     heavy = EnergyBalance(np.array([0.0, 1.0]), {"drive": np.array([0.0, 1.0])}, {}, stored)
     assert heavy.imbalance == ""
+    assert EnergyBalance(heavy.times, {"drive": np.array([0.0, 1e5])}, {}, stored).imbalance != ""
     light = EnergyBalance(heavy.times, heavy.gains, {}, stored - 1e18)
     assert "off by 1.3e+02 J at t = 1 s" in light.imbalance

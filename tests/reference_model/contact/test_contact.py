@@ -99,7 +99,7 @@ BAD_PLACES = {
     ((0.1, 0.2, 1.5), (0.3, 0.4, -0.5)): r"places\[1\] = .*: the share must be > 0",
     ((0.1, 0.2, 1.0),): "at least two points are needed; use a pin for a single one",
     ((0.1, 0.2, 0.5), (0.1, 0.2, 0.5)): r"2 points lie at \(0\.1, 0\.2\); combine their shares",
-    ((0.1, 0.2, 0.5), (0.1, 0.3, 0.4)): "the shares sum to 0.9; they must sum to 1",
+    ((0.1, 0.2, 0.5), (0.1, 0.3, 0.49999)): "the shares sum to 0.99999; they must sum to 1",
 }
 SQUARE = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 BAD_POLYGONS = {

@@ -171,3 +171,10 @@ def test_whirl_is_unstable_only_above_a_polar_inertia():
     assert min(np.min(curve.parameters[:, 0]) for curve in traced(PLANES[3], "Hopf")) == pytest.approx(
         0.13, abs=0.01
     )
+
+
+def test_a_start_lies_on_a_known_curve_only_within_the_sag_of_its_polygon():
+    circle = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0.0, 2.0 * np.pi, 61)])
+    between = np.array([np.cos(np.pi / 60.0), np.sin(np.pi / 60.0)])
+    assert module._near(between, circle)
+    assert not module._near(1.01 * between, circle)
