@@ -34,7 +34,9 @@ def test_force_and_moment_of_any_slip_lie_on_the_limit_surface(law):
         # The held load is opposite to friction. Margins are quadratic in the load.
         assert limit.margins(np.array([-force]), -moment)[0] == pytest.approx(0.0, abs=1e-12)
         direction, sense = limit.direction(-force, -moment)
-        assert direction / sense == pytest.approx(u / w, rel=1e-5, abs=1e-6 * abs(u / w))
+        # The equations are nearly singular for points on a line.
+        error = 1e-5 if law in (ROD, TWO) else 3e-9
+        assert direction / sense == pytest.approx(u / w, rel=error, abs=0.0)
         assert limit.margins(np.array([-0.999 * force]), -0.999 * moment)[0] > 0.0
         assert limit.margins(np.array([-1.001 * force]), -1.001 * moment)[0] < 0.0
 
