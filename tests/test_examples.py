@@ -3,8 +3,6 @@
 import ast
 import re
 import runpy
-import subprocess
-import sys
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -13,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from compare.cli import app as cli
 from exudyn_models import PASSENGER_CAR
-from fmu_models import CLUTCH, export
 from fmu_models.archive import compiler
 from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
 
@@ -230,7 +228,9 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
     if document == "docs/fmu.md":
         if compiler() is None:
             pytest.skip("there is no C compiler")
-        export(CLUTCH, tmp_path / "clutch.fmu", 2)
+        text = (ROOT / document).read_text(encoding="utf-8")
+        command = re.search(r"^friction-discs (export-fmu .* clutch\.fmu)$", text, re.MULTILINE)
+        assert cli.status(command[1].split()) == 0
     given = set(tmp_path.iterdir())
     names, compared = {}, 0
     for code in code_of(document):
@@ -250,21 +250,3 @@ def test_the_code_of_the_documents_gives_the_values_in_its_comments(document, tm
                 compared += 1
     assert compared >= 2
     assert set(tmp_path.iterdir()) == given, "a run has left files"
-
-
-def test_the_engine_of_the_tutorial_passes_the_tutorials_command(tmp_path):
-    engine, _ = code_of("docs/tutorial-judge.md")
-    (tmp_path / "mymodule.py").write_text(engine)
-    page = (ROOT / "docs" / "tutorial-judge.md").read_text(encoding="utf-8")
-    command = re.search(r"^pytest (--pyargs .*) --engine mypackage\.(\S+) (.*)$", page, re.MULTILINE)
-    words = f"{command[1]} --engine {command[2]} {command[3]} -p no:cacheprovider".split()
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", *words, "-k", "hardens or resting"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=120,
-    )
-    assert done.returncode == 0, done.stdout
-    assert "1 passed" in done.stdout
-    assert "3 not attempted" in done.stdout
