@@ -1,4 +1,4 @@
-"""Every command line in README and docs runs, at a smaller cost if it is expensive, and prints what its page shows."""
+"""Commands of README and docs run, expensive ones at a smaller size, and print the output that the page shows."""
 
 import importlib.util
 import re
@@ -144,7 +144,7 @@ OTHERS = {
 
 @pytest.fixture
 def workplace(tmp_path, monkeypatch):
-    """Change to an empty folder in which the examples and the engine of the tutorial can be imported."""
+    """Change to an empty folder. The examples and the engine of the tutorial can be imported there."""
     page = (ROOT / "docs" / "tutorial-judge.md").read_text(encoding="utf-8")
     engine = next(code for code in re.findall(r"(?s)```python\n(.*?)```", page) if "def simulate" in code)
     (tmp_path / "mypackage").mkdir()
