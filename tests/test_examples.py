@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.image import imread as read_image
 from scipy.integrate import solve_ivp
 
 from compare.cli import app as cli
@@ -215,6 +216,23 @@ def test_a_car_starts_on_a_slope_changes_gear_and_holds():
     assert sorted(locked) == ["clutch 1", "clutch 2", "left brake", "right brake", "synchroniser 2"]
     assert car.speed("left wheel") == pytest.approx(0.0, abs=1e-12)
     assert abs(car.speed("car")) < 1e-6
+
+
+def test_a_disc_in_exudyns_viewer_centres_itself():
+    x, y = run("14_in_exudyns_viewer.py")["final_position"]()
+    # Eq. 3, X0 = 40 mm, μN/C = 0.3·480/4000 m = 36 mm: ρ*² = X0² − (μN/C)².
+    assert (x, y) == pytest.approx((0.0076, 0.9 * np.sqrt(0.04**2 - 0.036**2)), abs=1e-6)
+
+
+@pytest.mark.parametrize("name", [path.name for path in sorted((ROOT / "examples").glob("[01]*.py"))])
+def test_an_example_draws_its_picture_of_the_gallery(name, tmp_path):
+    picture = f"gallery/{Path(name).stem}.png"
+    assert f"]({picture})" in (ROOT / "docs" / "gallery.md").read_text(encoding="utf-8")
+    shown = read_image(ROOT / "docs" / picture)
+    if name == "14_in_exudyns_viewer.py":  # its viewer needs a display
+        return
+    run(name)["draw"](tmp_path / "drawn.png")
+    assert read_image(tmp_path / "drawn.png").shape == pytest.approx(shown.shape, abs=2)
 
 
 def test_the_engine_of_the_documents_is_that_of_the_example():

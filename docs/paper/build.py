@@ -24,7 +24,7 @@ def figures() -> list[str]:
 
 
 def needed_width(svg: str) -> float:
-    """Return the width in pt at which the smallest letters of a figure by Matplotlib measure ``SMALLEST_LETTERS``."""
+    """Return the width in pt that a figure by Matplotlib needs for letters of ``SMALLEST_LETTERS``."""
     width = float(re.search(r'width="([\d.]+)pt"', svg)[1])
     sizes = [100.0 * float(size) for size in re.findall(r"scale\(([\d.]+) -\1\)", svg)]
     return width * SMALLEST_LETTERS / min(sizes)

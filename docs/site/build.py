@@ -90,6 +90,7 @@ def gather(folder: Path) -> None:
         (folder / uri).write_text(text, encoding="utf-8")
     for picture in [*DOCS.glob("*.png"), *DOCS.glob("*.svg")]:
         shutil.copy(picture, folder)
+    shutil.copytree(DOCS / "gallery", folder / "gallery")
 
 
 def _text(path: Path) -> str:
@@ -110,7 +111,7 @@ def _outside(text: str, source: str) -> Iterator[str]:
 
 def _is_of_docs(path: str) -> bool:
     """Return whether a file of the repository is a page or a figure of the site."""
-    return posixpath.dirname(path) == "docs" and not path.endswith(".py")
+    return posixpath.dirname(path) in ("docs", "docs/gallery") and not path.endswith(".py")
 
 
 def _page_of(path: str) -> str:
