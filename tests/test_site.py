@@ -85,7 +85,7 @@ def test_the_api_by_task_names_everything_public_once(site):
 
 
 def test_the_commands_page_shows_the_help_of_every_command(gathered):
-    page = (gathered / "commands.md").read_text(encoding="utf-8")
+    page = (gathered / "commands").with_suffix(".md").read_text(encoding="utf-8")
     for command in ("report", "diff", "matrix", "simulate disc", "sweep shock", "export-fmu clutch"):
         section = page.partition(f"\n## friction-discs {command}\n")[2].partition("\n## ")[0]
         assert "Options:" in section
