@@ -183,15 +183,6 @@ def claims():
     return found
 
 
-def errata():
-    """Return the errata by equation."""
-    found = {}
-    for erratum in ERRATA:
-        for number in cited(erratum.equation):
-            found.setdefault(number, []).append(erratum)
-    return found
-
-
 def _block(formula):
     return ["", "```math", formula, "```"]
 
@@ -215,7 +206,7 @@ def text():
         "`friction-discs report --claim ID` measures a claim. No claim covers (2), (24) and (25), which define",
         "coordinates and abbreviations. `python docs/write_equations.py` writes this page.",
     ]
-    by_function, by_claim, wrong = functions(), claims(), errata()
+    by_function, by_claim = functions(), claims()
     for number, about in EQUATIONS.items():
         named = [f"[`{name}`](../{path.as_posix()})" for path, name in by_function[number][:MOST]]
         claimed = []
@@ -227,7 +218,6 @@ def text():
         lines += ["", f"## ({number}) {about}", *_typeset(number), ""]
         lines += [f"- functions: {', '.join(named)}"]
         lines += [f"- claims: {'; '.join(claimed)}"] * bool(claimed)
-        lines += [f"- erratum: {each.equation}" for each in wrong.get(number, ())]
     lines += [
         "",
         "## Corrected",
@@ -235,8 +225,9 @@ def text():
         f"{TEXT} `friction-discs errata` proves each correction with numbers.",
     ]
     for erratum in ERRATA:
-        lines += ["", f"**{erratum.heading}.** {erratum.explanation}", "", f"- as printed: {erratum.printed}"]
-        lines += [f"- correct: {erratum.correct}"]
+        lines += ["", f"**{erratum.heading}.** {erratum.explanation}"]
+        if not cited(erratum.equation):  # otherwise both forms stand above
+            lines += ["", f"- as printed: {erratum.printed}", f"- correct: {erratum.correct}"]
     return "\n".join(lines) + "\n"
 
 
