@@ -1,8 +1,10 @@
 """The examples and the code in README and docs run, and give what they say."""
 
 import ast
+import importlib
 import re
 import runpy
+import sys
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +15,7 @@ from matplotlib.image import imread as read_image
 from scipy.integrate import solve_ivp
 
 from compare.cli import app as cli
+from compare.engines import reference
 from exudyn_models import PASSENGER_CAR
 from fmu_models.archive import compiler
 from reference_model import DiscOnDisc, PinOnDisc, self_centred_equilibria, simulate
@@ -233,6 +236,25 @@ def test_an_example_draws_its_picture_of_the_gallery(name, tmp_path):
         return
     run(name)["draw"](tmp_path / "drawn.png")
     assert read_image(tmp_path / "drawn.png").shape == pytest.approx(shown.shape, abs=2)
+
+
+def test_the_study_of_the_guide_for_contributors_agrees_and_draws(tmp_path, monkeypatch):
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## Add a study")[2]
+    blocks = re.findall(r"```(?:markdown|python)\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "pin" / "at_rest").mkdir(parents=True)
+    names = ("study.md", "study.py", "pictures.py", "__init__.py")
+    for name, content in zip(names, blocks, strict=False):
+        code = content.replace("compare.studies.pin.at_rest", "at_rest")
+        (tmp_path / "pin" / "at_rest" / name).write_text(code, encoding="utf-8")
+    monkeypatch.syspath_prepend(tmp_path / "pin")
+    study = importlib.import_module("at_rest").STUDY
+    measured = sys.modules["at_rest.study"].rests(reference)
+    difference = np.abs(np.subtract(measured.predicted, measured.value))
+    assert np.all(difference <= measured.error)
+    assert np.max(measured.error) < 1e-6  # the resolution of its claim
+    assert study.title == "The pin at rest"
+    (figure,) = sys.modules["at_rest.pictures"].draw({"reference": measured.data}).values()
+    figure.savefig(tmp_path / "drawn.png")
 
 
 def test_the_engine_of_the_documents_is_that_of_the_example():
