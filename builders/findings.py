@@ -32,7 +32,7 @@ QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
 IN_README = (
     "claims",
     "verdicts: independent",
-    "fig05: dividing velocity, reference",
+    "fig05: dividing velocity, reference, ±",
     "stability-map: lower friction_force, 3 digits",
     "stability-map: upper friction_force, 3 digits",
     "drivetrain-frozen: onset at 80 N m and 12 rad/s, exudyn, rpm, 4 digits",

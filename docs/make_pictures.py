@@ -1,5 +1,10 @@
-"""Draw the figures of the guide, its symbols and the limit surfaces: ``python docs/make_pictures.py``."""
+"""Draw the figures of the guide and of the gallery: ``python docs/make_pictures.py``.
 
+The pictures of the gallery are those that the examples draw. Exudyn's viewer needs a display.
+"""
+
+import os
+import runpy
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +60,21 @@ turning(panel, CENTRE, 1.1, (345.0, 380.0), DISC, r"$\dot\varphi$")
 turning(panel, CENTRE, 0.35, (-20.0, 60.0), FRICTION, "$M$")
 panel.set(xlim=(-1.85, 1.95), ylim=(-1.8, 1.8), aspect="equal", xlabel="x", ylabel="y", xticks=[], yticks=[])
 
+
+def draw_gallery(folder):
+    """Let each example draw its picture."""
+    examples = Path(__file__).parents[1] / "examples"
+    for path in sorted(examples.glob("[01]*.py")):
+        example, picture = runpy.run_path(str(path)), folder / f"{path.stem}.png"
+        if "draw" in example:
+            example["draw"](picture)
+        elif "render" in example and os.environ.get("DISPLAY"):
+            example["final_position"]()
+            example["render"](picture)
+
+
 if __name__ == "__main__":
+    draw_gallery(Path(__file__).parent / "gallery")
     figure.savefig(Path(__file__).parent / "conventions.png", dpi=100)
     contacts = {
         "Three feet": Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)]),

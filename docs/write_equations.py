@@ -1,4 +1,4 @@
-"""Write ``docs/equations.md``, a table of functions and claims by equation: ``python docs/write_equations.py``.
+"""Write ``docs/equations.md``, each equation with its functions and claims: ``python docs/write_equations.py``.
 
 The functions are those of the reference whose docstrings cite the equation. The claims are those declared for it, and
 the corrections come from the errata. A test fails if the page is out of date.
@@ -44,7 +44,79 @@ EQUATIONS = {
 }
 """Subject of each equation."""
 
-MOST = 4
+TYPESET = {
+    1: r"m\ddot x + \beta\dot x + C(x - X_0) = -\mu N\,\frac{\dot x + \omega y}{v},\quad "
+    r"m\ddot y + \beta\dot y + Cy = -\mu N\,\frac{\dot y - \omega x}{v},\quad "
+    r"v = \sqrt{(\dot x + \omega y)^2 + (\dot y - \omega x)^2}",
+    2: r"x = \rho\cos\psi,\quad y = \rho\sin\psi",
+    3: r"\rho_* = \sqrt{X_0^2 - \left(\frac{\mu N}{C}\right)^2},\quad \sin\psi_* = \frac{\mu N}{C X_0}",
+    4: r"\left(x - \frac{X_0}{2}\right)^2 + y^2 = \frac{X_0^2}{4}",
+    5: r"\mu N \le C X_0",
+    6: r"x = A\cos(\omega t + \psi_0),\quad y = A\sin(\omega t + \psi_0)",
+    7: r"(C - m\omega^2)^2A^2 + \beta^2\omega^2A^2 + C^2X_0^2 - 2CX_0A\left[(C - m\omega^2)\cos\psi "
+    r"- \beta\omega\sin\psi\right] \le (\mu N)^2",
+    8: r"A\sqrt{(C - m\omega^2)^2 + \beta^2\omega^2} + CX_0 \le \mu N",
+    9: r"A \le \frac{\mu N - CX_0}{\sqrt{(C - m\omega^2)^2 + \beta^2\omega^2}}",
+    10: r"m(\ddot\rho - \rho\dot\psi^2) + \beta\dot\rho + C(\rho - X_0\cos\psi) = -\mu N\,\frac{\dot\rho}{v},\quad "
+    r"m(\rho\ddot\psi + 2\dot\rho\dot\psi) + \beta\rho\dot\psi + CX_0\sin\psi = "
+    r"\mu N\,\frac{\rho(\omega - \dot\psi)}{v}",
+    11: r"\dot\psi = k = \sqrt{\frac{C}{m}},\quad \rho_c = \frac{\mu N}{\beta k}",
+    12: r"\ddot\xi + \frac{\beta}{m}\frac{\omega}{\omega - k}\dot\xi - \frac{2\mu N}{\beta}\eta = 0,\quad "
+    r"\dot\eta + \frac{\beta}{m}\eta + \frac{\beta k^2}{\mu N}\left(2\dot\xi + \frac{\beta}{m}\xi\right) = 0",
+    13: r"\lambda^3 + a\lambda^2 + \left(\frac{\beta^2}{m^2}\frac{\omega}{\omega - k} + 4k^2\right)\lambda "
+    r"+ \frac{2k^2\beta}{m} = 0",
+    14: r"\frac{\omega}{\omega - k} > -1,\quad \frac{\omega}{\omega - k} > -q,\quad "
+    r"q = \left(\frac{2km}{\beta}\right)^2",
+    15: r"\frac{\omega}{\omega - k} < -\frac{1}{2}\left(1 + q + \sqrt{1 + q^2}\right)",
+    16: r"\frac{\omega}{\omega - k} > -\frac{1}{2}\left(1 + q - \sqrt{1 + q^2}\right)",
+    17: r"x = x_s + \rho_c\cos kt,\quad y = y_s + \rho_c\sin kt",
+    18: r"x_s = \frac{X_0}{1 + \frac{\beta^2\omega^2}{4mC(\omega - k)^2}},\quad "
+    r"y_s = \frac{\beta\omega\,x_s}{2mk(\omega - k)}",
+    19: r"m\ddot x + \beta\dot x + C(x - X_0) = F_x,\quad m\ddot y + \beta\dot y + Cy = F_y,\quad "
+    r"J\ddot\varphi + b(\dot\varphi - \Omega) = M",
+    20: r"F = -\frac{\mu N}{2\pi}\int_0^{2\pi}\frac{\nu_r}{|\nu_r|}\,d\chi,\quad "
+    r"M = \frac{\mu NR}{2\pi}\int_0^{2\pi}\frac{\nu_{rx}\sin(\varphi + \chi) - \nu_{ry}\cos(\varphi + \chi)}"
+    r"{|\nu_r|}\,d\chi",
+    21: r"\nu_{rx} = \dot x + \omega y + R(\omega - \dot\varphi)\sin(\varphi + \chi),\quad "
+    r"\nu_{ry} = \dot y - \omega x - R(\omega - \dot\varphi)\cos(\varphi + \chi)",
+    22: r"\frac{\tilde\nu_r}{|\nu_r|} = 1 - \varepsilon,\quad "
+    r"\varepsilon = \frac{R(\omega - \dot\varphi)\tilde\nu_{xy}}{\bar\nu_r^2}",
+    23: r"|F| = \mu N\cos\alpha\left(1 - \frac{1}{2}\sin^2\alpha + \frac{3}{4}\cos^2\alpha\sin^2\alpha\right),\quad "
+    r"M = \mu NR\sin\alpha\left(1 - \frac{1}{2}\cos^2\alpha + \frac{3}{4}\cos^2\alpha\sin^2\alpha\right),\quad "
+    r"\tan\alpha = \frac{R(\omega - \dot\varphi)}{U}",
+    24: r"x = A\cos\alpha\cos\theta,\quad y = A\cos\alpha\sin\theta,\quad "
+    r"R(\omega - \dot\varphi) = \omega A\sin\alpha",
+    25: r"\mu_0 = \frac{\mu N}{C},\quad b_0 = \frac{b\omega}{RC},\quad \delta = 1 - \frac{\Omega}{\omega}",
+    26: r"\delta = \frac{A}{R}\sin\alpha + \frac{\mu_0}{b_0}\sin\alpha\left(1 - \frac{1}{2}\cos^2\alpha"
+    r"\left(1 - \frac{3}{2}\sin^2\alpha\right)\right),\quad A^2 = \frac{X_0^2}{\cos^2\alpha} - \mu_0^2B^2,\quad "
+    r"\cos\theta = \frac{A\cos\alpha}{X_0}",
+}
+"""Each equation in our notation; its content is as printed, with ``PRINTED`` below."""
+
+PRINTED = {
+    11: (r"\text{for every } \omega", r"\text{only for } \omega > k"),
+    13: (
+        r"a = 1 + \frac{\beta}{m}\frac{\omega}{\omega - k}",
+        r"a = \frac{\beta}{m}\left(1 + \frac{\omega}{\omega - k}\right)",
+    ),
+    18: (
+        TYPESET[18],
+        r"x_s + iy_s = X_0\,\overline{\left(\frac{6 - id(w + 2)}{6 + 2d^2w + 2id(w - 1)}\right)},\quad "
+        r"d = \frac{\beta}{mk},\quad w = \frac{\omega}{\omega - k}",
+    ),
+    22: (
+        TYPESET[22],
+        r"\frac{\bar\nu_r}{|\nu_r|} = 1 - \varepsilon + \frac{3}{2}\varepsilon^2,\quad "
+        r"\varepsilon = \frac{R(\omega - \dot\varphi)\tilde\nu_{xy}}{\bar\nu_r^2}",
+    ),
+    26: (
+        r"B = 1 - \frac{1}{2}\cos^2\alpha + \frac{3}{16}\sin^2\alpha",
+        r"B = 1 - \frac{1}{2}\sin^2\alpha + \frac{3}{16}\sin^2 2\alpha",
+    ),
+}
+"""Terms of the wrong equations, as printed and as corrected."""
+
+MOST = 3
 """Largest number of functions, and of claims per study, in a row."""
 
 PREFERRED = ("plain", "formulas", "contact", "systems", "steady", "motion", "orbits")
@@ -111,13 +183,17 @@ def claims():
     return found
 
 
-def errata():
-    """Return the errata by equation."""
-    found = {}
-    for erratum in ERRATA:
-        for number in cited(erratum.equation):
-            found.setdefault(number, []).append(erratum)
-    return found
+def _block(formula):
+    return ["", "```math", formula, "```"]
+
+
+def _typeset(number):
+    """Return the lines that show an equation, and for a wrong one the printed and the corrected term."""
+    if number not in PRINTED:
+        return _block(TYPESET[number])
+    printed, correct = PRINTED[number]
+    lines = _block(TYPESET[number]) if printed != TYPESET[number] else []
+    return [*lines, "", "As printed:", *_block(printed), "", "[Corrected](#corrected):", *_block(correct)]
 
 
 def text():
@@ -125,16 +201,12 @@ def text():
     lines = [
         "# Equations",
         "",
-        "This page lists the functions and claims for each equation of the paper, and [corrects](#corrected) the",
-        "equations that are wrong or incomplete as printed. `friction-discs report STUDY` measures a claim, where",
-        "STUDY is the part of its name before the slash. No claim covers (2), (24) and (25), which define",
-        "coordinates and abbreviations. `python docs/write_equations.py` writes this page from docstrings and",
-        "declared claims.",
-        "",
-        "| | subject | functions | claims |",
-        "|---|---|---|---|",
+        "This page shows each equation of the paper in our notation, the functions that compute it and the claims",
+        "about it. The [glossary](glossary.md#symbols) explains the symbols. Errors are [corrected](#corrected).",
+        "`friction-discs report --claim ID` measures a claim. No claim covers (2), (24) and (25), which define",
+        "coordinates and abbreviations. `python docs/write_equations.py` writes this page.",
     ]
-    by_function, by_claim, wrong = functions(), claims(), errata()
+    by_function, by_claim = functions(), claims()
     for number, about in EQUATIONS.items():
         named = [f"[`{name}`](../{path.as_posix()})" for path, name in by_function[number][:MOST]]
         claimed = []
@@ -143,10 +215,9 @@ def text():
             claimed.append(
                 ", ".join(f"`{each}`" for each in identities[:MOST]) + (f" and {more} more" * (more > 0))
             )
-        corrected = ", [corrected](#corrected)" * (number in wrong)
-        lines.append(
-            f"| ({number}) | {about}{corrected} | {', '.join(named) or '–'} | {'; '.join(claimed) or '–'} |"
-        )
+        lines += ["", f"## ({number}) {about}", *_typeset(number), ""]
+        lines += [f"- functions: {', '.join(named)}"]
+        lines += [f"- claims: {'; '.join(claimed)}"] * bool(claimed)
     lines += [
         "",
         "## Corrected",
@@ -154,8 +225,9 @@ def text():
         f"{TEXT} `friction-discs errata` proves each correction with numbers.",
     ]
     for erratum in ERRATA:
-        lines += ["", f"**{erratum.heading}.** {erratum.explanation}", "", f"- as printed: {erratum.printed}"]
-        lines += [f"- correct: {erratum.correct}"]
+        lines += ["", f"**{erratum.heading}.** {erratum.explanation}"]
+        if not cited(erratum.equation):  # otherwise both forms stand above
+            lines += ["", f"- as printed: {erratum.printed}", f"- correct: {erratum.correct}"]
     return "\n".join(lines) + "\n"
 
 

@@ -1,5 +1,6 @@
 """The pin of Fig. 5: two nearly equal starts that end in different motions, and all its steady motions."""
 
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -39,6 +40,24 @@ def describe(trajectory: Trajectory) -> str:
     )
 
 
+def draw(path):
+    """Draw both paths in the plane and the radius against time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 3.4), layout="constrained")
+    plane, radii = figure.subplots(1, 2)
+    for name, motion in (("to the equilibrium", to_equilibrium), ("to the whirl", to_whirl)):
+        plane.plot(*motion.states[:, :2].T, linewidth=0.5, label=name)
+        radii.plot(motion.times, motion.radius, label=name)
+    plane.plot(equilibrium.x, equilibrium.y, "k+", label="equilibrium (3)")
+    radii.axhline(whirl.radius, color="k", linestyle=":", label="whirl (11) without offset")
+    plane.set(xlabel="x in m", ylabel="y in m", aspect="equal")
+    radii.set(xlabel="t in s", ylabel="distance from the axis in m", ylim=(0.0, 1.4))
+    plane.legend(fontsize="small")
+    radii.legend(fontsize="small")
+    figure.savefig(path, dpi=80)
+
+
 if __name__ == "__main__":
     print("reference, to the equilibrium:", describe(to_equilibrium))
     print("reference, to the whirl:      ", describe(to_whirl))
@@ -48,3 +67,5 @@ if __name__ == "__main__":
     print(f"with the offset it whirls about {orbit.mean.round(6)} m with {orbit.frequency:.6f} rad/s")
     print(f"the drive supplies {power.drive_power:.4f} W")
     print(f"sticks permanently within {radius:.4f} m if μN = 0.12 N")
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])

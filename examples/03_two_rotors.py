@@ -119,7 +119,7 @@ def draw(path):
     heats.set(title="energy balance", xlabel="t in s", ylabel="J", xlim=(0.0, 0.4), ylim=(0.0, 800.0))
     for panel, corner in ((way, "upper right"), (speeds, "lower right"), (heats, "upper left")):
         panel.legend(loc=corner, frameon=False)
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=80)
 
 
 if __name__ == "__main__":

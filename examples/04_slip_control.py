@@ -5,6 +5,8 @@ from 30 to 5 rad/s. The clutch transmits M = μNR at any slip, so s decays expon
 μRK·(1/J₁ + 1/J₂).
 """
 
+import sys
+
 import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import LoadCoordinate, MarkerNodeCoordinate, Node1D, ObjectRotationalMass1D
@@ -61,7 +63,26 @@ times, slip = mbs.GetSensorStoredData(rim_slip).T * [[1.0], [-1.0 / RADIUS]]
 torque = mbs.GetSensorStoredData(moment)[:, 1]
 closed_form = TARGET + (START - TARGET) * np.exp(-RATE * times)
 
+
+def draw(path):
+    """Draw the slip and the transmitted moment against time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.0, 3.0), layout="constrained")
+    slips, moments = figure.subplots(1, 2)
+    slips.plot(times, slip, label="Exudyn")
+    slips.plot(times, closed_form, "k:", label="closed form")
+    slips.axhline(TARGET, color="0.7", zorder=0)
+    slips.set(xlabel="t in s", ylabel="slip in rad/s")
+    slips.legend()
+    moments.plot(times, torque)
+    moments.set(xlabel="t in s", ylabel="transmitted moment in N m")
+    figure.savefig(path, dpi=80)
+
+
 if __name__ == "__main__":
     print("t in s  slip in rad/s  closed form  transmitted moment in N m")
     for row in list(zip(times, slip, closed_form, torque, strict=True))[::20]:
         print("{:6.1f}  {:13.8f}  {:11.8f}  {:25.4f}".format(*row))
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])

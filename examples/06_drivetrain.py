@@ -50,7 +50,7 @@ def draw(path):
     ways.set(xlabel="t in s", ylabel="disc's centre in mm")
     for panel in (speeds, ways):
         panel.legend(loc="upper left", frameon=False)
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=80)
 
 
 if __name__ == "__main__":

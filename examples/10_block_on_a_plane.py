@@ -3,6 +3,7 @@
 cd examples && friction-discs report block --engine 10_block_on_a_plane:cone --engine 10_block_on_a_plane:box
 """
 
+import sys
 from functools import partial
 from math import ceil
 
@@ -39,3 +40,33 @@ def in_box(impulse, most):  # noqa: D103
 cone, box = (partial(time_stepping, bounded=law) for law in (in_circle, in_box))
 for engine in (cone, box):
     engine.kinds, engine.nonlinear, engine.step = ("block",), False, 1e-3  # s
+
+
+def draw(path):
+    """Draw the paths of a block that starts in six directions, by both laws."""
+    from matplotlib.figure import Figure
+
+    from reference_model import PinOnDisc
+
+    block = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
+    times = np.linspace(0.0, 1.5, 31)
+    figure = Figure(figsize=(4.0, 3.4), layout="constrained")
+    panel = figure.subplots()
+    for name, law, style in (("cone", cone, "C0-"), ("box", box, "C3--")):
+        for number, angle in enumerate(np.radians(np.arange(0, 91, 18))):
+            motion = law(block, [0.0, 0.0, np.cos(angle), np.sin(angle)], times, step=0.01)
+            panel.plot(
+                *motion.states[:, :2].T,
+                style,
+                marker="o",
+                markevery=[-1],
+                label=name if number == 0 else None,
+            )
+    panel.set(xlabel="x in m", ylabel="y in m", aspect="equal")
+    panel.legend()
+    figure.savefig(path, dpi=80)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])

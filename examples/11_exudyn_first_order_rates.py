@@ -5,6 +5,8 @@ h/2·ẋ (ComputeNewtonUpdate) therefore uses the rate of the diverged iterate. 
 wherever a Jacobian changes rapidly, as here. Full Newton is correct.
 """
 
+import sys
+
 import exudyn as exu
 from exudyn.itemInterface import NodeGenericODE1, ObjectGenericODE1
 
@@ -43,7 +45,20 @@ def expected():
     return x
 
 
+def draw(path):
+    """Draw the final value with both iterations next to the expected one."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(4.0, 2.2), layout="constrained")
+    panel = figure.subplots()
+    panel.barh(("modified Newton", "full Newton", "expected"), (obtained(True), obtained(False), expected()))
+    panel.set(xlabel="final x, starting from 1")
+    figure.savefig(path, dpi=80)
+
+
 if __name__ == "__main__":
     print(
         f"expected {expected():.6g}; obtained with full Newton {obtained(False):.6g}, modified {obtained(True):.6g}"
     )
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])

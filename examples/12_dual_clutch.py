@@ -4,6 +4,8 @@ The first clutch opens while the second closes, both linearly. The second clutch
 speed of its shaft and locks. The gears are elastic. An energy balance checks the run.
 """
 
+import sys
+
 import exudyn as exu
 import numpy as np
 from exudyn.itemInterface import (
@@ -142,9 +144,30 @@ balance = read_balance()
 speeds = np.column_stack([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors])
 
 
+def draw(path):
+    """Draw the speeds and the heat of both clutches during the gear change."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 3.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    times = UNTIL * np.linspace(0.0, 1.0, len(speeds))
+    for name, curve in zip(("engine", "first shaft", "second shaft"), speeds.T, strict=False):
+        left.plot(times, curve, label=name)
+    left.set(xlabel="t in s", ylabel="speed in rad/s")
+    for name in ("first clutch", "second clutch"):
+        right.plot(balance.times, balance.losses[name], label=name)
+    right.set(xlabel="t in s", ylabel="heat in J")
+    for panel in (left, right):
+        panel.axvspan(BEGIN, END, color="0.93")
+        panel.legend(fontsize="small")
+    figure.savefig(path, dpi=80)
+
+
 if __name__ == "__main__":
     print(f"engine {speeds[-1, 0]:.2f} rad/s, second gear {RATIOS[1] * speeds[-1, 3]:.2f} rad/s")
     for name in ("first clutch", "second clutch"):
         print(f"{name}: {balance.losses[name][-1]:.0f} J of heat")
     residual = np.max(np.abs(balance.residual)) / balance.turnover
     print(f"residual of the energy balance: {residual:.1g} of the energy turnover")
+    if len(sys.argv) > 1:
+        draw(sys.argv[1])

@@ -156,7 +156,7 @@ class Car:
         return solve_dynamic(self.mbs, settings, solver, breaks=BREAKS)
 
 
-def draw(car, path):
+def draw(path):
     """Draw speeds, modes and the residual of the balance against time."""
     from matplotlib.figure import Figure
 
@@ -175,10 +175,9 @@ def draw(car, path):
             )
     middle.set(yticks=range(len(car.contacts)), yticklabels=list(car.contacts))
     middle.set_title("green: locked, red: slips, grey: open", fontsize="small")
-    balance = car.read_balance()
     bottom.plot(balance.times, balance.residual / balance.turnover)
     bottom.set(xlabel="t in s", ylabel="energy residual\nover turnover")
-    figure.savefig(path, dpi=120)
+    figure.savefig(path, dpi=80)
 
 
 car = Car()
@@ -197,4 +196,4 @@ if __name__ == "__main__":
     residual = np.max(np.abs(balance.residual)) / balance.turnover
     print(f"residual of the energy balance: {residual:.1g} of the energy turnover")
     if len(sys.argv) > 1:
-        draw(car, sys.argv[1])
+        draw(sys.argv[1])

@@ -4,6 +4,7 @@ import re
 import runpy
 from pathlib import Path
 
+from compare.claims.errata import ERRATA
 from compare.studies import STUDIES
 
 ROOT = Path(__file__).parents[1]
@@ -53,3 +54,15 @@ def test_what_the_paper_cites_is_among_its_references():
     )
     cited = {name for name in re.findall(r"(?<![\w\"])@([a-z-]+)", TEXT) if not name.startswith("fig-")}
     assert cited == entries
+
+
+def test_a_figure_is_wide_enough_for_its_smallest_letters():
+    needed = runpy.run_path(str(PAPER / "build.py"))["needed_width"]
+    svg = '<svg width="720pt"><g scale(0.015625)/><g scale(0.11 -0.11)/><g scale(0.1 -0.1)/></svg>'
+    assert needed(svg) >= 0.7 * 720.0  # 10 pt at full size, at least 7 pt in print
+
+
+def test_the_table_of_the_paper_has_every_erratum():
+    table = TEXT.partition("= Corrections")[2].partition("\n)\n")[0]
+    numbers = [each.equation.partition(",")[0] for each in ERRATA]
+    assert [number for number in numbers if f"[{number}]" not in table] == []

@@ -36,8 +36,9 @@ OF_OTHERS = {
     "--level",
     "--study-limit",
     "--min-conclusive",
+    "--view",
 }
-"""Options of pytest, and of our plugin for it."""
+"""Options of pytest, of our plugin for it, and of an example."""
 
 
 def spans(page):

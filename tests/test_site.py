@@ -1,5 +1,7 @@
 """The site's pages link to each other; Sphinx itself runs in a workflow, where a warning is an error."""
 
+import importlib
+import json
 import re
 import runpy
 from pathlib import Path
@@ -72,3 +74,34 @@ def test_bars_in_docstrings_are_bars():
     lines = ["μN·v/|v|, ``a|b``::", "", "    c|d", "|e|"]
     escape(None, "", "", None, None, lines)
     assert lines == [r"μN·v/\|v\|, ``a|b``::", "", "    c|d", r"\|e\|"]
+
+
+def test_the_api_by_task_names_everything_public_once(site):
+    pages = site["pages_of_program"]
+    packages = ("reference_model", "reference_model.ensemble", "exudyn_models", "fmu_models")
+    public = {f"{name}.{each}" for name in packages for each in importlib.import_module(name).__all__}
+    named = [pages.full_name(name) for names in pages.TASKS.values() for name in names]
+    assert sorted(named) == sorted(public)
+
+
+def test_the_commands_page_shows_the_help_of_every_command(gathered):
+    page = (gathered / "commands").with_suffix(".md").read_text(encoding="utf-8")
+    for command in ("report", "diff", "matrix", "simulate disc", "sweep shock", "export-fmu clutch"):
+        section = page.partition(f"\n## friction-discs {command}\n")[2].partition("\n## ")[0]
+        assert "Options:" in section
+        assert "Example" in section
+
+
+def test_the_citation_of_the_site_contains_the_entries(gathered):
+    assert "@software{" in (gathered / "cite.md").read_text(encoding="utf-8")
+
+
+def test_names_of_claims_lead_to_the_report(site, tmp_path, monkeypatch):
+    pages = site["pages_of_program"]
+    claims = [{"id": "fig05/critical"}, {"id": "fig11/slides/six-points"}]
+    (tmp_path / "results.json").write_text(json.dumps({"studies": [{"claims": claims}]}))
+    monkeypatch.setattr(pages, "REPORT", tmp_path)
+    text = pages.linked_claims("`fig05/critical`, `fig11/slides`, `docs/site`")
+    assert '<a href="report/index.html#fig05/critical"><code>fig05/critical</code></a>' in text
+    assert '"report/index.html#fig11/slides/six-points"><code>fig11/slides</code>' in text
+    assert text.endswith("`docs/site`")

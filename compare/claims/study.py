@@ -137,7 +137,7 @@ class Study:
     def provides(self, **functions: Callable[..., Any]) -> None:
         """Add functions under these names; no lambdas, because the functions are sent to other processes.
 
-        ==============  ==========================================================================================
+        =============== ==========================================================================================
         ``figures``     ``draw(data: ByEngine) -> Figures``; must accept missing engines
         ``animations``  ``animate(data: ByEngine) -> {name: GIF}``, see ``compare.report.animation``
         ``curves``      ``curves() -> Data``: curves of formulas for the figures
@@ -145,7 +145,7 @@ class Study:
         ``recorded``    ``recorded() -> (Recorded, ...)``: a separate matrix in the report, counted separately; all
                         make the same claims in the same order
         ``validations`` ``validations() -> (Validation, ...)``: comparisons with measurements
-        ==============  ==========================================================================================
+        =============== ==========================================================================================
 
         Raises ``TypeError`` for another name.
         """

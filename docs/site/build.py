@@ -1,13 +1,12 @@
 """Build the site: ``python docs/site/build.py [FOLDER]``; a warning is an error.
 
 The site contains the pages of ``docs/``, the changelog and the guide for contributors. A file of the repository
-that a page links to becomes a page of code. If ``report/`` contains a report, the site includes it with its figures.
+that a page links to becomes a page of code. ``pages.py`` writes the pages about the program, and includes the report
+and its figures if ``report/`` contains one.
 """
 
 from __future__ import annotations
 
-import html
-import json
 import posixpath
 import re
 import shutil
@@ -15,6 +14,9 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import pages as pages_of_program
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -31,8 +33,10 @@ SECTIONS = {
     "Engines": ("judge-your-engine", "benchmark", "foreign-engines", "verdicts", "tolerance-tubes"),
     "Models": ("friction-in-your-own-model", "from-modelica", "fmu"),
     "Motions": ("findings", "equations", "sweeps"),
-    "Look up": ("glossary", "gallery", "latest-report"),
+    "Look up": ("gallery", "glossary", "cite", "latest-report"),
     "Reference": (
+        "commands",
+        "api/tasks",
         "api/reference-model",
         "api/ensemble",
         "api/exudyn-models",
@@ -73,7 +77,12 @@ def gather(folder: Path) -> None:
     linked = {path for uri, text in pages.items() for path in _outside(text, sources[uri])}
     found = {uri: moved(text, sources[uri], uri) for uri, text in pages.items()}
     found["index.md"] += _navigation()
-    found["latest-report.md"] = _report() or found["latest-report.md"]
+    found["latest-report.md"] = pages_of_program.report(found["latest-report.md"])
+    found["cite.md"] = pages_of_program.citation(found["cite.md"])
+    found["commands.md"] = pages_of_program.commands()
+    found["api/tasks.rst"] = pages_of_program.tasks()
+    for uri in ("equations.md", "findings.md", "cite.md"):
+        found[uri] = pages_of_program.linked_claims(found[uri])
     found |= {_page_of(path): _shown(path) for path in linked}
     found |= {f"api/{name}.rst": _reference(modules) for name, modules in API.items()}
     for uri, text in found.items():
@@ -81,6 +90,7 @@ def gather(folder: Path) -> None:
         (folder / uri).write_text(text, encoding="utf-8")
     for picture in [*DOCS.glob("*.png"), *DOCS.glob("*.svg")]:
         shutil.copy(picture, folder)
+    shutil.copytree(DOCS / "gallery", folder / "gallery")
 
 
 def _text(path: Path) -> str:
@@ -101,7 +111,7 @@ def _outside(text: str, source: str) -> Iterator[str]:
 
 def _is_of_docs(path: str) -> bool:
     """Return whether a file of the repository is a page or a figure of the site."""
-    return posixpath.dirname(path) == "docs" and not path.endswith(".py")
+    return posixpath.dirname(path) in ("docs", "docs/gallery") and not path.endswith(".py")
 
 
 def _page_of(path: str) -> str:
@@ -155,26 +165,6 @@ def _reference(modules: tuple[str, ...]) -> str:
     return "\n".join(lines)
 
 
-def _report() -> str:
-    """Return the page about the latest report, with its figures."""
-    if not (REPORT / "results.json").exists():
-        return (
-            "# Latest report\n\nThis site was built without a report: run `make report`, then `make docs`.\n"
-        )
-    results = json.loads(_text(REPORT / "results.json"))
-    totals = ", ".join(
-        f"{number} {html.escape(name)}" for name, number in results["totals"].items() if number
-    )
-    lines = ["# Latest report", "", f'<a href="report/index.html">The report</a>: {totals}.', ""]
-    for study in results["studies"]:
-        names = [name for name in study["figures"] if (REPORT / "figures" / f"{name}.svg").exists()]
-        lines += [f"## {html.escape(study['title'])}", ""] if names else []
-        for name in names:
-            picture = f"report/figures/{name}.svg"
-            lines += [f'<a href="{picture}"><img alt="{name}" loading="lazy" src="{picture}"></a>', ""]
-    return "\n".join(lines) + "\n"
-
-
 def main(folder: Path) -> int:
     """Build the site into ``folder`` and return the exit status."""
     from sphinx.cmd.build import build_main
@@ -183,9 +173,12 @@ def main(folder: Path) -> int:
     with tempfile.TemporaryDirectory() as place:
         gather(Path(place))
         shutil.copy(Path(__file__).with_name("conf.py"), place)
-        status = build_main(["-W", "--keep-going", "-q", "-b", "html", place, str(folder)])
+        footer = f"copyright=2026, the friction-discs maintainers. {pages_of_program.footer()}"
+        status = build_main(["-W", "--keep-going", "-q", "-b", "html", "-D", footer, place, str(folder)])
     if not status and (REPORT / "index.html").exists():
         shutil.copytree(REPORT, folder / "report", dirs_exist_ok=True)
+    if not status and pages_of_program.PAPER.exists():
+        shutil.copy(pages_of_program.PAPER, folder)
     return status
 
 

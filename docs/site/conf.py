@@ -9,13 +9,23 @@ author = "the friction-discs maintainers"
 copyright = f"2026, {author}"
 release = version = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_copybutton",
+]
 html_theme = "furo"
-html_title = "friction-discs"
+html_title = f"friction-discs {release}"
 html_theme_options = {"navigation_with_keys": True}
+
 highlight_language = "text"
 
 myst_heading_anchors = 3
+myst_fence_as_directive = ["math"]
+html_math_renderer = "mathml"
+copybutton_exclude = ".linenos, .gp, .go"
 myst_links_external_new_tab = False
 suppress_warnings = ["myst.header"]  # the headings of the changelog skip a level
 
@@ -32,6 +42,17 @@ LITERAL = re.compile(r"(``.*?``)")
 def setup(app):
     """Escape bars such as |v| in docstrings before other extensions read them."""
     app.connect("autodoc-process-docstring", escape_bars, priority=100)
+    app.add_html_math_renderer("mathml", (mathml, None), (mathml, None))
+
+
+def mathml(translator, node):
+    """Write an equation as MathML, which browsers show without a script or a network."""
+    import docutils.nodes
+    from latex2mathml.converter import convert
+
+    display = "inline" if isinstance(node, docutils.nodes.math) else "block"
+    translator.body.append(convert(node.astext(), display=display))
+    raise docutils.nodes.SkipNode
 
 
 def escape_bars(app, what, name, thing, options, lines):
