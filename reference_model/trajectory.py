@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from reference_model.systems import FloatArray, System
+
+if TYPE_CHECKING:
+    from reference_model.pictures import Figure, FuncAnimation
 
 
 class SimulationError(RuntimeError):
@@ -165,3 +168,27 @@ class Trajectory:
     def stick_times(self) -> FloatArray:
         """Alternating start and end times in s of the stick phases, shape (2·phases,)."""
         return np.array([time for phase in self.stick_phases for time in (phase.start, phase.end)])
+
+    def plot(self, figure: Figure | None = None) -> Figure:
+        """Draw the path in the plane and radius, slip speed and spin over time; stick phases are shaded.
+
+        ``figure`` is the matplotlib figure to draw in; None makes a new one. Curves join the requested times.
+        Raises ``ModuleNotFoundError`` without matplotlib.
+        """
+        from reference_model.pictures import figure_of
+
+        spans = self.stick_times.reshape(-1, 2)
+        return figure_of(self.system, self.times, self.states, self.slip_speed, spans, figure)
+
+    def animate(
+        self, *, places: Iterable[tuple[float, ...]] | None = None, speed: float = 1.0
+    ) -> FuncAnimation:
+        """Return an animation; save it with ``.save("motion.gif")`` or show it in a notebook by ``.to_jshtml()``.
+
+        ``speed`` is the simulated time in s per second of the animation. ``places`` are the contact points of
+        :class:`Points`, because a trajectory does not store them. Positions between requested times are interpolated.
+        Raises ``ModuleNotFoundError`` without matplotlib.
+        """
+        from reference_model.pictures import animation_of
+
+        return animation_of(self.system, self.times, self.states, places, speed)

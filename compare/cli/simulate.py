@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import IO, TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -31,6 +33,12 @@ if TYPE_CHECKING:
 
 MOST_SAMPLES = 10_000_000
 """Limit of ``--samples``; more would exhaust the memory."""
+
+PICTURES = (".png", ".pdf", ".svg")
+"""Suffixes of the pictures that ``--plot`` draws."""
+
+PATIENCE = 2.0
+"""Time in s before a terminal shows that the engine is still at work."""
 
 simulate = typer.Typer(rich_markup_mode=None)
 
@@ -60,6 +68,14 @@ File = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Output file, .csv or .json.", show_default="CSV on standard output"),
 ]
+Plot = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help="Picture to draw, .png, .pdf or .svg; without --output nothing else is written.",
+        show_default="no picture",
+    ),
+]
 
 
 @dataclass(frozen=True)
@@ -72,6 +88,7 @@ class Request:
     samples: Samples = 4001
     tolerance: Tolerance = 1e-9
     output: File = None
+    plot: Plot = None
 
 
 @simulate.callback()
@@ -139,7 +156,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
     from compare.run.workers import Failure, Workers
     from reference_model.systems import checked_state
 
-    output = request.output
+    output, plot = request.output, request.plot
     with Workers() as workers:
         with refused():
             (chosen,) = loaded([request.engine], workers)
@@ -149,22 +166,62 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             state = checked_state(system, start)
             times = np.linspace(0.0, request.until, request.samples)
             write = write_csv if output is None else writer(output)
-            if output is not None:
-                check_file(output)
-        trajectory = workers.ask(
-            _simulated, chosen, system, state, times, request.tolerance, write is not write_csv
-        )
+            if plot is not None and plot.suffix not in PICTURES:
+                raise ValueError(f"--plot {plot.name!r}: the file name must end in {', '.join(PICTURES)}")
+            for path in filter(None, (output, plot)):
+                check_file(path)
+        phases = write is not write_csv or plot is not None
+        with _elapsed_time(f"{chosen.name} simulates until t = {request.until:g} s"):
+            trajectory = workers.ask(_simulated, chosen, system, state, times, request.tolerance, phases)
     if isinstance(trajectory, Failure):
         raise EngineFailedError(f"engine {chosen.name!r} failed: {trajectory}")
-    if output is None:
+    if plot is not None:
+        _draw(trajectory, plot)
+    if output is not None:
+        with _writing(output, "w") as stream:
+            write(trajectory, chosen.name, stream)
+    elif plot is None:
         with printing():
             write(trajectory, chosen.name, sys.stdout)
-        return
+
+
+def _draw(trajectory: Trajectory, plot: Path) -> None:
+    from matplotlib.figure import Figure
+
+    figure = trajectory.plot(Figure(figsize=(9.0, 5.2), layout="constrained"))
+    with _writing(plot, "wb") as stream:
+        figure.savefig(stream, format=plot.suffix[1:], dpi=150)
+
+
+@contextmanager
+def _writing(path: Path, mode: str) -> Iterator[IO[Any]]:
     try:
-        with replacing(output) as stream:
-            write(trajectory, chosen.name, stream)
+        with replacing(path, mode) as stream:
+            yield stream
     except OSError as error:
-        raise BadInputError(unwritable(output, error)) from None
+        raise BadInputError(unwritable(path, error)) from None
+
+
+@contextmanager
+def _elapsed_time(what: str) -> Iterator[None]:
+    """Show on a terminal for how long the engine has worked; engines do not report how far they are."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
+    progress = Progress(*columns, console=Console(stderr=True), transient=True)
+    progress.add_task(what)
+    delay = threading.Timer(PATIENCE, progress.start)
+    delay.start()
+    try:
+        yield
+    finally:
+        delay.cancel()
+        delay.join()
+        progress.stop()
 
 
 def _simulated(

@@ -229,6 +229,29 @@ def test_simulate_prints_a_table_or_writes_files(motion, tmp_path, monkeypatch, 
     assert content["solution"]["tolerance"] == 1e-9
 
 
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_simulate_draws_the_motion_in_place_of_a_table(suffix, tmp_path, capsys):
+    picture = tmp_path / f"motion{suffix}"
+    assert cli.status(["simulate", "pin", *SIMULATE, "--plot", str(picture)]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert picture.read_bytes().startswith({".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[suffix])
+
+
+def test_simulate_shows_the_elapsed_time_on_a_terminal(monkeypatch, capsys):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    monkeypatch.setenv("TERM", "xterm")
+    shown = []
+    for patience in (0.0, 60.0):
+        monkeypatch.setattr("compare.cli.simulate.PATIENCE", patience)
+        monkeypatch.setattr(sys, "stderr", Terminal())
+        assert cli.status(["simulate", "pin", *SIMULATE]) == 0
+        shown.append("fake_studies:straight simulates until t = 2 s" in sys.stderr.getvalue())
+    assert shown == [True, False]
+
+
 def test_simulate_without_settings_is_the_second_case_of_fig_5(capsys):
     assert cli.status(["simulate", "pin"]) == 0
     out, err = capsys.readouterr()

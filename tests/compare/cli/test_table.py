@@ -89,6 +89,8 @@ BAD = [
     ("export-fmu clutch --set plates=0 --output c.fmu", "plates = 0: it must lie between 1 and 1000"),
     ("reprot", "…"),
     ("simulate", "…"),
+    (f"{PIN} --plot a.gif", "--plot 'a.gif': the file name must end in .png, .pdf, .svg"),
+    (f"{PIN} --plot file/a.png", f"cannot write the file 'file/a.png': {NO_FOLDER}"),
     ("simulate pim", "…"),
     (f"{PIN} --sett a=1", "…"),
     (f"{PIN} --start 0 0", "…"),
