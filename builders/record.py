@@ -47,19 +47,28 @@ LONGEST = 0.7
 """Time of a run in s that ends its ladder,"""
 
 LEAST = 5
-"""unless the ladder has fewer runs than this, which an order of convergence needs."""
+"""unless the ladder has fewer runs than this, which an order of convergence needs,"""
+
+TOO_LONG, FEWEST = 20.0, 3
+"""Time of a run in s that ends the ladder of a slow engine, if it has this number of runs."""
 
 TOLERANCES = 1e-2 / COARSENING ** np.arange(12)
 
-PROGRAMS = {"rapier": "Rapier", "jolt": "Jolt"}
+PROGRAMS = {"rapier": "Rapier", "jolt": "Jolt", "cannon": "cannon-es", "planck": "planck"}
 """npm engines by the argument of ``examples/exec_contact.js``. The current folder must contain node_modules."""
+
+PROGRAM_SETTINGS = {
+    "contact": ("", "with its best settings"),
+    "as shipped": (" shipped", "with its default settings"),
+}
+"""Further argument and description of the settings of npm engines."""
 
 OURS = {"reference": "friction-discs", "exudyn": "exudyn", "exudyn-native": "exudyn"}
 """Our own engines, and the packages that give their versions."""
 
 NAMES = (*INSTALLED, *PROGRAMS, *OURS)
 
-PROBE_LIMIT = 60.0
+PROBE_LIMIT = 300.0
 """Time limit of a probe of the friction law in s. The row then lacks its result."""
 
 FINEST = 2e-3
@@ -87,10 +96,12 @@ def settings_of(name: str) -> dict[str, Setting]:
             found[setting.name] = Setting(engine, setting, setting.says)
         return found
     if name in PROGRAMS:
-        program = Path(__file__).parents[1] / "examples" / "exec_contact.js"
-        (engine,) = compare.engines.engines([f"exec:node {shlex.quote(str(program))} {name}"])
-        says = "with a ball on a plate, by npm's package in single precision: steps of order 1."
-        return {"contact": Setting(engine, functools.partial(by_steps, engine), says)}
+        program, found = Path(__file__).parents[1] / "examples" / "exec_contact.js", {}
+        for title, (argument, says) in PROGRAM_SETTINGS.items():
+            (engine,) = compare.engines.engines([f"exec:node {shlex.quote(str(program))} {name}{argument}"])
+            about = f"{says}, by npm's package: steps of order 1."
+            found[title] = Setting(engine, functools.partial(by_steps, engine), about)
+        return found
     (engine,) = compare.engines.engines([name])
     return {"": Setting(engine, engine.simulate)}
 
@@ -124,7 +135,7 @@ def ladder(simulate: Simulate, case: Case, *, outside: bool = False) -> list[lis
             row = (tolerance, trajectory.solution.steps, error, change, seconds, wall)
             rows.append([value and float(f"{value:.{DIGITS}g}") for value in row])
             before = found
-        if seconds > LONGEST and len(rows) >= LEAST:
+        if len(rows) >= (FEWEST if seconds > TOO_LONG else LEAST) and seconds > LONGEST:
             break
     return rows
 

@@ -10,8 +10,7 @@ Without ``--pyargs compare`` or a file of this package the plugin is inactive an
 
 from __future__ import annotations
 
-import time
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -21,8 +20,8 @@ import pytest
 
 if TYPE_CHECKING:
     from compare.claims.claim import Claim
-    from compare.claims.study import Findings, Study
-    from compare.run.workers import Failure
+    from compare.claims.study import Study
+    from compare.run.bench import Bench
 
 STUDIES = Path(__file__).with_name("studies")
 
@@ -38,14 +37,8 @@ PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
 
-LIMITS = {"quick": 12.0, "full": 120.0}
+LIMITS = {"quick": 24.0, "full": 120.0}
 """Time limits in s for one study of one engine, by level. The quick level has about seven studies."""
-
-START_UP = 60.0
-"""Additional time in s for the start of a process, which imports the engine and the study."""
-
-NO_CLAIM = "-"
-"""Selector that fits no claim."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -129,6 +122,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not _engines(config):
         return
     from compare.engines import known_name
+    from compare.run.bench import Bench
     from compare.run.runner import seed_of
     from compare.studies import studies
 
@@ -143,8 +137,8 @@ def pytest_configure(config: pytest.Config) -> None:
     except ValueError as error:
         raise pytest.UsageError(str(error)) from None
     seed = seed_of(level, config.getoption("friction_discs_seed"))
-    config.stash[_BENCH] = Bench(limit, seed, quick=level == "quick")
-    config.pluginmanager.register(config.stash[_BENCH])
+    config.stash[_COUNTS] = Counts(Bench(limit, seed, quick=level == "quick"))
+    config.pluginmanager.register(config.stash[_COUNTS])
 
 
 def _instead_of(module: str) -> str:
@@ -226,7 +220,7 @@ class ClaimTest(pytest.Item):
         from compare.claims.claim import Verdict
         from compare.run.workers import Failure
 
-        outcome = self.config.stash[_BENCH].outcome(
+        outcome = self.config.stash[_COUNTS].bench.outcome(
             self.study, self.engine, self.study.sentences()[self.sentence]
         )
         if isinstance(outcome, Failure) and outcome.unfinished:
@@ -249,65 +243,31 @@ class ClaimTest(pytest.Item):
     def _account(self, claim: Claim) -> str:
         from compare.report.page import command
 
-        return _account(claim, command(self.study.name, self.engine, self.config.stash[_BENCH].seed))
+        return _account(claim, command(self.study.name, self.engine, self.config.stash[_COUNTS].bench.seed))
 
     def _without_verdict(self, why: str, reason: str) -> NoReturn:
         self.user_properties.append((PROPERTY, why))
         pytest.skip(reason)
 
 
-class Bench:
-    """Measures one claim at a time, within the time that the other claims of its study leave.
+class Counts:
+    """A plugin that counts the results of each engine, including those from other processes, and ends the bench."""
 
-    It is also a plugin that counts the results of each engine, including those from other processes.
-    """
-
-    def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
-        from compare.run.workers import Workers
-
-        self.seed = seed
-        self._workers = Workers(1)
-        self._limit, self._quick = limit, quick
-        self._spent: defaultdict[tuple[str, str], float] = defaultdict(float)
-        self.counts: Counter[tuple[str, str]] = Counter()
-
-    def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
-        """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure.
-
-        Later claims reuse the motions of earlier claims, because one process measures them all.
-        """
-        from compare.claims.study import Findings
-        from compare.run.runner import measured
-
-        key = (study.name, engine)
-        left = self._limit - self._spent[key]
-        longer = f"the study {study.name} takes longer than {self._limit:g} s with {engine}; "
-        longer += "use --level full" if self._quick else "use a larger --study-limit"
-        if left <= 0.0:
-            return Findings(not_simulated=longer)
-        self._workers.limit = self._limit + START_UP
-        self._workers.ask(
-            measured, study, engine, (NO_CLAIM,), self.seed, owner=engine
-        )  # imports do not count
-        began, self._workers.limit = time.monotonic(), left
-        found: Findings | Failure = self._workers.ask(
-            measured, study, engine, (part,), self.seed, owner=engine
-        )
-        self._spent[key] += time.monotonic() - began
-        out_of_time = self._spent[key] >= self._limit and not isinstance(found, Findings)
-        return Findings(not_simulated=longer) if out_of_time and self._quick else found
+    def __init__(self, bench: Bench) -> None:
+        self.bench = bench
+        self.found: Counter[tuple[str, str]] = Counter()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count the result of a test."""
         if report.when == "call":
-            self.counts[_engine_of(report), _why_none(report) or report.outcome] += 1
+            self.found[_engine_of(report), _why_none(report) or report.outcome] += 1
 
     def pytest_unconfigure(self) -> None:
         """End the measuring process."""
-        self._workers.__exit__(None, None, None)
+        self.bench.close()
 
 
-_BENCH = pytest.StashKey[Bench]()
+_COUNTS = pytest.StashKey[Counts]()
 
 
 def _account(claim: Claim, again: str) -> str:
@@ -376,7 +336,7 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
     config, names = session.config, _engines(session.config)
     if not names or exitstatus != pytest.ExitCode.OK or config.getoption("collectonly"):
         return
-    counts = config.stash[_BENCH].counts
+    counts = config.stash[_COUNTS].found
     if any(counts[name, NOT_FINISHED] for name in names):
         session.exitstatus = NOTHING_SHOWN
     elif any(counts[name, "passed"] + counts[name, INCONCLUSIVE] == 0 for name in names):

@@ -1,11 +1,13 @@
-/* Rapier and Jolt as engines for friction-discs: a ball on a rotating plate, with the contact of each engine.
+/* Engines from npm for friction-discs: a pin on a rotating plate, with the contact or joint of each engine.
  *
- *     npm install @dimforge/rapier3d-compat jolt-physics
- *     friction-discs matrix --engine "exec:node exec_contact.js rapier" --engine "exec:node exec_contact.js jolt"
+ *     npm install @dimforge/rapier3d-compat jolt-physics cannon-es planck
+ *     friction-discs matrix --engine "exec:node exec_contact.js rapier" --engine "exec:node exec_contact.js jolt shipped"
  *
  * A ball with locked rotations is pressed on the plate by its weight m*g = N, with a coefficient of friction of 1. The
- * plate is kinematic and rotates at the disc speed. Springs and dampers are a force that is set before each step. Both
- * engines compute in single precision. Bodies must not sleep. These adapters simulate a pin but not a disc. */
+ * plate is kinematic and rotates at the disc speed. Springs and dampers are a force that is set before each step. With
+ * "shipped", everything else has the engine's defaults. Without it, bodies do not sleep, and the settings are those
+ * that converge best, with reasons next to them. planck is planar and has no normal load, so friction is its joint with
+ * a force limit, recommended for scenes seen from above. These adapters simulate a pin but not a disc. */
 "use strict";
 const path = require("path");
 
@@ -33,19 +35,21 @@ function support(pin, x, y, vx, vy) {
   return [-spring * (x - pin.offset) - pin.damping * vx, -spring * y - pin.damping * vy];
 }
 
+const shipped = process.argv[3] === "shipped";
+
 const engines = {
   async rapier() {
     const R = installed("@dimforge/rapier3d-compat");
     await R.init();
     const build = (pin, [x, y, vx, vy]) => {
       const world = new R.World({ x: 0, y: 0, z: -pin.friction_force / pin.mass });
-      world.numSolverIterations = 1; /* more iterations are substeps with a constant force */
+      if (!shipped) world.numSolverIterations = 1; /* more iterations are substeps with a constant force */
       const plate = world.createRigidBody(R.RigidBodyDesc.kinematicVelocityBased().setTranslation(0, 0, -PLATE[2]));
       plate.setAngvel({ x: 0, y: 0, z: pin.disc_speed }, true);
       const sticky = (shape) => shape.setFriction(1).setRestitution(0);
       world.createCollider(sticky(R.ColliderDesc.cuboid(...PLATE)), plate);
       const place = R.RigidBodyDesc.dynamic().setTranslation(x, y, RADIUS).setLinvel(vx, vy, 0);
-      const ball = world.createRigidBody(place.lockRotations().setCanSleep(false));
+      const ball = world.createRigidBody(place.lockRotations().setCanSleep(shipped));
       world.createCollider(sticky(R.ColliderDesc.ball(RADIUS).setDensity(0)), ball);
       ball.setAdditionalMass(pin.mass, true);
       const state = () => {
@@ -80,11 +84,12 @@ const engines = {
       const bodies = system.GetBodyInterface();
       system.SetGravity(new J.Vec3(0, 0, -pin.friction_force / pin.mass));
       const physics = system.GetPhysicsSettings();
-      physics.mUseBodyPairContactCache = false; /* otherwise contact positions and slip lag by up to a millimetre */
+      if (!shipped) physics.mUseBodyPairContactCache = false; /* otherwise contact positions and slip lag by up to a millimetre */
       system.SetPhysicsSettings(physics);
       const body = (shape, at, motion, layer, more) => {
         const made = new J.BodyCreationSettings(shape, new J.RVec3(...at), new J.Quat(0, 0, 0, 1), motion, layer);
-        Object.assign(made, { mFriction: 1, mRestitution: 0, mLinearDamping: 0, mAngularDamping: 0, mAllowSleeping: false });
+        made.mFriction = 1;
+        if (!shipped) Object.assign(made, { mLinearDamping: 0, mAngularDamping: 0, mAllowSleeping: false });
         more(made);
         const found = bodies.CreateBody(made);
         bodies.AddBody(found.GetID(), J.EActivation_Activate);
@@ -113,6 +118,54 @@ const engines = {
     };
     return { build, name: "Jolt", version: versionOf("jolt-physics") };
   },
+
+  async cannon() {
+    const C = installed("cannon-es");
+    const build = (pin, [x, y, vx, vy]) => {
+      const gravity = new C.Vec3(0, 0, -pin.friction_force / pin.mass);
+      const world = new C.World({ gravity, allowSleep: shipped });
+      Object.assign(world.defaultContactMaterial, { friction: 1, restitution: 0 });
+      const plate = new C.Body({ type: C.Body.KINEMATIC, shape: new C.Plane() });
+      plate.angularVelocity.set(0, 0, pin.disc_speed);
+      const place = { position: new C.Vec3(x, y, RADIUS), velocity: new C.Vec3(vx, vy, 0) };
+      const ball = new C.Body({ mass: pin.mass, shape: new C.Sphere(RADIUS), fixedRotation: true, ...place });
+      if (!shipped) ball.linearDamping = 0;
+      world.addBody(plate);
+      world.addBody(ball);
+      const state = () => [ball.position.x, ball.position.y, ball.velocity.x, ball.velocity.y];
+      const step = (h) => {
+        ball.applyForce(new C.Vec3(...support(pin, ...state()), 0));
+        /* The bound on friction is an impulse per step of mu*N*(1 s), so mu is h to correct it. */
+        if (!shipped) world.defaultContactMaterial.friction = h;
+        world.step(h);
+      };
+      return { state, step, close: () => {} };
+    };
+    return { build, name: "cannon-es", version: versionOf("cannon-es"), precision: 0 };
+  },
+
+  async planck() {
+    const P = installed("planck");
+    const build = (pin, [x, y, vx, vy]) => {
+      const world = new P.World({ gravity: { x: 0, y: 0 }, allowSleep: shipped });
+      const plate = world.createKinematicBody();
+      const at = { position: { x, y }, linearVelocity: { x: vx, y: vy } };
+      const body = world.createDynamicBody({ ...at, fixedRotation: true });
+      body.setMassData({ mass: pin.mass, center: { x: 0, y: 0 }, I: 0 });
+      world.createJoint(new P.FrictionJoint({ maxForce: pin.friction_force, maxTorque: 0 }, plate, body, { x: 0, y: 0 }));
+      const state = () => [body.getPosition().x, body.getPosition().y, body.getLinearVelocity().x, body.getLinearVelocity().y];
+      const step = (h) => {
+        const now = state();
+        const [x, y] = support(pin, ...now);
+        plate.setLinearVelocity({ x: -pin.disc_speed * now[1], y: pin.disc_speed * now[0] });
+        body.applyForceToCenter({ x, y }, true);
+        world.step(h, 8, 3);
+      };
+      return { state, step, close: () => {} };
+    };
+    return { build, name: "planck", version: versionOf("planck"), precision: 0 };
+  },
+
 };
 
 function simulate(build, { system, state, times, step: longest }) {
@@ -127,8 +180,8 @@ function simulate(build, { system, state, times, step: longest }) {
   return { states };
 }
 
-engines[process.argv[2]]().then(({ build, name, version }) => {
-  const greeting = { name, version, kinds: ["pin"], step: 2e-3, precision: 1e-6 };
+engines[process.argv[2]]().then(({ build, name, version, precision = 1e-6 }) => {
+  const greeting = { name: shipped ? `${name}, as shipped` : name, version, kinds: ["pin"], step: 2e-3, precision };
   process.stdout.write(JSON.stringify(greeting) + "\n");
   require("readline")
     .createInterface({ input: process.stdin })

@@ -1,20 +1,22 @@
 """The benchmark file that other projects can copy: exact engines pass, and wrong friction laws fail."""
 
+import inspect
 import json
 import runpy
 import subprocess
 import sys
-from functools import partial
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from reference_model import PinOnDisc, simulate
+from compare.cli import app as cli
+from compare.diagnosis import friction_benchmark
+from compare.diagnosis.run import benchmarked
+from compare.engines import reference
 
-FILE = Path(__file__).parents[1] / "examples" / "friction_benchmark.py"
+FILE = Path(friction_benchmark.__file__)
 BENCHMARK = runpy.run_path(str(FILE))
-FREE = [case for case in BENCHMARK["cases"]() if not any(case.force)]
+FREE = [case for case in BENCHMARK["cases"]() if not (any(case.force) or case.radius)]
 
 
 def stepped(case, times, box=False, strength=1.0, step=1e-3):
@@ -35,21 +37,42 @@ def stepped(case, times, box=False, strength=1.0, step=1e-3):
 
 def failures(**law):
     """Return the names of the cases that a time stepper with this friction law fails."""
-    results = BENCHMARK["run"](partial(stepped, **law))
+
+    def simulate(case, times):
+        if case.radius:
+            raise NotImplementedError
+        return stepped(case, times, **law)
+
+    results = BENCHMARK["run"](simulate)
     return {case["name"] for case in results["cases"] if case["grade"] == "fails"}
 
 
-@pytest.mark.parametrize("case", FREE, ids=lambda case: case.name)
-def test_the_exact_reference_confirms_the_closed_form(case):
-    pin = PinOnDisc(
-        mass=case.mass,
-        stiffness=case.stiffness,
-        damping=case.damping,
-        friction_force=case.friction,
-        disc_speed=case.plate_speed,
+def test_the_exact_reference_confirms_every_closed_form():
+    results = benchmarked(reference)
+    assert results["score"] == {"exact": 22, "good": 0, "fair": 0, "fails": 0, "not simulated": 0}
+
+
+def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, capsys):
+    (tmp_path / "stepper.py").write_text(
+        inspect.getsource(stepped)
+        + "\nfrom types import SimpleNamespace\nimport numpy as np\nfrom reference_model import Trajectory\n"
+        + "def simulate(pin, start, times, *, step):\n"
+        + "    case = SimpleNamespace(start=start, friction=pin.friction_force, mass=pin.mass, damping=pin.damping,\n"
+        + "        force=(pin.stiffness * pin.offset, 0.0), stiffness=pin.stiffness, plate_speed=pin.disc_speed)\n"
+        + "    states = stepped(case, times, step=step, strength=1.5)\n"
+        + "    return Trajectory(pin, np.array(times), np.array(states))\n"
+        + "simulate.step = 1e-2\n"
     )
-    states = simulate(pin, case.start, [0.0, case.until]).states
-    assert abs(BENCHMARK["measured"](case, states) - case.expected) < 1e-6 * case.scale
+    monkeypatch.chdir(tmp_path)
+    options = ["--benchmark", "--engine", "reference", "--engine", "stepper:simulate", "--output", "found"]
+    assert cli.status(["matrix", *options]) == 1
+    printed = capsys.readouterr().out
+    assert "22 exact, 0 good, 0 fair, 0 fails, 0 not simulated" in printed
+    written = json.loads((tmp_path / "found" / "benchmark.json").read_text(encoding="utf-8"))
+    grades = {case["name"]: case["grade"] for case in written["stepper:simulate"]["cases"]}
+    assert grades["ramp, μ = 0.1, tan θ = 1.01 μ"] == grades["stopping distance, 1 kg"] == "fails"
+    assert grades["heading, 10°"] == "exact"
+    assert grades["thrown spinning ring"] == "not simulated"
 
 
 def test_a_correct_time_stepper_of_first_order_fails_nothing():

@@ -29,6 +29,9 @@ class Declared:
         Parameters of the system that the claim varies.
     each : mapping
         Names and values of the members of a family; empty for a single claim.
+    duration : float
+        Approximate total duration in s of the motions of a long claim, with more weight for finer steps; 0 if the
+        claim is short. The quick level does not attempt a claim that would take too long.
 
     """
 
@@ -44,6 +47,7 @@ class Declared:
     named: Mapping[str, int | None]
     swept: tuple[str, ...]
     each: Mapping[str, Any]
+    duration: float = 0.0
 
     @property
     def of_engine(self) -> bool:

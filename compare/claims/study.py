@@ -203,6 +203,7 @@ class Study:
         named: Mapping[str, int | None] | None = None,
         swept: Sequence[str] = (),
         each: Mapping[str, Any] | Sequence[str] = (),
+        duration: float = 0.0,
     ) -> Callable[[Measure], Measure]:
         """Declare that the decorated function measures ``sentence``; the function is unchanged.
 
@@ -225,6 +226,7 @@ class Study:
                 named=dict(named or {}),
                 swept=tuple(swept),
                 each=dict(each) if isinstance(each, Mapping) else {name: name for name in each},
+                duration=duration,
             )
             for case, _ in declared.cases():
                 if (identity := declared.identity(self.name, case)) in self.identities:
@@ -342,6 +344,12 @@ class Study:
         """Return the sentences about engines, and for each its selector in ``only`` of ``measure``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
+
+    def duration(self, part: str) -> float:
+        """Return the ``duration`` in s of the claim with the selector ``part``."""
+        return next(
+            one.duration for one in self.declared for case, _ in one.cases() if part == one.part(case)
+        )
 
 
 def _is_open(found: tuple[Claim, Data] | None) -> bool:

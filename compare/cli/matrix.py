@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -24,6 +25,7 @@ from compare.cli.report import Engines
 
 if TYPE_CHECKING:
     from compare.diagnosis.row import Row
+    from compare.engines import Engine
 
 Limit = Annotated[
     float,
@@ -38,6 +40,11 @@ Recorded = Annotated[
     typer.Option("--recorded", help="Also show the recorded results of other engines."),
 ]
 
+Benchmark = Annotated[
+    bool,
+    typer.Option("--benchmark", help="Run the friction benchmark instead: closed-form cases, with a score."),
+]
+
 LIMIT = 60.0
 """Default of ``--limit`` in s."""
 
@@ -46,15 +53,18 @@ def matrix(
     engine: Engines = None,
     limit: Limit = LIMIT,
     recorded: Recorded = False,
+    benchmark: Benchmark = False,
     output: Folder = Path("matrix"),
     jobs: Jobs = None,
 ) -> int:
     """Identify the friction laws of engines and their convergence.
 
-    Short motions identify the law within seconds: blocks and discs that slide at many masses, loads and speeds, and
-    blocks that are pulled from rest. The motions of the recorded engines follow. All have four steps or tolerances.
-    The command prints findings for each engine, with the verdict first, and a table. It writes matrix.json after each
-    row, then matrix.png, and friction.png with the measured forces if a law is wrong, both also as svg.
+    Two blocks come first, one that slides and one that rests. Their motions are printed next to the exact numbers, so
+    a broken adapter is seen at once. Short motions then identify the law within seconds: blocks and discs that slide
+    at many masses, loads and speeds, and blocks that are pulled from rest. The motions of the recorded engines
+    follow. All have four steps or tolerances. The command prints findings for each engine, with the verdict first,
+    and a table. It writes matrix.json after each row, then matrix.png, and friction.png with the measured forces if a
+    law is wrong, both also as svg.
 
     The exit status is 0 if an engine is right, which includes errors that vanish with smaller steps, and 1 if it is
     wrong. It is 2 for bad input, and 3 if the verdict is open or a part was not finished in time. It is 4 if an
@@ -65,18 +75,22 @@ def matrix(
       friction-discs matrix --engine reference
       friction-discs matrix --engine reference --engine exudyn --recorded
     """
+    from compare.diagnosis.row import UNDECIDED, Row, write_pictures, write_rows
+    from compare.diagnosis.run import checked, diagnosed, recorded_rows
     from compare.run.runner import loaded
     from compare.run.workers import Workers
 
-    with refused(), Workers() as workers:
+    with refused(), Workers(1, limit) as workers:
         chosen = loaded(engine or [], workers)
         check_folder(output)
-
-    from compare.diagnosis.row import UNDECIDED, write_pictures, write_rows
-    from compare.diagnosis.run import diagnosed, recorded_rows
-
+        found = list(_first_look(checked(chosen, workers)))
+    broken = [one for one in found if isinstance(one, Row)]
+    chosen = tuple(one for one in found if not isinstance(one, Row))
+    if benchmark:
+        return _benchmark(chosen, bool(broken), limit, output)
     rows: list[Row] = list(recorded_rows()) if recorded else []
     others = len(rows)
+    rows += broken
     try:
         with measurements() as progress:
             for row in diagnosed(chosen, jobs=jobs or cores(), limit=limit, progress=progress):
@@ -85,7 +99,7 @@ def matrix(
                 with printing():
                     _print_row(row)
     except KeyboardInterrupt:
-        done = len(rows) - others
+        done = len(rows) - others - len(broken)
         return say(f"Interrupted; {done} of {len(chosen)} rows were written to {output}.", INTERRUPTED)
     pictures = write_pictures(rows, output)
     with printing():
@@ -101,6 +115,58 @@ def matrix(
         )
     open_ = [row.engine for row in rows[others:] if row.verdict == UNDECIDED]
     return say(f"undecided: {', '.join(open_)}", NOTHING_SHOWN) if open_ else FINE
+
+
+def _first_look(checked: Iterable[tuple[Engine, str | Row]]) -> Iterator[Engine | Row]:
+    """Print how two blocks move; yield each engine, or its row if it has no result."""
+    for engine, found in checked:
+        if not isinstance(found, str):
+            _print_row(found)
+            yield found
+            continue
+        if found:
+            print(f"{engine.name}: {found}", flush=True)
+        yield engine
+
+
+def _benchmark(engines: Sequence[Engine], broken: bool, limit: float, output: Path) -> int:
+    """Print and write the results of the friction benchmark; return the exit status."""
+    from compare.diagnosis.friction_benchmark import NOT_SIMULATED
+    from compare.diagnosis.run import benchmarked
+    from compare.engines import owner_of
+    from compare.output.text_files import write_text
+    from compare.run.workers import Failure, Workers
+
+    found, fails, simulated = {}, False, 0
+    with Workers(1, limit) as workers:
+        for engine in engines:
+            results = workers.ask(benchmarked, engine, owner=owner_of(engine))
+            if isinstance(results, Failure):
+                broken = True
+                print(f"{engine.name}: no result: {results}", flush=True)
+                continue
+            found[engine.name] = results
+            fails |= results["score"]["fails"] > 0
+            simulated += len(results["cases"]) - results["score"][NOT_SIMULATED]
+            with printing():
+                _print_benchmark(engine.name, results)
+            write_text(output / "benchmark.json", json.dumps(found, indent=1, ensure_ascii=False))
+    if fails:
+        return SOMETHING_DIFFERS
+    return NOTHING_SHOWN if broken else FINE if simulated else NOTHING_MEASURED
+
+
+def _print_benchmark(name: str, results: dict[str, Any]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("case", "expected", "found", "error", "grade", title=name, highlight=False)
+    for case in results["cases"]:
+        numbers = ("" if number is None else f"{number:.6g}" for number in (case["expected"], case["value"]))
+        error = "" if case["error"] is None else f"{case['error']:.1g}"
+        table.add_row(case["name"], *numbers, error, case["grade"])
+    Console(highlight=False).print(table)
+    print(", ".join(f"{number} {grade}" for grade, number in results["score"].items()))
 
 
 def _print_row(row: Row) -> None:

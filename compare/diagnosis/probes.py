@@ -51,6 +51,20 @@ FEWEST_PANELS = 4
 """The same at the coarsest rung, because longer steps than an interval are not possible."""
 
 
+CHECKED_FOR = 1.0
+"""Duration in s of the first check."""
+
+
+def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return how far a block slides and how far a block moves that should rest: each found and exact, in m."""
+    pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
+    times = (0.0, CHECKED_FOR)
+    slid = engine.simulate(SLIDE, sliding, times).states[-1]
+    exact = simulate(SLIDE, sliding, times, tolerance=1e-12).states[-1]
+    moved = engine.simulate(pulled, (0.0,) * 4, times).states[-1]
+    return (math.hypot(*slid[:2]), math.hypot(*exact[:2])), (math.hypot(*moved[:2]), 0.0)
+
+
 # --- Friction force against mass, load, speed, heading and place.
 
 DRAWS, TURNING_DRAWS = 48, 24

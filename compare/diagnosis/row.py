@@ -78,10 +78,12 @@ class Row:
         support_right = not any(remark.wrong for remark in found)
         if law is not None and not any(remark.about == MASS for remark in found):
             found += wording.of_law(law, self.scales, support_right, self._refined)
+        explained = any(remark.wrong for remark in found)
+        forced = self.scales is None or not blind(self.scales)
+        open_ = law is None or law.coulomb or (law.fits and not law.sure)
+        if self.creep is not None and forced and open_:
+            found += wording.of_creep(self.creep, self._refined, self._least_speed)
         if law is None or law.coulomb:
-            explained = any(remark.wrong for remark in found)
-            if self.creep is not None and not (self.scales is not None and blind(self.scales)):
-                found += wording.of_creep(self.creep, self._refined, self._least_speed)
             if self.history is not None and support_right:
                 explained = explained or any(remark.wrong for remark in found)
                 found += wording.of_history(self.history, explained, self._least_speed)

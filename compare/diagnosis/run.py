@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
 from compare.claims.as_json import from_json
 from compare.claims.error_estimates import ROUNDING
+from compare.diagnosis import friction_benchmark
 from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.ladder import RUNGS, falling
+from compare.diagnosis.probes import CHECKED_FOR, first_check
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
-from reference_model.systems import FloatArray
+from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
 IN_SHORT = 20.0
 """Time limit in s for each part of a short diagnosis."""
@@ -59,6 +61,34 @@ def diagnosed(
             left[name] -= 1
             if left[name] == 0:
                 yield rows[name]
+
+
+def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
+    """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
+
+    If the engine has no result, measuring it is useless, and its row takes the place of the sentence. The sentence
+    is "" for an engine that does not simulate blocks.
+    """
+    for engine in engines:
+        found = workers.ask(_first_check, engine, owner=owner_of(engine))
+        if isinstance(found, str):
+            yield engine, ""
+        elif isinstance(found, Failure):
+            yield engine, _with(_empty(engine), "two blocks", found)
+        else:
+            (slid, exact), (moved, rest) = found
+            text = f"a block slides {slid:.7g} m in {CHECKED_FOR:g} s (exact: {exact:.7g} m), "
+            yield (
+                engine,
+                f"{text}and a block under half of the limit μN moves {moved:.2g} m (exact: {rest:g} m)",
+            )
+
+
+def _first_check(engine: Engine) -> Any:
+    try:
+        return first_check(engine)
+    except UnsupportedSystemError as error:
+        return str(error)
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
@@ -104,6 +134,38 @@ def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     if isinstance(found, Motion):
         return replace(row, motions=row.motions | {part: found})
     return replace(row, **{part: found})  # the names in PROBES are fields of the row
+
+
+SLACK = 1e-6
+"""Stiffness in N/m of a spring so long that it pulls with a constant force."""
+
+
+def benchmarked(engine: Engine) -> dict[str, Any]:
+    """Return the engine's results in ``friction_benchmark``; a constant force is that of a long, weak spring."""
+
+    def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
+        x, y, vx, vy = case.start
+        common = {"mass": case.mass, "damping": case.damping, "friction_force": case.friction}
+        common |= {"disc_speed": case.plate_speed, "stiffness": case.stiffness}
+        start: tuple[float, ...] = case.start
+        if case.radius:
+            ring = {"contact_radius": case.radius, "polar_inertia": case.mass * case.radius**2}
+            system: System = DiscOnDisc(
+                **common, **ring, shaft_damping=0.0, shaft_speed=0.0, contact_points=None
+            )
+            start = (x, y, 0.0, vx, vy, case.spin)
+        elif case.force[0]:
+            system = PinOnDisc(**common | {"stiffness": SLACK}, offset=case.force[0] / SLACK)
+        else:
+            system = PinOnDisc(**common)
+        try:
+            states = engine.simulate(system, start, times).states
+        except UnsupportedSystemError as error:
+            raise NotImplementedError(str(error)) from None
+        half = len(start) // 2
+        return [(*state[:2], *state[half : half + 2]) for state in states.tolist()]
+
+    return friction_benchmark.run(moved)
 
 
 # --- Rows from recordings of foreign engines.

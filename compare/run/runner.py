@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from compare.output.outside_text import printable
 from compare.run.provenance import engine_stamp, engine_version
 from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
+from reference_model.systems import PinOnDisc
 
 
 @dataclass
@@ -256,6 +258,23 @@ def measured(
     if not isinstance(findings, Findings):
         raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
     return replace(findings, not_simulated=printable(findings.not_simulated))
+
+
+PACED = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.1, disc_speed=0.0, offset=0.0)
+
+PACE_STEPS = 500
+
+
+def pace(name: str) -> float:
+    """Return the wall-clock time for a second of motion in the engine ``name``; 0 if it has no fixed step."""
+    (engine,) = engines([name])
+    if engine.step is None:
+        return 0.0
+    start, lasts = (1.0, 0.0, 0.0, 0.0), PACE_STEPS * engine.step
+    engine.simulate(PACED, start, (0.0, lasts))  # the first call may compile
+    began = time.perf_counter()
+    engine.simulate(PACED, start, (0.0, lasts))
+    return (time.perf_counter() - began) / lasts
 
 
 # --- Engines by name. Their modules are imported in another process, because an import may end its process.

@@ -46,6 +46,12 @@ def picky(system, *arguments, tolerance=1e-9):
     assert system.disc_speed < 2.0, "no fast discs"
     return reference_model.simulate(system, *arguments, tolerance=tolerance)
 
+def slow(system, *arguments, step):
+    if system.disc_speed == 0.0:
+        time.sleep(0.3)
+    return reference_model.simulate(system, *arguments, tolerance=1e-9 * (step / 1e-3) ** 2)
+slow.step = 1e-3
+
 def sliding(*arguments, tolerance=1e-9):
     return reference_model.simulate(*arguments, tolerance=tolerance)
 sliding.sticks = False
@@ -203,6 +209,16 @@ def test_a_study_out_of_time_fails_no_claim(options, tmp_path, monkeypatch):
     reason = f"the study fig04 takes longer than 1 s with mine:hanging; {remedy}"
     assert f"not attempted: {reason} ({len(cases) - len(unfinished)} claims)" in output
     assert status == (NOTHING_MEASURED if options else NOTHING_SHOWN)
+
+
+def test_the_quick_level_does_not_attempt_claims_that_would_take_too_long(tmp_path):
+    _, output, cases = judge(tmp_path, "whirl-stability", "mine:slow", options=("--level", "quick"))
+    # 0.3 s for half a second of motion, and motions of 13,000, 2,700 and 2,000 s
+    said = re.findall(r"would take about ([0-9.e+]+) s with mine:slow; use --level full \((\d) claim", output)
+    assert [(pytest.approx(float(time), rel=0.2), count) for time, count in said] == [
+        (7800.0, "2"), (1600.0, "2"), (1200.0, "1")
+    ]  # fmt: skip
+    assert "passed" in {tag for tag, _ in cases.values()}  # short claims of the study are measured
 
 
 def test_an_exception_costs_only_the_claims_that_need_the_motion(tmp_path):

@@ -12,6 +12,8 @@ Settings and their reasons:
 - The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
+As shipped, the solver, the cone, damping and joint speeds keep their defaults; only the motors are off.
+
 Limits: a step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world
 axis, which is up to √2 times too large at any step. With the cone on, friction on a disc deviates from the direction
 of slip, because each component of the slip is divided by its own mobility: a relative error of R²·m/J at any step.
@@ -59,13 +61,15 @@ class _World(Model):
         self.load = system.friction_force / len(self.arms)
         self.native = friction != "our force"
         self.client = pybullet.connect(pybullet.DIRECT)
-        pybullet.setPhysicsEngineParameter(
-            numSolverIterations=ITERATIONS,
-            solverResidualThreshold=0.0,
-            contactSlop=0.0,
-            enableConeFriction=int(friction == "cone"),
-            physicsClientId=self.client,
-        )
+        self.shipped = friction == "as shipped"
+        if not self.shipped:
+            pybullet.setPhysicsEngineParameter(
+                numSolverIterations=ITERATIONS,
+                solverResidualThreshold=0.0,
+                contactSlop=0.0,
+                enableConeFriction=int(friction == "cone"),
+                physicsClientId=self.client,
+            )
         # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
@@ -110,9 +114,10 @@ class _World(Model):
             physicsClientId=self.client,
         )
         # Settings of the whole body go to its base: in a call for a link, they would discard the link's own settings.
-        whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
-        awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
-        pybullet.changeDynamics(body, -1, activationState=awake, physicsClientId=self.client, **whole)
+        if not self.shipped:
+            whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
+            awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
+            pybullet.changeDynamics(body, -1, activationState=awake, physicsClientId=self.client, **whole)
         for link, (_, inertia) in enumerate(links):
             own = {"jointDamping": 0.0, "lateralFriction": 1.0, "localInertiaDiagonal": [inertia] * 3}
             pybullet.changeDynamics(body, link, physicsClientId=self.client, **own)
@@ -167,6 +172,13 @@ simulate_with_box = Setting(
     {"friction": "box"},
     linear=False,
 )
+simulate_as_shipped = Setting(
+    "as shipped",
+    "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
+    _World,
+    {"friction": "as shipped"},
+    linear=False,
+)
 simulate_with_our_force = Setting(
     "our force",
     "with the force −μN·v/max(|v|, ε) in place of contact, set before each step, of order 1. ε is the change of slip "
@@ -175,4 +187,4 @@ simulate_with_our_force = Setting(
     {"friction": "our force"},
     linear=False,
 )
-SETTINGS = (simulate_with_cone, simulate_with_box, simulate_with_our_force)
+SETTINGS = (simulate_with_cone, simulate_with_box, simulate_as_shipped, simulate_with_our_force)

@@ -21,7 +21,7 @@ from typing import Any
 import pymunk
 
 from compare.engines.live.setting import Setting, TopDown, inertia_of
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import DiscOnDisc, FloatArray, System
 
 ITERATIONS = 50
 
@@ -30,16 +30,22 @@ class _Space(TopDown):
     engine = "Chipmunk"
     method = f"pymunk {pymunk.version}, semi-implicit Euler, pivot joints with a greatest force"
 
+    def __init__(self, system: System, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.shipped = shipped
+        super().__init__(system, state, tolerance)
+
     def build(self, state: FloatArray) -> None:
         system, self.space = self.system, pymunk.Space()
-        self.space.iterations = ITERATIONS
+        if not self.shipped:
+            self.space.iterations = ITERATIONS
         disc = isinstance(system, DiscOnDisc)
         self.body = pymunk.Body(system.mass, inertia_of(system) if disc else float("inf"))
         places, speeds = state.reshape(2, -1).tolist()
         self.body.position, self.body.velocity = tuple(places[:2]), tuple(speeds[:2])
         if disc:
             self.body.angle, self.body.angular_velocity = places[2], speeds[2]
-        self.body.velocity_func = self._change_velocity
+        if not self.shipped:
+            self.body.velocity_func = self._change_velocity
         self.space.add(self.body)
         self.partners = [pymunk.Body(body_type=pymunk.Body.KINEMATIC) for _ in self.arms]
         for arm, partner in zip(self.arms, self.partners, strict=True):
@@ -57,6 +63,8 @@ class _Space(TopDown):
         self.body.force, self.body.torque = (force.real, force.imag), torque
 
     def step(self, h: float) -> None:
+        if self.shipped:
+            self.load_now()
         self.space.step(h)
 
     def _change_velocity(self, body: Any, gravity: Any, damping: float, h: float) -> None:
@@ -70,4 +78,11 @@ simulate_with_pivots = Setting(
     _Space,
     linear=False,
 )
-SETTINGS = (simulate_with_pivots,)
+simulate_as_shipped = Setting(
+    "as shipped",
+    "by pivot joints with a force limit, with ten iterations, its default, and forces set before each step.",
+    _Space,
+    {"shipped": True},
+    linear=False,
+)
+SETTINGS = (simulate_with_pivots, simulate_as_shipped)

@@ -33,6 +33,8 @@ SOLVER_TOLERANCE = 1e-10
 SHARE = 0.01
 """Share of mass and inertia in the feet."""
 
+SHIPPED = "as shipped"
+
 PLATE = 1e4
 """Half the width of the plate in m."""
 
@@ -76,11 +78,12 @@ class _Model(Model):
 def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
     """Return the world and the joint of the pin or disc, with coordinates x, y and angle."""
     dynamics, world = dartpy.dynamics, dartpy.simulation.World()
-    asleep = dartpy.simulation.DeactivationOptions()
-    asleep.mEnabled = False
-    world.setDeactivationOptions(asleep)
+    if solver != SHIPPED:
+        asleep = dartpy.simulation.DeactivationOptions()
+        asleep.mEnabled = False
+        world.setDeactivationOptions(asleep)
+        _choose(solver, world.getConstraintSolver())
     world.setCollisionDetector(dartpy.simulation.CollisionDetectorType.DART)
-    _choose(solver, world.getConstraintSolver())
     inertia, n, share = inertia_of(system), len(arms), SHARE if solver else 0.0
     foot = share * min(system.mass, inertia / abs(arms[0]) ** 2 if arms[0] else math.inf) / n
     spin = share * inertia / n
@@ -153,7 +156,13 @@ simulate_fbf = Setting(
     "FBF", "with the cone, by forward-backward-forward splitting.", _Model, {"solver": "fbf"}
 )
 simulate_dantzig = Setting(
-    "Dantzig", "with a box in place of the cone, by pivoting: DART's default.", _Model, {"solver": "dantzig"}
+    "Dantzig", "with a box in place of the cone, by pivoting.", _Model, {"solver": "dantzig"}
+)
+simulate_as_shipped = Setting(
+    "as shipped",
+    "with all its defaults: Dantzig's solver, a box, another solver if it fails, and slow bodies fall asleep.",
+    _Model,
+    {"solver": SHIPPED},
 )
 simulate_pgs = Setting(
     "PGS", "with a box in place of the cone, by projected Gauss–Seidel.", _Model, {"solver": "pgs"}
@@ -164,4 +173,11 @@ simulate_with_our_force = Setting(
     "friction in a step; steps would be unstable with half of it.",
     _Model,
 )
-SETTINGS = (simulate_nsgs, simulate_fbf, simulate_dantzig, simulate_pgs, simulate_with_our_force)
+SETTINGS = (
+    simulate_nsgs,
+    simulate_fbf,
+    simulate_dantzig,
+    simulate_pgs,
+    simulate_as_shipped,
+    simulate_with_our_force,
+)

@@ -225,8 +225,8 @@ simulate_sap = Setting(
 )
 simulate_lagged = Setting(
     "lagged",
-    'with Drake\'s default and steps of order 1. It does not improve below a tolerance of 1e-5. "similar" differs '
-    "from it only if normal forces change, so its results are the same here.",
+    "with Drake's default, as shipped, and steps of order 1. It does not improve below a tolerance of 1e-5. "
+    '"similar" differs from it only if normal forces change, so its results are the same here.',
     _Motion,
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,

@@ -48,6 +48,7 @@ INSTALLED = {
             "ellipse": "simulate_elliptic",
             "ellipse-rk4": "simulate_elliptic_rk4",
             "pyramid": "simulate_pyramidal",
+            "shipped": "simulate_as_shipped",
             "our-force": "simulate_with_our_force",
         },
     ),
@@ -55,7 +56,12 @@ INSTALLED = {
         "Bullet",
         "pybullet",
         "Linux; elsewhere pip compiles it",
-        {"cone": "simulate_with_cone", "box": "simulate_with_box", "our-force": "simulate_with_our_force"},
+        {
+            "cone": "simulate_with_cone",
+            "box": "simulate_with_box",
+            "shipped": "simulate_as_shipped",
+            "our-force": "simulate_with_our_force",
+        },
     ),
     "drake": Installed(
         "Drake",
@@ -79,14 +85,27 @@ INSTALLED = {
             "fbf": "simulate_fbf",
             "dantzig": "simulate_dantzig",
             "pgs": "simulate_pgs",
+            "shipped": "simulate_as_shipped",
             "our-force": "simulate_with_our_force",
         },
     ),
     "chipmunk": Installed(
-        "Chipmunk", "pymunk", "Linux, macOS and Windows", {"pivot": "simulate_with_pivots"}
+        "Chipmunk",
+        "pymunk",
+        "Linux, macOS and Windows",
+        {"pivot": "simulate_with_pivots", "shipped": "simulate_as_shipped"},
     ),
     "box2d": Installed(
-        "Box2D", "box2d", "Linux, macOS and Windows", {"friction-joint": "simulate_with_friction_joints"}
+        "Box2D",
+        "box2d",
+        "Linux, macOS and Windows",
+        {"friction-joint": "simulate_with_friction_joints", "shipped": "simulate_as_shipped"},
+    ),
+    "newton": Installed(
+        "Newton",
+        "newton",
+        "Linux, macOS and Windows",
+        {"xpbd": "simulate_xpbd", "semi-implicit": "simulate_semi_implicit"},
     ),
 }
 """Engines by their names on the command line; the adapter's module is ``<name>_engine``."""

@@ -15,6 +15,10 @@ Settings and their reasons:
 - The solver's own tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0,
   and the iterations are limited. A pyramid needs more of them, with many points far more than an ellipse.
 
+As shipped, the contact has all of MuJoCo's defaults, such as a pyramid and a relaxation in 20 ms. The feet weigh
+9.81 m/s² times half of the mass. A plate at rest is fixed. One that turns is only a hundred times heavier than the
+body, because of the solver's tolerance, and its speed is set again before each step.
+
 Limits: a pyramid's friction acts along the nearest world axis, up to 45° off, at any step. With the pyramid or with
 Runge–Kutta steps, a sticking pin creeps in proportion to the step; with the ellipse, to its square. The continuous
 ring is not supported.
@@ -22,8 +26,10 @@ ring is not supported.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -32,15 +38,37 @@ import numpy as np
 from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-FRICTION_COEFFICIENT = 1e-5
+LEAST_COEFFICIENT = 1e-5
 """Smallest μ that MuJoCo accepts."""
 
-SIZE = 1e6
-"""Size of feet and plate in m, larger than a foot sinks or rises. It has no effect in the plane."""
+
+@dataclass(frozen=True)
+class _Contact:
+    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping.
+
+    μ follows from ``gravity`` in m/s², but is at least ``LEAST_COEFFICIENT``.
+    """
+
+    option: str = ""
+    friction_rate: float = 0.0
+    gravity: float = 9.81
+    size: float = 1.0
+    plate: float = 1e2
+    pair: str = ""
+
+    @classmethod
+    def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
+        """Return contact that converges to Coulomb's law with the smallest μ that MuJoCo accepts.
+
+        Feet and plate are larger than a foot sinks or rises, which has no effect in the plane.
+        """
+        pair = 'margin="5e5" solimp="0.9999 0.9999 1 0.5 2" solref="0 -1" solreffriction="0 -1"'
+        option = f'cone="{cone}" iterations="{iterations}" tolerance="0"'
+        return cls(option, friction_rate, gravity=math.inf, size=1e6, plate=1e12, pair=pair)
 
 
 class _Model(Model):
-    """MuJoCo with contact, b·h = ``friction_rate``, or with our force if there is no ``cone``."""
+    """MuJoCo with contact, or with our force if there is none."""
 
     engine = "MuJoCo"
 
@@ -51,20 +79,19 @@ class _Model(Model):
         _: float,
         *,
         integrator: str = "Euler",
-        cone: str = "",
-        friction_rate: float = 0.0,
-        iterations: int = 0,
+        contact: _Contact | None = None,
+        friction: str = "our force",
     ) -> None:
-        self.system, self.cone, self.friction_rate, self.half = system, cone, friction_rate, len(state) // 2
+        self.system, self.contact, self.half = system, contact, len(state) // 2
         self.arms = contact_arms("MuJoCo", system)
         self.stages = 4 if integrator == "RK4" else 1
-        friction = f"{cone} cone" if cone else "our force"
         self.method = f"MuJoCo {mujoco.__version__}, {integrator}, {friction}"
-        option = f'integrator="{integrator}"' + (f' cone="{cone}" iterations="{iterations}"' if cone else "")
-        self.model = mujoco.MjModel.from_xml_string(_xml(system, self.arms, option, native=bool(cone)))
+        self.turns = contact is not None and (contact.friction_rate > 0.0 or system.disc_speed != 0.0)
+        option = f'integrator="{integrator}"'
+        self.model = mujoco.MjModel.from_xml_string(_xml(system, self.arms, option, contact, self.turns))
         self.data = mujoco.MjData(self.model)
         self.data.qpos[: self.half], self.data.qvel[: self.half] = np.split(state, 2)
-        if cone:
+        if self.turns:
             self.data.qvel[-1] = system.disc_speed
         if isinstance(system, DiscOnDisc):
             self.data.qfrc_applied[2] = system.shaft_damping * system.shaft_speed
@@ -72,10 +99,16 @@ class _Model(Model):
     def advance(self, h: float, number: int) -> FloatArray:
         model, data = self.model, self.data
         model.opt.timestep = h
-        if self.cone:
+        contact = self.contact
+        if contact is not None and contact.friction_rate:
             model.pair_solref[:, 1] = -1.0 / h
-            model.pair_solreffriction[:, 1] = -self.friction_rate / h
+            model.pair_solreffriction[:, 1] = -contact.friction_rate / h
             mujoco.mj_step(model, data, nstep=number)
+        elif contact is not None:
+            for _ in range(number):
+                if self.turns:
+                    data.qvel[-1] = self.system.disc_speed
+                mujoco.mj_step(model, data)
         else:
             self.epsilon = 0.5 * h * self.system.friction_force * mobility(self.system)
             with _passive_force(self._add_friction):
@@ -91,17 +124,19 @@ class _Model(Model):
         data.qfrc_passive += our_friction(self.system, self.arms, state, self.epsilon)
 
 
-def _xml(system: System, arms: list[complex], option: str, *, native: bool) -> str:
+def _xml(system: System, arms: list[complex], option: str, contact: _Contact | None, turns: bool) -> str:
     """Return the model, with joints in this order: pin or disc, feet, plate."""
     disc = isinstance(system, DiscOnDisc)
     inertia = inertia_of(system)
-    feet = arms if native else []
+    feet, touch = (arms, contact) if contact else ([], _Contact())
+    size, rigid = touch.size, touch.friction_rate > 0.0 or not contact
     # The feet take half of the largest mass that mass and inertia allow.
     foot = min(system.mass, inertia / abs(arms[0]) ** 2 if disc else system.mass) / 2.0 / len(arms)
     spin = 0.1 * inertia / len(arms)
     mass = system.mass - len(feet) * foot
     inertia -= sum(foot * abs(arm) ** 2 + spin for arm in feet)
-    weight = system.friction_force / FRICTION_COEFFICIENT / len(arms)
+    load = system.friction_force / len(arms)
+    mu = max(LEAST_COEFFICIENT, load / (foot * touch.gravity))
     support = f'stiffness="{system.stiffness!r}" damping="{system.damping!r}"'
     turn = (
         f'<joint type="hinge" axis="0 0 1" damping="{system.shaft_damping!r}"/>'
@@ -109,25 +144,26 @@ def _xml(system: System, arms: list[complex], option: str, *, native: bool) -> s
         else ""
     )
     bodies = "".join(
-        f"""<body pos="{arm.real!r} {arm.imag!r} {SIZE}"><joint type="slide" axis="0 0 1"/>
+        f"""<body pos="{arm.real!r} {arm.imag!r} {size}"><joint type="slide" axis="0 0 1"/>
             <inertial pos="0 0 0" mass="{foot!r}" diaginertia="{spin!r} {spin!r} {spin!r}"/>
-            <geom name="{i}" type="sphere" size="{SIZE}" contype="0"/></body>"""
+            <geom name="{i}" type="sphere" size="{size}" contype="0"/></body>"""
         for i, arm in enumerate(feet)
     )
     pairs = "".join(
-        f"""<pair geom1="plate" geom2="{i}" condim="3" margin="{0.5 * SIZE}" solimp="0.9999 0.9999 1 0.5 2"
-            friction="{FRICTION_COEFFICIENT} {FRICTION_COEFFICIENT}" solref="0 -1" solreffriction="0 -1"/>"""
+        f'<pair geom1="plate" geom2="{i}" condim="3" friction="{mu} {mu}" {touch.pair}/>'
         for i in range(len(feet))
     )
-    plate = f"""<body pos="0 0 {-SIZE}"><joint type="hinge" axis="0 0 1" armature="{1e12 * system.mass}"/>
-        <geom name="plate" type="cylinder" size="{1e3 * SIZE} {SIZE}" mass="1"/></body>"""
+    hinge = f'<joint type="hinge" axis="0 0 1" armature="{touch.plate * system.mass}"/>' if turns else ""
+    plate = f"""<body pos="0 0 {-size}">{hinge}
+        <geom name="plate" type="cylinder" size="{1e3 * size} {size}" mass="1"/></body>"""
+    flag = '<flag refsafe="disable"/>' if rigid else ""
     return f"""<mujoco>
-        <option {option} tolerance="0" gravity="0 0 {-weight / foot!r}"><flag refsafe="disable"/></option>
+        <option {option} {touch.option} gravity="0 0 {-load / (mu * foot)!r}">{flag}</option>
         <worldbody>
             <body><inertial pos="0 0 0" mass="{mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
                 <joint type="slide" axis="1 0 0" springref="{system.offset!r}" {support}/>
                 <joint type="slide" axis="0 1 0" {support}/>{turn}{bodies}</body>
-            {plate if native else ""}
+            {plate if contact else ""}
         </worldbody>
         <contact>{pairs}</contact></mujoco>"""
 
@@ -147,20 +183,26 @@ simulate_elliptic = Setting(
     "elliptic cone",
     "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
-    {"cone": "elliptic", "friction_rate": 2.0, "iterations": 10},
+    {"contact": _Contact.rigid("elliptic", 2.0, 10), "friction": "elliptic cone"},
 )
 simulate_elliptic_rk4 = Setting(
     "elliptic cone, RK4",
     "with the elliptic cone and Runge–Kutta steps with b = 1e4/h, which is Coulomb's law except in stick. In stick, "
     "the friction force alternates between steps, and the error is of order 1.",
     _Model,
-    {"integrator": "RK4", "cone": "elliptic", "friction_rate": 1e4, "iterations": 10},
+    {"integrator": "RK4", "contact": _Contact.rigid("elliptic", 1e4, 10), "friction": "elliptic cone"},
 )
 simulate_pyramidal = Setting(
     "pyramidal cone",
-    "with the pyramidal cone, MuJoCo's default. It converges to the motion with friction along an axis.",
+    "with MuJoCo's default pyramid in rigid contact. It converges to the motion with friction along an axis.",
     _Model,
-    {"cone": "pyramidal", "friction_rate": 1.0, "iterations": 100},
+    {"contact": _Contact.rigid("pyramidal", 1.0, 100), "friction": "pyramidal cone"},
+)
+simulate_as_shipped = Setting(
+    "as shipped",
+    "with all its defaults: the pyramid, and soft contact that creeps under any load at any step.",
+    _Model,
+    {"contact": _Contact(), "friction": "as shipped"},
 )
 simulate_with_our_force = Setting(
     "our force",
@@ -169,4 +211,10 @@ simulate_with_our_force = Setting(
     _Model,
     {"integrator": "RK4"},
 )
-SETTINGS = (simulate_elliptic, simulate_elliptic_rk4, simulate_pyramidal, simulate_with_our_force)
+SETTINGS = (
+    simulate_elliptic,
+    simulate_elliptic_rk4,
+    simulate_pyramidal,
+    simulate_as_shipped,
+    simulate_with_our_force,
+)

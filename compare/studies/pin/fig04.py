@@ -108,6 +108,7 @@ def shift(engine: Engine, speed: float, speeds: Sequence[float] = SPEEDS) -> Mea
     note="All values are divided by X0 and extrapolated in X0². Model error: the change from the extrapolation by "
     "the two larger offsets.",
     each=AT_SPEEDS,
+    duration=800.0,
 )
 def response(engine: Engine, speed: float) -> Measured:
     pin = pin_at(speed, OFFSETS[-1])
@@ -130,6 +131,7 @@ def response(engine: Engine, speed: float) -> Measured:
     kind="order",
     resolution=0.05,
     each=AT_SPEEDS,
+    duration=800.0,
 )
 def order(engine: Engine, speed: float) -> Measured:
     means = over_offset(engine, speed)
@@ -162,6 +164,7 @@ def order(engine: Engine, speed: float) -> Measured:
     "extrapolation by the two larger offsets.",
     implied_by=order,
     each=AT_SPEEDS,
+    duration=800.0,
 )
 def limit(engine: Engine, speed: float) -> Measured:
     pin = pin_at(speed, OFFSETS[-1])

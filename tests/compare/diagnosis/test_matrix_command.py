@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 
 import pytest
 
@@ -38,6 +39,13 @@ def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, m
     assert cli.status(["matrix", "--engine", f"of_{name}:{name}", "--output", str(output)]) == status
     printed = capsys.readouterr().out
     assert f"  {said}" in printed
+    # an oblique slide from 1 m/s with μN/m = 0.2 m/s², which a box brakes along each axis separately
+    first = re.search(
+        rf"{name}: a block slides ([0-9.]+) m in 1 s \(exact: ([0-9.]+) m\), .* moves 0 m", printed
+    )
+    assert first
+    assert float(first[2]) == pytest.approx(0.9, abs=1e-5)
+    assert (first[1] == first[2]) == (name == "simulate")
     (row,) = json.loads((output / "matrix.json").read_text(encoding="utf-8"))
     assert row["version"] == ("3" if name == "simulate" else "")
     assert row["law"]["shape"] == (
@@ -54,6 +62,15 @@ def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     assert cli.status(["matrix", "--engine", "refusing:simulate", "--output", "found"]) == 4
     assert "none of these motions can be simulated by refusing:simulate" in capsys.readouterr().err
+
+
+def test_a_broken_adapter_is_seen_first_and_not_measured(tmp_path, monkeypatch, capsys):
+    (tmp_path / "broken.py").write_text("def simulate(system, *arguments, **accuracy):\n    system.gravity\n")
+    monkeypatch.chdir(tmp_path)
+    assert cli.status(["matrix", "--engine", "broken:simulate", "--output", "found"]) == 3
+    assert "no result for two blocks: AttributeError: 'PinOnDisc' object has no attribute 'gravity'" in (
+        capsys.readouterr().out
+    )
 
 
 def test_probes_come_first_among_the_parts():

@@ -254,6 +254,9 @@ COLOURS = {
     "Box2D": "#b5a400",
     "Rapier": "#c2185b",
     "Jolt": "#5e35b1",
+    "Newton": "#00796b",
+    "cannon-es": "#ef6c00",
+    "planck": "#607d8b",
 }
 
 MARKERS = "os^Dv"

@@ -183,6 +183,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     resolution=1e-9 * whirl_radius(theory.PIN),
     note=SETTLING,
     swept=("disc_speed",),
+    duration=1.3e4,
 )
 def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     found = whirls(engine, speeds)
@@ -201,6 +202,7 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     resolution=1e-9 * K,
     note=SETTLING,
     swept=("disc_speed",),
+    duration=1.3e4,
 )
 def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     found = whirls(engine, speeds)
@@ -308,6 +310,7 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     note=f"Central differences of the motion over {theory.FLOW_DURATION:g} s, in the frame that turns with the "
     "whirl, extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
     swept=("disc_speed", "damping"),
+    duration=2.7e3,
 )
 def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
     if engine.contact_only:
@@ -326,6 +329,7 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.P
     note="Is the real part of each measured eigenvalue below zero, except for the one that belongs to the phase?",
     implied_by=eigenvalues,
     swept=("disc_speed", "damping"),
+    duration=2.7e3,
 )
 def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
     if engine.contact_only:
@@ -342,6 +346,7 @@ def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS
     note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {theory.DEVIATION:g}·ρ_c; half the difference of the "
     "radii over a. Model error: the change at twice the amplitude a, which is three times the next order of the "
     "deviation.",
+    duration=2e3,
 )
 def history(engine: Engine) -> Measured | None:
     if engine.contact_only:
