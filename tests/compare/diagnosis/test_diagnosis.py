@@ -13,7 +13,8 @@ from stepping import box, chattering, cone, engine, pyramid, stepped, weaker_alo
 from compare.diagnosis import findings, run
 from compare.diagnosis.findings import MOTIONS, PROBES, Motion, motion
 from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
-from compare.diagnosis.laws import CONE, Friction, fitted
+from compare.diagnosis.laws import CONE, Friction, fitted, smoothing_of
+from compare.diagnosis.probes import PULLS
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
@@ -238,6 +239,10 @@ def test_a_law_is_uncertain_if_another_fits_equally_well():
     slips = np.vstack((slips, [0.6, 0.8]))
     found = fitted(np.hstack((-slips, slips)), 1e-9)
     assert (found.shape, found.sure) == (CONE, True)
+
+
+def test_creep_that_does_not_depend_on_the_pull_is_no_known_regularisation():
+    assert smoothing_of(np.full(len(PULLS), 1e-3))[0] == ""
 
 
 def test_a_regularisation_that_falls_with_the_step_is_not_wrong():

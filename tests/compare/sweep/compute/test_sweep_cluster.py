@@ -22,42 +22,43 @@ from compare.sweep.quantities import Axis
 from compare.sweep.store import SweepStore
 
 
-def test_results_survive_a_killed_driver_and_a_killed_worker(undisturbed, tmp_path, monkeypatch, capsys):
+def test_results_survive_a_killed_driver_a_killed_worker_and_a_lost_scheduler(
+    undisturbed, tmp_path, monkeypatch, capsys
+):
     monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
-    url = f"file://{tmp_path}"
+    first, other = tmp_path / "first", tmp_path / "other"
+    first.mkdir()
+    url = f"file://{first}"
     with cluster(tmp_path, workers=2, signalled="SIGKILL 0 1") as local:
-        driver = long_sweep(url, "--scheduler", local.address, signalled=("SIGKILL", 0, 11))
+        on_cluster = ("--scheduler", local.address)
+        driver = long_sweep(url, *on_cluster, signalled=("SIGKILL", 0, 11))
         assert finished_by(driver)[0] == -signal.SIGKILL
-        written = marks(tmp_path)
+        written = marks(first)
         assert len(written) >= 11  # workers continue for a moment
-
-        code = resumed(url, "--scheduler", local.address)
+        code = resumed(url, *on_cluster)
         assert local.workers[0].poll() == -signal.SIGKILL
-    out, err = capsys.readouterr()
-    assert (code, err) == (0, ""), out
-    assert f"Results: {url}/sweep.zarr; figures: {url}/basin.svg" in out
-    assert written <= marks(tmp_path)
-    assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
+        out, err = capsys.readouterr()
+        assert (code, err) == (0, ""), out
 
+        with monkeypatch.context() as patch:
+            for owner, name in ((Chunks, "write"), (Cluster, "run")):
+                patch.setattr(owner, name, getattr(owner, name))  # restored after the test
+            signalling("SIGKILL", local.scheduler.pid, 10)
+            code = cli.status([*LONG, *CHUNKS, "--output", str(other), *on_cluster])
+    assert f"Results: {url}/sweep.zarr; figures: {url}/basin.svg" in out
+    assert written <= marks(first)
+    assert_same(content(first / "sweep.zarr"), undisturbed)
     store = SweepStore.open(f"{url}/sweep.zarr")
     assert finished(store)
     store.files.write({"round-0/end/c/3": store.files.read("round-0/end/c/4") + b"more"})
     assert not finished(store)
     assert store.broken == ["round-0: chunk 3 (of 60)"]
 
-
-def test_a_lost_scheduler_is_reported_and_the_sweep_can_continue(undisturbed, tmp_path, monkeypatch, capsys):
-    with cluster(tmp_path, workers=1) as local, monkeypatch.context() as patch:
-        for owner, name in ((Chunks, "write"), (Cluster, "run")):
-            patch.setattr(owner, name, getattr(owner, name))  # restored after the test
-        signalling("SIGKILL", local.scheduler.pid, 10)
-        code = cli.status([*LONG, *CHUNKS, "--output", str(tmp_path), "--scheduler", local.address])
     out, err = capsys.readouterr()
-    assert (code, out) == (1, "")
+    assert (code, out, err.count("\n")) == (1, "", 1)
     assert err.startswith(f"lost the cluster at {local.address}")
-    assert err.count("\n") == 1
-    assert resumed(tmp_path) == 0
-    assert_same(content(tmp_path / "sweep.zarr"), undisturbed)
+    assert resumed(other) == 0
+    assert_same(content(other / "sweep.zarr"), undisturbed)
 
 
 def test_a_missing_scheduler_is_reported_in_time(tmp_path, capsys):
