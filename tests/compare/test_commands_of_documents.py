@@ -14,7 +14,7 @@ import pytest
 from compare.cli import app as cli
 from compare.engines import INSTALLED
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
@@ -143,7 +143,7 @@ OTHERS = {
 
 
 @pytest.fixture
-def workplace(tmp_path, monkeypatch):
+def workplace(tmp_path, monkeypatch, in_this_process):
     """Change to an empty folder. The examples and the engine of the tutorial can be imported there."""
     page = (ROOT / "docs" / "tutorial-judge.md").read_text(encoding="utf-8")
     engine = next(code for code in re.findall(r"(?s)```python\n(.*?)```", page) if "def simulate" in code)
@@ -151,6 +151,7 @@ def workplace(tmp_path, monkeypatch):
     for name in ("mymodule.py", "mypackage/mymodule.py"):
         (tmp_path / name).write_text(engine, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
     monkeypatch.syspath_prepend(ROOT / "examples")
     monkeypatch.syspath_prepend(tmp_path)
 
