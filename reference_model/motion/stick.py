@@ -172,16 +172,9 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
 class SlipStart:
     """Slip that grows from rest, as a power series in time.
 
-    Parameters
-    ----------
-    positions, slip : complex arrays of shape (terms,)
-        Coefficients of z and of w.
-    duration
-        Range of accuracy in s.
-    rest
-        Time in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull
-        exceeds friction only slightly and briefly.
-
+    ``positions`` and ``slip`` are the coefficients of z and w, accurate for ``duration`` in s. ``rest`` is the time
+    in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull exceeds
+    friction only slightly and briefly.
     """
 
     positions: NDArray[np.complex128]

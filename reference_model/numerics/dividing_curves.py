@@ -49,6 +49,9 @@ def dividing_curves(
 
     Each curve names the limits where it ends: 0 and 1 are the lower limits of both variables, 2 and 3 the upper.
 
+    Raises ``ContinuationError`` if a curve cannot be followed, because it ends inside or others are much closer
+    than a cell.
+
     Parameters
     ----------
     function
@@ -56,15 +59,10 @@ def dividing_curves(
     low, high : array of shape (2,)
         Limits of the rectangle.
     cells
-        Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
-        that pass between the points of the grid.
+        Number of grid cells in each direction. Points of a curve are at most one cell apart, and curves that pass
+        between the points of the grid are missed.
     error
         Allowed error of a point across the curve, as a fraction of the rectangle.
-
-    Raises
-    ------
-    ContinuationError
-        If a curve cannot be followed, because it ends inside or other curves are much closer to it than a cell.
 
     """
     square = _Square(function, low, high, 1.0 / cells, error)

@@ -38,19 +38,9 @@ _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
 class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     """Steps of the method, with the interface of SciPy's solvers.
 
-    Parameters
-    ----------
-    t, y : float, array of shape (n,)
-        Initial time and unknowns.
-    end
-        Final time, > t.
-    first_step
-        First step to try; None for an automatic choice.
-    tolerated
-        Takes the unknowns and returns the allowed errors of a step, shape (n,).
-    most
-        Longest step.
-
+    ``y``, shape (n,), are the unknowns at ``t`` and ``end`` > t is the final time. ``first_step`` None chooses a
+    step. ``tolerated`` takes the unknowns and returns the allowed errors of a step, shape (n,). ``most`` is the
+    longest step.
     """
 
     t: float
