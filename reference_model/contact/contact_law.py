@@ -1,13 +1,11 @@
 """Coulomb friction between two discs: the interface of all laws, a pin, a ring, and the expansion (22).
 
-Each law returns the force and the moment on the disc while its centre slips with u over the master disc and the
-master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u −
-i·S·r·exp(iα) (21). Plane vectors are complex numbers. Forces and moments are per newton of μN: a force in N per N, a
-moment in m.
+Each law returns the force and the moment on the disc while its centre slips with u over the master disc, which
+turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u − i·S·r·exp(iα)
+(21). Plane vectors are complex numbers. Forces are in N per N of μN and moments in m.
 
-Coulomb friction is independent of rate, so all laws depend only on the ratio of u and S (degree 0). Laws of circles
-are also *isotropic*: the force is opposite to u, and neither its size nor the moment depends on the direction of u or
-on the angle φ.
+Laws depend only on the ratio of u and S (degree 0). Laws of circles are also *isotropic*: the force is opposite to
+u, and neither its size nor the moment depends on the direction of u or on the angle φ.
 """
 
 from __future__ import annotations

@@ -90,8 +90,8 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 class Limit(NamedTuple):
     """Squares of the largest moments that can be held together with given forces, and the slips for w = 1 there.
 
-    Where the force alone is too large the squares continue as (1 − |F|)·R², which is also their leading term for |F|
-    < 1. So they pass through zero with a finite slope.
+    Where the force alone is too large the squares continue as (1 − |F|)·R², their leading term for |F| < 1, and so
+    pass through zero with a finite slope.
     """
 
     squares: FloatArray

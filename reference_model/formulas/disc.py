@@ -55,12 +55,11 @@ def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float)
 def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
     """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
-    A stuck disc turns with the master disc, so friction must supply the constant moment b(ω − Ω). The largest force F
-    on the limit surface at that moment takes the place of μN in (7) to (9):
-    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
+    Friction must supply the constant moment b(ω − Ω), which leaves the force F of the limit surface in place of μN
+    in (7) to (9). So ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
 
-    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests on
-    single points.
+    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests
+    on single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
     centre = stuck_centre(DiscMotion.of(disc, law), law)
@@ -172,10 +171,9 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
-    The corrected (26) gives the equilibria of (23). These are :func:`reference_model.self_centred_equilibria` with
-    :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
-
-    Raises ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
+    The corrected (26) gives, in the paper's way, :func:`reference_model.self_centred_equilibria` of
+    :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises ``ValueError`` if stiffness, disc speed,
+    shaft damping or offset is zero.
     """
     _require_not_zero(disc, "shaft_damping", "offset")
     squared = squared_distance_as_printed if as_printed else squared_distance

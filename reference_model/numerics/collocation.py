@@ -2,11 +2,8 @@
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
 the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Fast decaying components are damped
-out, so the smoothness of the motion determines the step. Between the nodes the polynomial is as accurate as at its
-end.
-
-SciPy's ``Radau`` has three nodes and order 5. Tolerances down to 1e-14 need the eight nodes and order 15 of this
-module.
+out, and the polynomial is as accurate between the nodes as at its end. SciPy's ``Radau`` has three nodes and order
+5; tolerances down to 1e-14 need the eight nodes and order 15 of this module.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Curves in a rectangle where a function of two variables changes sign.
 
-A grid shows where they are. Each curve is followed from point to point: the next point is the zero of the function on
-an arc ahead of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be
-constant away from its zeros.
+A grid shows where they are. Then each curve is followed: the next point is the zero of the function on an arc ahead
+of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be constant away from
+its zeros.
 
 Contour libraries interpolate between grid values, and each value costs a simulation here. For a function that is
-constant on either side, contourpy's error is 1e-2 of the rectangle with 66,000 values; here it is 5e-13 with 3,400.
+constant on either side, contourpy's error is 1e-2 of the rectangle with 66,000 values. Here it is 5e-13 with 3,400.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
 With four or six unknowns SciPy spends more time on a step than on its twelve evaluations. Here each stage is one
-matrix product, and the unknowns reach the equations of motion as a list. The coefficients, the step control and the
-interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
+matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control and interpolant
+are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations

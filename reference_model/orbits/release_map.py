@@ -1,9 +1,9 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pin rests on the disc and its pull equals friction, (7) with equality. So one number summarises the
-motion before: the lag α of the pull behind that of the offset, between 0 and π. The fixed points of the map from one
-α to the next are the orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a
-shift in time, and two are zero, because stick forgets the time and the velocity of the stop.
+At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of
+the pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the
+orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a shift in time, and
+two are zero, because stick forgets the time and the velocity of the stop.
 
 The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.

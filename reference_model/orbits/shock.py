@@ -1,8 +1,8 @@
 """The smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 
-A shock changes the velocity at once and leaves the position unchanged. The smallest one is the nearest point of the
-basin boundary, in the plane of velocities through the equilibrium. End states of many starts show its approximate
-direction. The point itself lies on the stable set of a saddle orbit, and bisection of end states checks it.
+A shock changes only the velocity. The smallest one is the nearest point of the basin boundary in the plane of
+velocities through the equilibrium. End states of many starts show its approximate direction. The point itself lies
+on the stable set of a saddle orbit, and bisection of end states checks it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-The paper suggests this analysis of the whirl but does not carry it out. It is for X0 = 0 and any isotropic friction
-law. The ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
+The paper suggests this analysis but does not carry it out. It is for X0 = 0 and any isotropic friction law. The
+ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
 :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes three unknowns, and a
 boundary has two equations, the balance and one of
 

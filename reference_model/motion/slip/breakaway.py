@@ -2,9 +2,8 @@
 
 If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
 that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time, and an implicit method that solves for all nodes of a polynomial at once (Radau
-IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5) needs only a few steps until slip is fast
-enough.
+motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
+Differential Equations II, IV.5) needs only a few steps until slip is fast enough.
 """
 
 from __future__ import annotations
