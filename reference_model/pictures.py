@@ -18,7 +18,7 @@ Figure: TypeAlias = "matplotlib.figure.Figure"
 FuncAnimation: TypeAlias = "matplotlib.animation.FuncAnimation"
 
 MOTION, STICK, GREY = "#0b4f7d", "#d9730d", "#7f7f7f"
-FRAMES_PER_SECOND = 25
+FRAMES_PER_SECOND, MOST_FRAMES = 25, 100_000
 
 
 def figure_of(
@@ -73,6 +73,8 @@ def animation_of(
 ) -> FuncAnimation:
     """Move the pin or the disc, seen in the fixed frame; the spoke turns with the master disc."""
     speed = positive_number("speed", speed, "s/s")
+    if (times[-1] - times[0]) * FRAMES_PER_SECOND > speed * MOST_FRAMES:
+        raise ValueError(f"speed = {speed:g} s/s: more than {MOST_FRAMES:,} frames; use a larger speed")
     plt = _pyplot()
     from matplotlib.animation import FuncAnimation
 

@@ -22,40 +22,32 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
+    Raises ``ValueError`` if the state, times, tolerance or contact are invalid, or the compiled kernel does not
+    support the system; ``SimulationError`` if the integrator fails.
+
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
         Parameters of the system.
     initial_state : array-like of shape (4,) or (6,)
-        State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s for
-        a disc. A state that turns with the master disc starts in stick if friction can hold it.
+        State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s
+        for a disc. A state that turns with the master disc starts in stick if friction can hold it.
     times : array-like of shape (n,)
         Increasing times in s.
     tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2. It applies to positions relative to a length L, to velocities
-        and to the spin times the radius of gyration relative to L/T, and to the angle in rad; L and T are those of
-        :class:`motion.nondimensional.Units`. The accuracy is the same at the ends of steps and between them. The
-        error of one step is at most a twentieth of the tolerance. With damping or rest errors stay within a small
-        multiple of the tolerance: at most 13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that
-        turns 45 times as fast as the pin swings. Otherwise they accumulate, to some 40 times the tolerance after
-        10,000 steps. In unstable motions they grow with the instability.
+        Relative accuracy to aim at, from 1e-14 to 1e-2, at the ends of steps and between them. It applies to
+        positions relative to a length L, to velocities and to the spin times the radius of gyration relative to
+        L/T, and to the angle in rad; L and T are those of :class:`motion.nondimensional.Units`. The error of one
+        step is at most a twentieth of the tolerance. With damping or rest errors stay within a small multiple of
+        the tolerance: at most 13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that turns 45
+        times as fast as the pin swings. Otherwise they accumulate, to some 40 times the tolerance after 10,000
+        steps. In unstable motions they grow with the instability.
     contact : Contact or None
         Friction law of a disc; None for the law of the parameters.
     compiled : bool or None
         Whether to use the compiled kernel of :mod:`ensemble`, a separate and faster implementation for linear
-        supports and the laws of the parameters. The first run with a kind of contact on a machine compiles it. None:
-        use it if it supports the system.
-
-    Returns
-    -------
-    Trajectory
-
-    Raises
-    ------
-    ValueError
-        If the state, times, tolerance or contact are invalid, or the compiled kernel does not support the system.
-    SimulationError
-        If the integrator fails.
+        supports and the laws of the parameters. The first run with a kind of contact on a machine compiles it.
+        None: use it if it supports the system.
 
     """
     if compiled is None:

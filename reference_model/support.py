@@ -26,19 +26,8 @@ ROUNDED_UP = 1.0 + 1e-14
 class Support:
     """Spring, hardening and stop, in N and m or in any consistent scaled units.
 
-    Parameters
-    ----------
-    stiffness : float
-        C in N/m.
-    offset : float
-        X0 in m.
-    hardening : float
-        C₃ in N/m³.
-    stop_gap : float
-        Clearance of the stop in m.
-    stop_stiffness : float
-        C_s in N/m.
-
+    ``stiffness`` is C in N/m, ``offset`` X0 in m, ``hardening`` C₃ in N/m³, ``stop_gap`` the clearance of the stop
+    in m, and ``stop_stiffness`` C_s in N/m.
     """
 
     stiffness: float

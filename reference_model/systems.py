@@ -122,7 +122,8 @@ class _SupportedMass:
 class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
 
-    The state is x, y in m and vx, vy in m/s.
+    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not a finite number, is out of
+    range, or is so large or small that products would overflow.
 
     Parameters
     ----------
@@ -140,15 +141,9 @@ class PinOnDisc(_SupportedMass):
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
     hardening : float
         C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
-    stop_gap : float
-        Clearance of the stop in m, >= 0.
-    stop_stiffness : float
-        C_s of the stop in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. 0 means no stop.
-
-    Raises
-    ------
-    ValueError
-        If a value is not a finite number, is out of range, or is so large or small that products would overflow.
+    stop_gap, stop_stiffness : float
+        Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. C_s = 0
+        means no stop.
 
     """
 
@@ -159,13 +154,12 @@ class PinOnDisc(_SupportedMass):
 class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
-    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
-    rad, vx, vy in m/s and the spin in rad/s.
+    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle
+    in rad, vx, vy in m/s and the spin in rad/s. Errors and the parameters of mass and support are those of
+    :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
 
     Parameters
     ----------
-    mass, stiffness, damping, friction_force, disc_speed, offset, hardening, stop_gap, stop_stiffness : float
-        As for :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
     polar_inertia : float
         J in kg m², > 0.
     contact_radius : float
@@ -177,11 +171,6 @@ class DiscOnDisc(_SupportedMass):
     contact_points : int or None
         Number n of contact points, from 3 to 1000. Point i lies at the angle φ + 2πi/n and carries N/n. None means
         the continuous ring of (20).
-
-    Raises
-    ------
-    ValueError
-        If a value is not a finite number, is out of range, or is so large or small that products would overflow.
 
     """
 

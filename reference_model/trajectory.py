@@ -79,19 +79,9 @@ def phases_of(
 class Solution:
     """How a trajectory was computed.
 
-    Parameters
-    ----------
-    method : str
-        Description of the integrator.
-    tolerance : float
-        Requested tolerance.
-    evaluations, steps : int
-        Number of evaluations of the equations of motion, and of accepted steps.
-    wall_time : float
-        Wall time in s.
-    regularisation : float
-        Slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
-
+    ``method`` describes the integrator, and ``tolerance`` is the requested one. ``evaluations`` counts those of the
+    equations of motion, and ``steps`` accepted steps. ``wall_time`` is in s. ``regularisation`` is the slip speed ε
+    in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
     """
 
     method: str
@@ -110,19 +100,9 @@ NOT_TOLD = Solution("not told", tolerance=math.nan, evaluations=0, steps=0, wall
 class Trajectory:
     """The motion of a system at the requested times.
 
-    Parameters
-    ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
-    times : array of shape (n,)
-        Requested times in s.
-    states : array of shape (n, 4) or (n, 6)
-        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
-    phases : tuple of Phase
-        Phases from ``times[0]`` to ``times[-1]`` without gaps; () if the engine does not report them.
-    solution : Solution
-        How the trajectory was computed.
-
+    ``times``, shape (n,), are in s. ``states``, shape (n, 4) or (n, 6), are x, y in m and vx, vy in m/s of a pin,
+    or x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` last from ``times[0]`` to ``times[-1]`` without
+    gaps; they are () if the engine does not report them. ``solution`` describes the computation.
     """
 
     system: System

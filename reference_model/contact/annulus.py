@@ -30,29 +30,25 @@ SLOPE_ORDER = 2 * CLUSTERING
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    The force and the moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by
-    Gauss's rule with n rings. As functions of the radius they have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a
-    point is at rest. The rule is split at r₀, or at the end of the annulus next to it, and its rings are clustered
-    there. The error falls like n^(−12), or faster than any power of n if r₀ is well outside the annulus; with 16
-    rings it is about 1e-12. The slopes of a ring are infinite like ln|r − r₀|, so the error of their average falls
-    like n^(−6) and is about 1e-7.
+    Force and moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by
+    Gauss's rule with n rings. At r₀ = U/|S|, where a point is at rest, they have a kink (r − r₀)·ln|r − r₀|, so the
+    rule is split and clustered there. Its error falls like n^(−12); with 16 rings it is about 1e-12. The slopes of
+    a ring are infinite like ln|r − r₀|, so the error of their average falls like n^(−6) and is about 1e-7.
 
     Parameters
     ----------
-    inner_radius : float
-        Inner radius in m, >= 0; 0 for a full disc.
-    outer_radius : float
-        Outer radius in m, > ``inner_radius``.
+    inner_radius, outer_radius : float
+        Radii in m, 0 <= inner < outer; 0 for a full disc.
     rings : int
         n >= 1, on either side of r₀.
     pressure : callable, optional
-        Function of the radius in m that returns the pressure in any unit, smooth between the two radii, for example
-        ``lambda r: 1 / r`` for a worn-in facing. None for a uniform pressure.
+        Pressure in any unit as a smooth function of the radius in m, for example ``lambda r: 1 / r`` for a worn-in
+        facing. None for a uniform pressure.
 
     Raises
     ------
     ValueError
-        If a radius or ``rings`` is out of range, or if the pressure is not callable, negative, not finite, or zero
+        If a radius or ``rings`` is out of range, or the pressure is not callable, negative, not finite, or zero
         everywhere.
 
     """

@@ -31,14 +31,7 @@ class ContactAtOnce(Protocol):
 
 @dataclass(frozen=True)
 class PointsAtOnce:
-    """Vectorised :class:`Points`.
-
-    Parameters
-    ----------
-    law : Points
-        Law for a single state.
-
-    """
+    """Vectorised :class:`Points`."""
 
     law: Points
 
@@ -79,14 +72,7 @@ class PointsAtOnce:
 
 @dataclass(frozen=True)
 class RingAtOnce:
-    """Vectorised :class:`Ring`.
-
-    Parameters
-    ----------
-    law : Ring
-        Law for a single state.
-
-    """
+    """Vectorised :class:`Ring`."""
 
     law: Ring
 
@@ -101,14 +87,7 @@ class RingAtOnce:
 
 @dataclass(frozen=True)
 class OneByOne:
-    """Any law, evaluated for one state after the other.
-
-    Parameters
-    ----------
-    law : Contact
-        Law for a single state.
-
-    """
+    """Any law, evaluated for one state after the other."""
 
     law: Contact
 

@@ -1,13 +1,11 @@
 """Coulomb friction between two discs: the interface of all laws, a pin, a ring, and the expansion (22).
 
-Each law returns the force and the moment on the disc while its centre slips with u over the master disc and the
-master disc turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u −
-i·S·r·exp(iα) (21). Plane vectors are complex numbers. Forces and moments are per newton of μN: a force in N per N, a
-moment in m.
+Each law returns the force and the moment on the disc while its centre slips with u over the master disc, which
+turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u − i·S·r·exp(iα)
+(21). Plane vectors are complex numbers. Forces are in N per N of μN and moments in m.
 
-Coulomb friction is independent of rate, so all laws depend only on the ratio of u and S (degree 0). Laws of circles
-are also *isotropic*: the force is opposite to u, and neither its size nor the moment depends on the direction of u or
-on the angle φ.
+Laws depend only on the ratio of u and S (degree 0). Laws of circles are also *isotropic*: the force is opposite to
+u, and neither its size nor the moment depends on the direction of u or on the angle φ.
 """
 
 from __future__ import annotations
@@ -40,15 +38,8 @@ class Contact(Protocol):
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         """Return force (N per N of μN) and moment (m) on the disc.
 
-        Parameters
-        ----------
-        slip : complex
-            u of the disc's centre, (ẋ + ωy) + i(ẏ − ωx), in m/s.
-        relative_spin : float
-            S = ω − φ̇ in rad/s.
-        angle : float
-            φ of the disc in rad.
-
+        ``slip`` is u of the centre, (ẋ + ωy) + i(ẏ − ωx) in m/s, ``relative_spin`` S = ω − φ̇ in rad/s, ``angle`` φ
+        in rad.
         """
         ...
 
@@ -153,16 +144,10 @@ class _OnCircle:
 
 @dataclass(frozen=True)
 class Ring(_OnCircle, IsotropicContact):
-    """Contact on the whole circle of radius R (20), in closed form.
+    """Contact on the whole circle of ``radius`` R > 0 in m (20), in closed form.
 
-    With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S); see
+    With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S), see
     :mod:`reference_model.contact.elliptic`. Both are accurate to rounding for all ratios of U and W.
-
-    Parameters
-    ----------
-    radius : float
-        R in m, > 0.
-
     """
 
     @property
@@ -191,18 +176,12 @@ class Ring(_OnCircle, IsotropicContact):
 
 @dataclass(frozen=True)
 class ThreeTermRing(_OnCircle, IsotropicContact):
-    """The paper's approximation (23) of the ring: three terms of the expansion (22) of ν̄/|ν_r|.
+    """The paper's approximation (23) of the ring of ``radius`` R > 0 in m: three terms of (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α, F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and M = R·sin α·(1 − ½cos²α +
-    ¾cos²α·sin²α). As for the ring they have a potential, ν̄·P(α) with P = 1 − ¼cos²α·sin²α, the mean slip speed to
-    the same order. It is convex, so the approximation never feeds in power. The largest error is 0.10, near U =
-    0.77·R|S| for the force and at the reciprocal ratio for the moment.
-
-    Parameters
-    ----------
-    radius : float
-        R in m, > 0.
-
+    ¾cos²α·sin²α). They have the potential ν̄·P(α), P = 1 − ¼cos²α·sin²α, the mean slip speed to the same order. It
+    is convex, so the approximation never feeds in power. The largest error is 0.10, near U = 0.77·R|S| for the
+    force and at the reciprocal ratio for the moment.
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:

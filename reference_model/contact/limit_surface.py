@@ -1,16 +1,15 @@
 """The limit surface of a contact: the force and moment that friction can hold while the disc rests.
 
-A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN, along the
-slip that they drive) if for every slip their power is at most the power that friction dissipates: F·u + M·w <= P(u,
-w), the mean of |v_j| weighted by the shares of the load. P is of degree one, so this is M <= h(F) and −M <= h(−F),
-with h(F) = min over u of P(u, 1) − F·u. With u and M about the centre of the load P is at least |u|, so h is not
-negative for |F| <= 1 and only the sign of M counts. Finding u is a Fermat-Weber problem with a pull F. It is convex,
-and the solution may be a vertex, u = −i·a_j: then the disc begins to turn about point j, which stays at rest, and the
-limit surface has a flat face.
+A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN, along
+the slip that they drive) if for every slip F·u + M·w <= P(u, w), the mean of |v_j| weighted by the shares of the
+load. P is of degree one, so this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the
+centre of the load P is at least |u|, so h is not negative for |F| <= 1 and only the sign of M counts. Finding u is
+a convex Fermat-Weber problem with a pull F. Its solution may be a vertex, u = −i·a_j: then the disc begins to turn
+about point j, which stays at rest, and the limit surface has a flat face.
 
-All this follows from Coulomb's law at every point. Two published experiments speak against it for extended contacts.
-For a disc under a force and a torque Dahmen et al. measured a limit that depends on microscopic details and not on
-Coulomb's law alone. The experiments of Weidman and Malhotra confirmed only partially how two-tier discs come to rest.
+Two published experiments disagree with Coulomb's law at every point of an extended contact. Dahmen et al. measured
+a limit that depends on microscopic details. Weidman and Malhotra confirmed only partially how two-tier discs come
+to rest.
 
 S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.
 P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb friction,
@@ -54,23 +53,8 @@ def largest_wrench(
 ) -> tuple[complex, float]:
     """Return the largest multiple of a force and a moment that friction can hold at φ = 0.
 
-    Parameters
-    ----------
-    contact : IsotropicContact or Points
-        Friction law.
-    force, moment : complex, float
-        Direction of the load on the disc: any force, and a moment about the centre in m times its unit.
-
-    Returns
-    -------
-    (complex, float)
-        Force in N per N of μN, and moment in m.
-
-    Raises
-    ------
-    ValueError
-        If force and moment are both zero.
-
+    ``force`` and ``moment`` are the direction of the load: any force, and a moment about the centre in m times its
+    unit. The result is the force in N per N of μN and the moment in m. Raises ``ValueError`` if both are zero.
     """
     if force == 0.0 and moment == 0.0:
         raise ValueError("force and moment are 0: they must have a direction")
@@ -106,8 +90,8 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 class Limit(NamedTuple):
     """Squares of the largest moments that can be held together with given forces, and the slips for w = 1 there.
 
-    Where the force alone is too large the squares continue as (1 − |F|)·R², which is also their leading term for |F|
-    < 1. So they pass through zero with a finite slope.
+    Where the force alone is too large the squares continue as (1 − |F|)·R², their leading term for |F| < 1, and so
+    pass through zero with a finite slope.
     """
 
     squares: FloatArray

@@ -23,22 +23,12 @@ A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971,
 def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Points:
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
-    The polygon is cut into triangles, and each of them into ``divisions``² equal ones with three points each. With h
-    the longest side of these triangles the error of force and moment falls like h⁴ if the centre of rotation lies
-    outside the patch, and on average like h² if it lies inside, where friction jumps.
+    Each triangle of the polygon is cut into ``divisions``² equal ones (>= 1) with three points each. With their
+    longest side h the error falls like h⁴ if the centre of rotation lies outside the patch, and on average like h²
+    if it lies inside, where friction jumps. ``corners`` are x and y in m of at least three corners in the frame of
+    the disc, in order around the polygon.
 
-    Parameters
-    ----------
-    corners : sequence of (float, float)
-        x and y in m of at least three corners in the frame of the disc, in order around the polygon.
-    divisions : int
-        Number of divisions of each side of a triangle, >= 1.
-
-    Raises
-    ------
-    ValueError
-        If a number is invalid or the polygon has no area or intersects itself.
-
+    Raises ``ValueError`` if a number is invalid or the polygon has no area or intersects itself.
     """
     require_whole("divisions", divisions, least=1)
     triangles = _triangles(_checked_corners(corners))

@@ -27,17 +27,9 @@ from reference_model.systems import (
 class Points:
     """Contact in points at any places, each with its share of the load.
 
-    Parameters
-    ----------
-    places : sequence of (float, float, float)
-        (x, y, share) of each point: its place in m relative to the disc's centre at φ = 0, and its share of the load.
-        At least two points at different places; shares are positive and sum to 1.
-
-    Raises
-    ------
-    ValueError
-        If a place or a share is invalid.
-
+    ``places`` contains (x, y, share) of each point: its place in m relative to the disc's centre at φ = 0, and its
+    share of the load. There are at least two points at different places; shares are positive and sum to 1. Raises
+    ``ValueError`` otherwise.
     """
 
     places: Sequence[Place]
@@ -129,17 +121,9 @@ class Points:
 
 @dataclass(frozen=True, init=False)
 class PointsOnRing(Points):
-    """Contact in n points on a circle, each with 1/n of the load: the paper's discretisation, with n = 6.
+    """Contact in n points on a circle of ``radius`` R in m, each with 1/n of the load.
 
-    Point i lies at φ + 2πi/n.
-
-    Parameters
-    ----------
-    radius : float
-        R in m, > 0.
-    points : int
-        n, from 3 to 1000.
-
+    Point i of ``points`` = n (3 to 1000) lies at φ + 2πi/n. The paper uses n = 6.
     """
 
     radius: float

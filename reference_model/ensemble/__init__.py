@@ -2,12 +2,12 @@
 
 - ``simulate``: :func:`simulate_ensemble`, the entry point; ``end_states``: its results;
 - ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
-- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and ``kernel``
-  with ``driver``, which combine them;
+- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and
+  ``kernel`` with ``driver``, which combine them;
 - ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``, from ``checkpoints`` of
   kernels.
 
-The plain :func:`reference_model.simulate` is the yardstick. It uses nothing of this package, except on request.
+The plain :func:`reference_model.simulate` is the yardstick and uses this package only on request.
 """
 
 from reference_model.ensemble.end_states import EndState, Ensemble

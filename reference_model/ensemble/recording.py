@@ -1,8 +1,8 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the start of the step that contains the time. It
-continues with the pace of the whole, so it takes only that step, cut short. The trajectories for all times run side
-by side in lanes. So the motion does not depend on the requested times, and its error is the same at all of them.
+The state at a requested time is the end of a short trajectory from the checkpoint before it, with the pace of the
+whole: the same step, cut short. These trajectories run side by side in lanes. So the motion does not depend on the
+requested times, and its error is the same at all of them.
 """
 
 from __future__ import annotations
@@ -43,21 +43,11 @@ STAGES = 12
 
 @dataclass
 class Recording:
-    """A motion from t = 0 on that is being recorded.
+    """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
 
-    Parameters
-    ----------
-    times : array of shape (n,)
-        Requested times in s, >= 0.
-    states : array of shape (n, 4) or (n, 6)
-        States at these times, as far as computed.
-    duration, unit
-        Duration and unit of time in s.
-    phases : list of (kind, start, state)
-        Phases so far.
-    steps, evaluations
-        Counts so far, as in ``Solution``, including rejected steps and stick phases.
-
+    ``states``, shape (n, 4) or (n, 6), is filled as far as computed; ``duration`` and ``unit`` of time are in s.
+    ``phases`` are (kind, start, state) so far. ``steps`` and ``evaluations`` are those of ``Solution`` so far,
+    including rejected steps and stick phases.
     """
 
     times: FloatArray

@@ -37,10 +37,10 @@ def simulate_ensemble(
     early_end: bool = True,
     threads: int | None = None,
 ) -> Ensemble:
-    """Return the end states of many trajectories under exact Coulomb friction, computed by compiled, vectorised code.
+    """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. The result of a trajectory does not depend, bit by bit,
-    on the other trajectories or on the number of threads.
+    The physics is that of :func:`reference_model.simulate`. A result does not depend, bit by bit, on the other
+    trajectories or on the number of threads. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------
@@ -51,20 +51,15 @@ def simulate_ensemble(
     duration
         Duration in s, > 0.
     tolerance
-        Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. The tolerance of steps is
-        a tenth of it (``runge_kutta.LOCAL``). With 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s
-        half have errors below 4e-9, 99 % below 1e-8, and one, of Fig. 9, has 2e-7.
+        Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. With 1e-9, of 4,000
+        states each of Figs. 5, 8, 9 and 11 after 100 s half have errors below 4e-9, 99 % below 1e-8, and one, of
+        Fig. 9, has 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Parameters that differ between trajectories.
     early_end
         Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
     threads
         Number of threads; by default one per processor.
-
-    Raises
-    ------
-    ValueError
-        If an argument is invalid.
 
     """
     require_system(system)

@@ -41,20 +41,11 @@ def characteristic_coefficients(
         g = μN·F_S/m,   h = μN·M_U/J,   c = (b + μN·M_S)/J
 
     where indices of the friction F and M are derivatives. So λ(λ + D)[(λ + e)(λ + c) − gh] + 2k[(2kλ − f)(λ + c) +
-    ghd] = 0. For a pin g = h = 0: λ + c divides out and corrected (13) is left.
+    ghd] = 0. For a pin g = h = 0: λ + c divides out and corrected (13) is left. ``slip`` and ``rim`` are positive
+    numbers whose ratio is U : R|ω − φ̇|.
 
-    Parameters
-    ----------
-    slip, rim
-        Positive numbers whose ratio is U : R|ω − φ̇|.
-    contact
-        Friction law; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If the law has no derivative at that ratio, the disc rests on single points, or the support is not linear.
-
+    Raises ``ValueError`` if the law has no derivative at that ratio, the disc rests on single points, or the
+    support is not linear.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")

@@ -39,18 +39,9 @@ def shaft_torque(disc: DiscOnDisc) -> float:
 def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
     """Return ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
 
-    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. The average of three terms over the ring,
-    times the slip velocity of the point, is (23).
-
-    Parameters
-    ----------
-    slip
-        (ẋ + ωy) + i(ẏ − ωx), in m/s.
-    rim_speed
-        R(ω − φ̇) in m/s, of either sign.
-    place
-        φ + χ in rad.
-
+    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. Its average over the ring, times the
+    slip velocity of the point, is (23). ``slip`` is (ẋ + ωy) + i(ẏ − ωx) and ``rim_speed`` R(ω − φ̇), both in m/s;
+    ``place`` is φ + χ in rad.
     """
     small = _expanded(slip, rim_speed, place)
     return 1.0 - small + 1.5 * small**2
@@ -64,12 +55,11 @@ def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float)
 def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
     """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
-    A stuck disc turns with the master disc, so friction must supply the constant moment b(ω − Ω). The largest force F
-    on the limit surface at that moment takes the place of μN in (7) to (9):
-    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9), and so on.
+    Friction must supply the constant moment b(ω − Ω), which leaves the force F of the limit surface in place of μN
+    in (7) to (9). So ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
 
-    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests on
-    single points.
+    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests
+    on single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
     centre = stuck_centre(DiscMotion.of(disc, law), law)
@@ -181,10 +171,9 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
-    The corrected (26) gives the equilibria of (23). These are :func:`reference_model.self_centred_equilibria` with
-    :class:`reference_model.contact.contact_law.ThreeTermRing`, found in the paper's way.
-
-    Raises ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
+    The corrected (26) gives, in the paper's way, :func:`reference_model.self_centred_equilibria` of
+    :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises ``ValueError`` if stiffness, disc speed,
+    shaft damping or offset is zero.
     """
     _require_not_zero(disc, "shaft_damping", "offset")
     squared = squared_distance_as_printed if as_printed else squared_distance
@@ -220,29 +209,18 @@ class WhirlAtRatio(NamedTuple):
 def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = None) -> WhirlAtRatio:
     """Return the whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of rim and centre slip.
 
-    A circle of radius ρ at the frequency κ satisfies three balances. The radial one contains no friction, because the
-    slip (κ − ω)ρ is along the circle: κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω and
-    only for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S| =
+    A circle of radius ρ satisfies three balances. The radial one contains no friction, because the slip is along
+    the circle: its frequency is κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω and only
+    for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S| =
     U·tan α. Together they give the load, see :func:`whirl_arm`::
 
         μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
 
-    Parameters
-    ----------
-    disc
-        Parameters of the system; ``friction_force`` is ignored.
-    alpha
-        α in rad, 0 < α < π/2.
-    contact
-        Friction law, :class:`reference_model.contact.contact_law.ThreeTermRing` for (23); None for the law of the
-        parameters.
+    ``alpha`` is in rad, 0 < α < π/2. The result does not depend on ``friction_force``. For (23) use
+    :class:`reference_model.contact.contact_law.ThreeTermRing`; None is the law of the parameters.
 
-    Raises
-    ------
-    ValueError
-        If α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <= k; if the disc rests
-        on single points or the support is not linear.
-
+    Raises ``ValueError`` if α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <=
+    k; if the disc rests on single points or the support is not linear.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")

@@ -8,11 +8,10 @@ With z = z_m + ρ·exp(iψ), ψ̇ = κ, the deflection of the support is q + ρ�
 
 with the mean P of |U + V·exp(iψ)| over ψ, U = (ω − κ)ρ and V = ω|z_m|, which is the mean slip speed of a ring.
 
-*Order of the error.* The offset excites the mean and the second harmonic, both in proportion to X0. The balance omits
-the second harmonic, which friction and hardening couple to the mean. So the relative error of the mean does not
-vanish, and its absolute error is of order X0, like that of (18), which is this balance for C₃ = 0 to first order. ρ
-and κ do not depend on the sign of X0, because the orbit for −X0 is the orbit for X0, turned by half a turn. So the
-omitted terms change them by products of two small harmonics, of order X0². For X0 = 0 the balance is exact.
+*Order of the error.* The balance omits the second harmonic, which is proportional to X0 like the mean and coupled
+to it by friction and hardening. So the absolute error of the mean is of order X0, like that of (18), which is this
+balance for C₃ = 0 to first order. ρ and κ do not depend on the sign of X0, because the orbit for −X0 is turned by
+half a turn, so their errors are of order X0².
 """
 
 from __future__ import annotations
@@ -31,15 +30,7 @@ from reference_model.systems import FloatArray, PinOnDisc
 class BalancedWhirl:
     """A whirl z = mean + radius·exp(i·frequency·t).
 
-    Parameters
-    ----------
-    radius
-        ρ in m.
-    frequency
-        κ in rad/s, negative if clockwise.
-    mean
-        z_m in m.
-
+    ``radius`` is ρ in m, ``frequency`` κ in rad/s, negative if clockwise, and ``mean`` z_m in m.
     """
 
     radius: float
@@ -48,22 +39,12 @@ class BalancedWhirl:
 
 
 def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
-    """Return the whirl by harmonic balance of its mean and its first harmonic.
+    """Return the whirl of ``pin``, without a stop, by harmonic balance of its mean and its first harmonic.
 
     The error of radius and frequency is of order X0², that of the mean of order X0. For X0 = 0 the result is exact.
 
-    Parameters
-    ----------
-    pin
-        Parameters of the system, without a stop.
-
-    Raises
-    ------
-    ValueError
-        If there is a stop, whose force is not a polynomial, or if there is no whirl without offset to start from.
-    RuntimeError
-        If Newton's method does not converge near it, because the offset is too large.
-
+    Raises ``ValueError`` if there is a stop, whose force is not a polynomial, or no whirl without offset to start
+    from; ``RuntimeError`` if Newton's method does not converge near it, because the offset is too large.
     """
     if pin.stop_stiffness > 0.0:
         raise ValueError(

@@ -66,31 +66,19 @@ class PowerBalance:
 
 
 def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> PowerBalance:
-    """Return the energy balance of ``trajectory``.
+    """Return the energy balance of ``trajectory``, whose times must be close enough to resolve the motion.
 
-    In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u + M·S
-    (per newton of μN) for a disc; below the ε of a regularised engine friction is weaker. In stick phases the heat is
-    the work of the holding force and moment of eq. 6 on the engine's creep, zero for exact friction. The drive's work
-    is ω times the angular impulse on the body about the axis, which follows from the motion: ∫M dt = [m·r×v + J·φ̇] +
-    β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual
-    vanishes only if friction acts against the slip with the magnitude μN, the damping and the springs are right, and
-    the integrator conserves energy.
+    In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u +
+    M·S (per newton of μN) for a disc; below the ε of a regularised engine friction is weaker. In stick phases the
+    heat is the work of the holding force and moment of eq. 6 on the engine's creep, zero for exact friction. The
+    drive's work is ω times the angular impulse on the body about the axis, which follows from the motion: ∫M dt =
+    [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection.
+    So the residual vanishes only if friction acts against the slip with the magnitude μN, the damping and the
+    springs are right, and the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
     power of the sampling interval, or more slowly if the slip of a point is near zero or a stop begins to act.
-
-    Parameters
-    ----------
-    trajectory
-        Trajectory with times close enough to resolve the motion.
-    contact
-        Friction law of a disc; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If the trajectory has only one time.
-
+    Raises ``ValueError`` if the trajectory has only one time.
     """
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")

@@ -32,11 +32,7 @@ ERROR = 0.01
 class Creep:
     """Slip that decays forever, s = A·exp(−λt) + B·exp(−Λt) with λ < Λ and A > 0, in scaled units.
 
-    Parameters
-    ----------
-    slow, fast : (float, float)
-        (A, λ) and (B, Λ).
-
+    ``slow`` is (A, λ) and ``fast`` (B, Λ).
     """
 
     slow: tuple[float, float]

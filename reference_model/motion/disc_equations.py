@@ -24,21 +24,9 @@ from reference_model.systems import DiscOnDisc
 class DiscMotion:
     """Eq. 19 divided by the mass, for the unknowns x, y, φ, u_x, u_y, r.
 
-    Parameters
-    ----------
-    centre
-        Equations for a pin at the centre; its ``friction`` is g = μN/m.
-    gyration
-        κ = √(J/m) in m.
-    shaft_rate
-        b/J in 1/s.
-    lag
-        κ(ω − Ω) in m/s, the speed of the master disc relative to the shaft.
-    contact
-        Friction law.
-    length
-        Unit of length of the other parameters, in the unit of length of ``contact``.
-
+    ``centre`` contains the equations for a pin at the centre, with ``friction`` g = μN/m; ``gyration`` is κ =
+    √(J/m) in m, ``shaft_rate`` b/J in 1/s, and ``lag`` κ(ω − Ω) in m/s. ``length`` is the unit of length of these
+    parameters, in the unit of length of ``contact``.
     """
 
     centre: SlipMotion

@@ -1,11 +1,11 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
-If a point comes to rest while the disc turns about it, it stays at rest as long as the required friction does not
-exceed the point's share. This pivot phase has one degree of freedom, and begins and ends like the stick phase of a
-pin (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
+A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
+exceed its share. This pivot phase has one degree of freedom, and begins and ends like the stick phase of a pin
+(:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 
-Nothing is smoothed, so the only error is the integrator's. Motions with friction regularised at ε differ by an amount
-proportional to ε up to the first release, and like ε^0.8 after it, as for a pin.
+Nothing is smoothed. Motions with friction regularised at ε differ by an amount proportional to ε up to the first
+release, and like ε^0.8 after it, as for a pin.
 """
 
 from __future__ import annotations

@@ -117,15 +117,9 @@ def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Un
 class _Frame:
     """Conversion between states in SI units and scaled unknowns relative to the turning master disc.
 
-    Parameters
-    ----------
-    disc_speed
-        ω in rad/s.
-    lengths : array of shape (2,) or (3,)
-        Units of the positions: m for x and y, rad for the angle of a disc, which is not scaled.
-    speeds : array of shape (2,) or (3,)
-        Units of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
-
+    ``lengths`` are the units of the positions, shape (2,) or (3,): m for x and y, rad for the angle of a disc,
+    which is not scaled. ``speeds`` are those of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in
+    rad/s.
     """
 
     disc_speed: float

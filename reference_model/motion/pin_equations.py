@@ -22,17 +22,8 @@ from reference_model.systems import FloatArray, PinOnDisc, System
 class SlipMotion:
     """Eq. 1 for the slip velocity: ẇ = a(z, w) − g·w/|w|, ż = w + iωz.
 
-    Parameters
-    ----------
-    damping
-        β/m in 1/s.
-    support
-        The support divided by the mass, with k² = C/m in 1/s² and X0 in m.
-    friction
-        g = μN/m in m/s², the largest acceleration that friction can cause.
-    disc_speed
-        ω in rad/s.
-
+    ``damping`` is β/m in 1/s, ``support`` the support divided by the mass, with k² = C/m in 1/s² and X0 in m,
+    ``friction`` g = μN/m in m/s², and ``disc_speed`` ω in rad/s.
     """
 
     damping: float
@@ -69,23 +60,8 @@ def simulate_polar_form(
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
     This independent formulation checks the main one. It cannot stick, and it is singular at the centre.
-
-    Parameters
-    ----------
-    initial_state : array of shape (4,)
-        x, y, vx, vy at ``times[0]``, away from the centre.
-    times : array of shape (n,)
-        Times in s.
-    tolerance
-        Relative tolerance of the integrator, at least SciPy's smallest.
-
-    Raises
-    ------
-    ValueError
-        If the support is not linear.
-    RuntimeError
-        If the integrator fails.
-
+    ``initial_state`` is x, y, vx, vy at ``times[0]``, away from the centre; ``tolerance`` is at least SciPy's
+    smallest. Raises ``ValueError`` if the support is not linear, and ``RuntimeError`` if the integrator fails.
     """
     require_linear_support(pin)
     x, y, vx, vy = initial_state

@@ -29,18 +29,7 @@ CLOSE = 0.25
 
 @dataclass(frozen=True)
 class OnePoint:
-    """Equations of motion of a disc in the coordinates of one of its points.
-
-    Parameters
-    ----------
-    motion : DiscMotion
-        Equations of motion of the disc.
-    contact : Points
-        Friction law.
-    point : int
-        Index of the point.
-
-    """
+    """Equations of motion of a disc in the coordinates of its contact point number ``point``."""
 
     motion: DiscMotion
     contact: Points

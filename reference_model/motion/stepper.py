@@ -65,12 +65,12 @@ class Thresholds:
     stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time
-        Largest error, in units of T, of the closed form for the time of coming to rest.
+        Largest error in T of the closed form for the time of coming to rest.
     reversal_slip
         Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
     common_rest
-        Slip speed, in units of length per T, below which all points of a disc come to rest together. A point at rest
-        slips only if it can gain this speed before the disc rests.
+        Slip speed, in units of length per T, below which all points of a disc rest together, and which a point at
+        rest must be able to gain before the disc rests in order to slip.
     series
         Size of the last terms of the initial series of slip.
     safety
@@ -91,23 +91,9 @@ class Thresholds:
 class Run:
     """A simulation from t = 0 on, in scaled times and unknowns.
 
-    Parameters
-    ----------
-    times : array of shape (n,)
-        Requested times, the first of them 0.
-    unknowns
-        Number of unknowns of the body, half of them its relative velocities.
-    seconds
-        Converts a scaled time to s.
-    thresholds
-        Thresholds between descriptions of the motion.
-    tolerance
-        Requested tolerance.
-    springs
-        Natural frequency in 1/T.
-    slipping
-        Longest duration of a slip phase: the run ends when it is reached.
-
+    ``times``, shape (n,), are the requested times, the first of them 0. Half of the ``unknowns`` are relative
+    velocities. ``seconds`` converts a scaled time to s, ``tolerance`` is the requested one, and ``springs`` the
+    natural frequency in 1/T. The run ends if a slip phase lasts for ``slipping``.
     """
 
     times: FloatArray
@@ -176,14 +162,9 @@ class Run:
 class SwitchingSurface(NamedTuple):
     """A surface of continuous but not smooth rates.
 
-    Parameters
-    ----------
-    value
-        Takes the unknowns and changes sign on the surface.
-    trend
-        Takes the unknowns and their rates and returns a number with the sign of the rate of ``value``. It detects
-        steps that cross the surface and come back.
-
+    ``value`` takes the unknowns and changes sign on the surface. ``trend`` takes the unknowns and their rates and
+    returns a number with the sign of the rate of ``value``, which detects steps that cross the surface and come
+    back.
     """
 
     value: Callable[[list[float]], float]
@@ -195,28 +176,14 @@ class SwitchingSurface(NamedTuple):
 
 
 class Stepper:
-    """Steps of a Runge-Kutta method that end on surfaces where the rates are not smooth.
+    """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
     The method is SciPy's explicit one of eighth order, or implicit collocation. Across such a surface an error
     estimate is unreliable, so a step that has crossed one is repeated up to the surface.
 
-    Parameters
-    ----------
-    run
-        The simulation, which counts steps and evaluations.
-    rates
-        Right-hand side: for one state if explicit, vectorised if implicit.
-    y : sequence
-        Initial unknowns.
-    span : (float, float)
-        Initial and final time.
-    tolerated
-        Takes the unknowns and returns the allowed errors of a step.
-    surfaces : sequence of SwitchingSurface
-        The surfaces.
-    implicit : (Scales, float) or None
-        For the implicit method, the scales of the unknowns and the first step to try.
-
+    ``rates`` takes one state if explicit, and is vectorised if implicit. ``y`` are the initial unknowns, and
+    ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the
+    first step to try.
     """
 
     def __init__(

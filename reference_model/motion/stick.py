@@ -1,10 +1,8 @@
 """Stick phases (eq. 6 to 9): the required friction, the time of release, and the start of slip.
 
-In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). All functions
-of the pin take the equations of motion and complex positions.
-
-A friction disc sticks only as a whole. Friction then holds the constant moment of its shaft, and at the same time a
-force up to the limit surface. So the centre is a stuck pin with reduced friction.
+In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). A friction
+disc sticks only as a whole. Friction then holds the constant moment of its shaft and a force up to the limit
+surface, so the centre is a stuck pin with reduced friction.
 """
 
 from __future__ import annotations
@@ -48,9 +46,9 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position: a single harmonic, whose first upward crossing has a closed form. It is derived from the
-    equations of motion, so that tests can compare it with ``pin_formulas.release_time``, eq. 7 as printed. On a
-    nonlinear support see :func:`_first_release`.
+    of the position: a single harmonic, whose first upward crossing has a closed form. Unlike
+    ``pin_formulas.release_time``, eq. 7 as printed, it follows from the equations of motion. On a nonlinear support
+    see :func:`_first_release`.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -172,16 +170,9 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
 class SlipStart:
     """Slip that grows from rest, as a power series in time.
 
-    Parameters
-    ----------
-    positions, slip : complex arrays of shape (terms,)
-        Coefficients of z and of w.
-    duration
-        Range of accuracy in s.
-    rest
-        Time in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull
-        exceeds friction only slightly and briefly.
-
+    ``positions`` and ``slip`` are the coefficients of z and w, accurate for ``duration`` in s. ``rest`` is the time
+    in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull exceeds
+    friction only slightly and briefly.
     """
 
     positions: NDArray[np.complex128]

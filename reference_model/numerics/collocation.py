@@ -2,11 +2,8 @@
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
 the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Fast decaying components are damped
-out, so the smoothness of the motion determines the step. Between the nodes the polynomial is as accurate as at its
-end.
-
-SciPy's ``Radau`` has three nodes and order 5. Tolerances down to 1e-14 need the eight nodes and order 15 of this
-module.
+out, and the polynomial is as accurate between the nodes as at its end. SciPy's ``Radau`` has three nodes and order
+5; tolerances down to 1e-14 need the eight nodes and order 15 of this module.
 """
 
 from __future__ import annotations
@@ -69,13 +66,8 @@ RatesAt = Callable[[FloatArray], FloatArray]
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes by differences, shape (NODES, n, n).
 
-    Parameters
-    ----------
-    values, found : array of shape (NODES, n)
-        Unknowns and their rates.
-    changes : array of shape (NODES, n)
-        Changes of the unknowns for the differences.
-
+    ``values`` are the unknowns, ``found`` their rates, and ``changes`` those of the unknowns, each of shape (NODES,
+    n).
     """
     nodes, n = values.shape
     moved = values[:, np.newaxis] + changes[:, np.newaxis] * np.eye(n)
@@ -87,13 +79,8 @@ def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes:
 class Scales(NamedTuple):
     """Scales of the unknowns of a motion.
 
-    Parameters
-    ----------
-    differences
-        Takes unknowns (k, n) and returns their changes for numerical derivatives, of the same shape.
-    most : array of shape (n,)
-        Largest change of each unknown in one Newton iteration.
-
+    ``differences`` takes unknowns (k, n) and returns their changes for numerical derivatives. ``most``, shape (n,),
+    is the largest change of each unknown in one Newton iteration.
     """
 
     differences: Callable[[FloatArray], FloatArray]
@@ -101,16 +88,7 @@ class Scales(NamedTuple):
 
 
 class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
-    """The motion in a step from ``first`` to ``last``.
-
-    Parameters
-    ----------
-    first, last
-        Limits of the integration variable.
-    coefficients : array of shape (NODES + 1, n)
-        Coefficients of the Legendre series.
-
-    """
+    """The motion in a step from ``first`` to ``last`` as a Legendre series with ``coefficients`` (NODES + 1, n)."""
 
     def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
         super().__init__(first, last)
@@ -131,19 +109,9 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 class Radau:
     """Steps by collocation, with an interface like that of SciPy's solvers.
 
-    Parameters
-    ----------
-    t, y : float, array of shape (n,)
-        Initial time and unknowns.
-    end
-        Final time.
-    first_step
-        First step to try.
-    tolerated
-        Takes the unknowns and returns the allowed errors of a step.
-    scales
-        Scales for differences and for Newton's method.
-
+    ``y``, shape (n,), are the unknowns at ``t``, ``end`` is the final time, and ``first_step`` the first step to
+    try. ``tolerated`` takes the unknowns and returns the allowed errors of a step. ``scales`` serve differences and
+    Newton's method.
     """
 
     def __init__(

@@ -43,18 +43,8 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    Parameters
-    ----------
-    function
-        A function that numba can compile. It runs without the global interpreter lock.
-    package
-        Folder of all sources that are compiled into the function.
-
-    Attributes
-    ----------
-    kinds : dict
-        Compiled functions by the types of their arguments.
-
+    It runs without the global interpreter lock. ``package`` is the folder of all sources that are compiled into it,
+    and ``kinds`` contains the compiled functions by the types of their arguments.
     """
 
     def __init__(self, function: Callable[..., None], package: Path) -> None:

@@ -41,15 +41,9 @@ class ContinuationError(RuntimeError):
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Points along a curve.
+    """Points along a curve, shape (n, d); a closed curve repeats its first point at the end.
 
-    Parameters
-    ----------
-    points : array of shape (n, d)
-        Points in order along the curve. A closed curve repeats its first point at the end.
-    ends
-        Indices of the limits that the first and the last point lie on; empty for a closed curve.
-
+    ``ends`` are the indices of the limits that the first and the last point lie on; empty for a closed curve.
     """
 
     points: FloatArray
@@ -66,6 +60,8 @@ def follow(
 ) -> Curve:
     """Follow the curve through ``start`` in both directions until it reaches a limit or closes.
 
+    Raises ``ContinuationError`` if Newton's method does not converge at the start or further along the curve.
+
     Parameters
     ----------
     equations
@@ -73,17 +69,10 @@ def follow(
     limits
         Takes the unknowns and returns numbers, shape (m,), that are positive in the region of interest. Both
         functions must be defined a little beyond it.
-    start : array of shape (d,)
-        A point near the curve, within the limits.
-    scales : array of shape (d,)
-        Changes of the unknowns that count as equally large.
+    start, scales : array of shape (d,)
+        A point near the curve, within the limits, and the changes of the unknowns that count as equally large.
     step
         Largest distance between neighbouring points in units of ``scales``.
-
-    Raises
-    ------
-    ContinuationError
-        If Newton's method does not converge at the start or further along the curve.
 
     """
     tracer = _Tracer(equations, limits, np.asarray(scales, dtype=float), step)

@@ -1,11 +1,11 @@
 """Curves in a rectangle where a function of two variables changes sign.
 
-A grid shows where they are. Each curve is followed from point to point: the next point is the zero of the function on
-an arc ahead of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be
-constant away from its zeros.
+A grid shows where they are. Then each curve is followed: the next point is the zero of the function on an arc ahead
+of the last one. Only the sign and the zero matter, so the function need not be smooth, and may be constant away from
+its zeros.
 
 Contour libraries interpolate between grid values, and each value costs a simulation here. For a function that is
-constant on either side, contourpy's error is 1e-2 of the rectangle with 66,000 values; here it is 5e-13 with 3,400.
+constant on either side, contourpy's error is 1e-2 of the rectangle with 66,000 values. Here it is 5e-13 with 3,400.
 """
 
 from __future__ import annotations
@@ -49,6 +49,9 @@ def dividing_curves(
 
     Each curve names the limits where it ends: 0 and 1 are the lower limits of both variables, 2 and 3 the upper.
 
+    Raises ``ContinuationError`` if a curve cannot be followed, because it ends inside or others are much closer
+    than a cell.
+
     Parameters
     ----------
     function
@@ -56,15 +59,10 @@ def dividing_curves(
     low, high : array of shape (2,)
         Limits of the rectangle.
     cells
-        Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
-        that pass between the points of the grid.
+        Number of grid cells in each direction. Points of a curve are at most one cell apart, and curves that pass
+        between the points of the grid are missed.
     error
         Allowed error of a point across the curve, as a fraction of the rectangle.
-
-    Raises
-    ------
-    ContinuationError
-        If a curve cannot be followed, because it ends inside or other curves are much closer to it than a cell.
 
     """
     square = _Square(function, low, high, 1.0 / cells, error)

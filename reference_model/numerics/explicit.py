@@ -1,8 +1,8 @@
 """Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
 With four or six unknowns SciPy spends more time on a step than on its twelve evaluations. Here each stage is one
-matrix product, and the unknowns reach the equations of motion as a list. The coefficients, the step control and the
-interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
+matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control and interpolant
+are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations
@@ -38,19 +38,9 @@ _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
 class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     """Steps of the method, with the interface of SciPy's solvers.
 
-    Parameters
-    ----------
-    t, y : float, array of shape (n,)
-        Initial time and unknowns.
-    end
-        Final time, > t.
-    first_step
-        First step to try; None for an automatic choice.
-    tolerated
-        Takes the unknowns and returns the allowed errors of a step, shape (n,).
-    most
-        Longest step.
-
+    ``y``, shape (n,), are the unknowns at ``t`` and ``end`` > t is the final time. ``first_step`` None chooses a
+    step. ``tolerated`` takes the unknowns and returns the allowed errors of a step, shape (n,). ``most`` is the
+    longest step.
     """
 
     t: float

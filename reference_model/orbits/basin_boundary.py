@@ -40,16 +40,7 @@ DISTINCT = 0.1
 
 @dataclass(frozen=True)
 class Separatrix:
-    """The two sides of the stable set of a saddle orbit.
-
-    Parameters
-    ----------
-    orbit
-        The saddle.
-    releases
-        The release map of the pin.
-
-    """
+    """The two sides of the stable set of a saddle orbit; ``releases`` is the release map of the pin."""
 
     orbit: StickSlipOrbit
     releases: ReleaseMap
@@ -127,20 +118,11 @@ class Separatrix:
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
-    Parameters
-    ----------
-    orbit
-        The saddle whose stable set is the boundary. Its tolerance is that of the point.
-    first, second : array-like of shape (4,)
-        Starts that lead to different motions.
+    The boundary is the stable set of the saddle ``orbit``, whose tolerance is that of the point. ``first`` and
+    ``second``, shape (4,), lead to different motions.
 
-    Raises
-    ------
-    ValueError
-        If the orbit is not a saddle that separates two motions, or if both starts lead to the same motion.
-    RuntimeError
-        If the starts are separated by something other than the stable set of this orbit.
-
+    Raises ``ValueError`` if the orbit is not a saddle that separates two motions, or both starts lead to the same
+    motion; ``RuntimeError`` if something other than the stable set of this orbit separates them.
     """
     separatrix = Separatrix.of(orbit)
     return separatrix.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
@@ -157,6 +139,9 @@ def basin_boundary(
     """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
     Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
+    Raises ``ValueError`` if the orbit is not a saddle that separates two motions, or the rectangle or the
+    resolution is invalid; ``RuntimeError`` if a boundary is not in the stable set of this orbit, or a curve cannot
+    be followed.
 
     Parameters
     ----------
@@ -169,15 +154,8 @@ def basin_boundary(
     others : array-like of shape (4,)
         State that supplies the other components.
     cells
-        Number of grid cells in each direction. Points of a curve are at most one cell apart. The search misses curves
-        that no grid edge crosses exactly once.
-
-    Raises
-    ------
-    ValueError
-        If the orbit is not a saddle that separates two motions, or if the rectangle or the resolution is invalid.
-    RuntimeError
-        If a boundary is not in the stable set of this orbit, or if a curve cannot be followed.
+        Number of grid cells in each direction. Points of a curve are at most one cell apart, and curves that no
+        grid edge crosses exactly once are missed.
 
     """
     separatrix = Separatrix.of(orbit)

@@ -23,26 +23,12 @@ def whirl_branch(
 ) -> Iterator[Orbit]:
     """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
 
-    Each orbit is predicted by extrapolation from the two before it, for a relative decrease of x by ``step``. If
-    Newton's method fails, the step is halved. The load may rise or fall along the branch, and stick phases may
-    appear.
+    Each orbit is predicted from the two before it, for a relative decrease of x by at most ``step``, down to
+    ``until`` > 0 in m. If Newton's method fails, the step is halved. The load may rise or fall along the branch,
+    and stick phases may appear. Engine and tolerance are those of ``orbit``; trajectories have ``samples``
+    intervals.
 
-    Parameters
-    ----------
-    orbit
-        First orbit; its engine and tolerance are used for all.
-    until
-        Smallest crossing x in m, > 0.
-    step
-        Largest relative change of x between neighbours.
-    samples
-        Number of intervals of each trajectory.
-
-    Raises
-    ------
-    RuntimeError
-        If the branch breaks off, so that even a step of ``step``/64 finds no orbit.
-
+    Raises ``RuntimeError`` if the branch breaks off, so that even a step of ``step``/64 finds no orbit.
     """
     seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
     before, last = None, orbit
@@ -93,8 +79,8 @@ def last_whirl(
 
     There the whirl meets the unstable whirl that separates it from the other motions. The paper does not give this
     load. The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the
-    crossing x. All arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` is also raised if the
-    branch ends before it folds.
+    crossing x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
+    before it folds.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

@@ -48,21 +48,12 @@ def modulated_cycle(
     After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts
     where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
-    Parameters
-    ----------
-    guess
-        Start of the iteration: a simulation that ends close to the cycle and covers more than a period of the
-        modulation, at times close enough to resolve a revolution; or the cycle for nearby parameters.
-    simulate, at_crossing, tolerance, samples, precision
-        As in :func:`whirl_orbit`.
+    ``guess`` is a simulation that ends close to the cycle and covers more than a period of the modulation, at times
+    close enough to resolve a revolution; or the cycle for nearby parameters. Other arguments are those of
+    :func:`whirl_orbit`.
 
-    Raises
-    ------
-    ValueError
-        If the offset is not zero, a disc rests on single points, or ``guess`` does not recur.
-    RuntimeError
-        If Newton's method does not converge or finds a whirl of constant radius.
-
+    Raises ``ValueError`` if the offset is not zero, a disc rests on single points, or ``guess`` does not recur;
+    ``RuntimeError`` if Newton's method does not converge or finds a whirl of constant radius.
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
     if system.offset != 0.0:

@@ -1,9 +1,9 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pin rests on the disc and its pull equals friction, (7) with equality. So one number summarises the
-motion before: the lag α of the pull behind that of the offset, between 0 and π. The fixed points of the map from one
-α to the next are the orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a
-shift in time, and two are zero, because stick forgets the time and the velocity of the stop.
+At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of
+the pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the
+orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a shift in time, and
+two are zero, because stick forgets the time and the velocity of the stop.
 
 The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
@@ -72,13 +72,7 @@ class Release(NamedTuple):
 class ReleaseMap:
     """The map from one release of a pin to the next.
 
-    Parameters
-    ----------
-    pin
-        Parameters of the system, with friction, an offset and a turning disc.
-    tolerance
-        Tolerance for ``simulate``.
-
+    The pin has friction, an offset and a turning disc; ``tolerance`` is that of ``simulate``.
     """
 
     pin: PinOnDisc
@@ -210,17 +204,9 @@ class ReleaseMap:
 class StickSlipOrbit(Orbit):
     """A periodic motion of a pin with one stick phase per period; as an :class:`Orbit` it starts in mid-slip.
 
-    Parameters
-    ----------
-    release : array of shape (4,)
-        State at the release.
-    release_angle
-        α in rad, the lag of the pull behind that of the offset at the release.
-    stick_time
-        Duration of stick in s.
-    multiplier
-        Growth factor per period of a small deviation of the release angle.
-
+    ``release``, shape (4,), is the state at the release, and ``release_angle`` the lag α in rad of the pull behind
+    that of the offset there. ``stick_time`` is in s. ``multiplier`` is the growth factor per period of a small
+    deviation of α.
     """
 
     system: PinOnDisc
@@ -246,22 +232,11 @@ def stick_slip_orbits(
     """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
     The stable ones are stick-slip cycles. An orbit with a multiplier > 1 is a saddle: its stable set separates the
-    starts that lead to two other motions.
+    starts that lead to two other motions. There are no such motions without offset or friction, or on a disc at
+    rest.
 
-    Parameters
-    ----------
-    pin
-        Parameters of the system. There are no such motions without offset or friction, or on a disc at rest.
-    tolerance
-        Tolerance for ``simulate``.
-    samples
-        Number of intervals of the returned trajectories.
-
-    Raises
-    ------
-    ValueError
-        If ``pin`` is not a pin, its support is not linear, or tolerance or samples are invalid.
-
+    ``tolerance`` is that of ``simulate``, and ``samples`` the number of intervals of the returned trajectories.
+    Raises ``ValueError`` if they are invalid, ``pin`` is not a pin, or its support is not linear.
     """
     require_system(pin, PinOnDisc)
     require_linear_support(pin)

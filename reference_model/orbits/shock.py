@@ -1,8 +1,8 @@
 """The smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 
-A shock changes the velocity at once and leaves the position unchanged. The smallest one is the nearest point of the
-basin boundary, in the plane of velocities through the equilibrium. End states of many starts show its approximate
-direction. The point itself lies on the stable set of a saddle orbit, and bisection of end states checks it.
+A shock changes only the velocity. The smallest one is the nearest point of the basin boundary in the plane of
+velocities through the equilibrium. End states of many starts show its approximate direction. The point itself lies
+on the stable set of a saddle orbit, and bisection of end states checks it.
 """
 
 from __future__ import annotations
@@ -43,14 +43,7 @@ ANGLE = 1e-4
 
 @dataclass(frozen=True)
 class Shock:
-    """A sudden change of the velocity of a pin that rests at its self-centred equilibrium.
-
-    Parameters
-    ----------
-    vx, vy
-        Change of the velocity in m/s.
-
-    """
+    """A sudden change ``vx``, ``vy`` in m/s of the velocity of a pin that rests at its self-centred equilibrium."""
 
     pin: PinOnDisc
     vx: float
@@ -75,14 +68,9 @@ class Shock:
 def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
-    Raises
-    ------
-    ValueError
-        If there is no equilibrium, if none of the shocks tried leads to the whirl, or if there is no saddle orbit
-        with a stick phase between the two.
-    RuntimeError
-        If the boundary is not in the stable set of that orbit.
-
+    Raises ``ValueError`` if there is no equilibrium, none of the shocks tried leads to the whirl, or there is no
+    saddle orbit with a stick phase between the two; ``RuntimeError`` if the boundary is not in the stable set of
+    that orbit.
     """
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]

@@ -3,9 +3,9 @@
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
 offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
-Newton's method is written out here. ``scipy.optimize.root`` (hybr) finds the whirls of Figs. 4, 6 and 11 equally
-well. But without an orbit near the guess it needs 51 to 63 return maps, each a simulation, to fail, compared with 10
-to 16 here, because it cannot know that an orbit is far from the guess or has collapsed onto the axis.
+Newton's method is written out here because ``scipy.optimize.root`` (hybr) cannot know that an orbit is far from the
+guess or has collapsed onto the axis. It finds the same whirls, but needs 51 to 63 return maps, each a simulation,
+to fail without an orbit near the guess, compared with 10 to 16 here.
 """
 
 from __future__ import annotations
@@ -47,9 +47,9 @@ PERIOD, LOAD, TURN = -3, -2, -1
 CENTRAL = 3e-4
 """Relative step of the fourth-order central differences for multipliers.
 
-For the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's fourth
-power. The measured error of multipliers is 1e-11 for the pin and 1e-9 for the disc without offset. With an offset it
-is 1e-7 by the reference, and 1e-5 by engines with more noise at a tolerance of 1e-12.
+For the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's
+fourth power. The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with
+an offset; 1e-5 by engines with more noise at a tolerance of 1e-12.
 """
 
 MOST_ITERATIONS = 25
@@ -139,25 +139,12 @@ class ShootingProblem:
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """A periodic motion.
+    """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
-    Parameters
-    ----------
-    state : array of shape (4,) or (6,)
-        Initial state of the orbit. It lies on the x axis, y = 0, unless the guess started elsewhere. The angle of a
-        disc is zero.
-    period
-        Period in s.
-    residual
-        Distance between start and end of the orbit, relative to its size.
-    trajectory
-        One period at equally spaced times, both ends included.
-    problem
-        Its return map.
-    turn
-        Rotation of the motion about the axis in a period, in rad, including whole turns; 0 if it recurs without
-        rotation.
-
+    ``state``, shape (4,) or (6,), is the initial state. It lies on the x axis, y = 0, unless the guess started
+    elsewhere; the angle of a disc is zero. ``period`` is in s. ``residual`` is the distance between start and end,
+    relative to the size of the orbit, and ``problem`` its return map. ``turn`` is the rotation of the motion about
+    the axis in a period, in rad, including whole turns; 0 if it recurs without rotation.
     """
 
     system: System

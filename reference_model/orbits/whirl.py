@@ -33,9 +33,12 @@ def whirl_orbit(
 ) -> Orbit:
     """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
-    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, with
-    differences for the derivatives of the flow Φ. The phase is fixed by y, which is that of the guess: 0 unless the
-    guess starts elsewhere. Only ``simulate`` is used, so orbits with stick phases are found too.
+    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T,
+    with differences for the derivatives of the flow Φ. The phase is fixed by y, which is that of the guess. Only
+    ``simulate`` is used, so orbits with stick phases are found too.
+
+    Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points;
+    ``RuntimeError`` if Newton's method does not converge, because such an orbit does not exist near the guess.
 
     Parameters
     ----------
@@ -46,24 +49,15 @@ def whirl_orbit(
         for a disc with another friction law.
     guess
         Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset.
-        With a large offset the whirl of a disc no longer crosses the x axis: then use :meth:`Orbit.from_the_right` of
-        the orbit for a nearby offset.
+        With a large offset the whirl of a disc no longer crosses the x axis: then use :meth:`Orbit.from_the_right`
+        of the orbit for a nearby offset.
     at_crossing
-        Fixed value of x at y = 0, in m; the load μN becomes unknown in its place. So a branch can be followed around
-        its folds, where two whirls of the same load meet.
-    tolerance
-        Tolerance for ``simulate``.
-    samples
-        Number of intervals of the returned trajectory.
+        Fixed value of x at y = 0, in m; the load μN becomes unknown in its place. So a branch can be followed
+        around its folds, where two whirls of the same load meet.
+    tolerance, samples
+        Tolerance for ``simulate``, and number of intervals of the returned trajectory.
     precision
         Relative noise of the engine's states, whatever the tolerance, for example 1e-6 in single precision.
-
-    Raises
-    ------
-    ValueError
-        If a circle to start from does not exist, or if a disc rests on single points.
-    RuntimeError
-        If Newton's method does not converge, because such an orbit does not exist near the guess.
 
     """
     require_start(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)

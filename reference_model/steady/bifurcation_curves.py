@@ -1,7 +1,7 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-The paper suggests this analysis of the whirl but does not carry it out. It is for X0 = 0 and any isotropic friction
-law. The ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
+The paper suggests this analysis but does not carry it out. It is for X0 = 0 and any isotropic friction law. The
+ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
 :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes three unknowns, and a
 boundary has two equations, the balance and one of
 
@@ -64,17 +64,9 @@ SAME = 3e-3
 class Boundary:
     """A curve in a plane.
 
-    Parameters
-    ----------
-    kind
-        "Hopf", "fold" or "onset".
-    parameters : array of shape (n, 2)
-        Points of the curve, in the units of the two parameters.
-    alpha : array of shape (n,)
-        Angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a whirl of zero radius.
-    closed
-        Whether the last point equals the first one.
-
+    ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points in the units of the two
+    parameters, and ``alpha``, shape (n,), the angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a
+    whirl of zero radius. The last point of a ``closed`` curve equals the first one.
     """
 
     kind: Kind
@@ -86,27 +78,13 @@ class Boundary:
 def boundaries(
     plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None = None, *, step: float = 0.03
 ) -> tuple[Boundary, ...]:
-    """Return all curves of a kind in ``plane``.
+    """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
     The search starts from ``parameter_plane.LINES`` lines in each direction, including the borders. It misses only
-    closed curves between neighbouring lines.
+    closed curves between neighbouring lines. ``step`` is the largest distance of neighbouring points, in units of
+    the ranges; ``contact`` None means the law of the parameters.
 
-    Parameters
-    ----------
-    plane
-        The parameters and their ranges.
-    kind
-        "Hopf", "fold" or "onset".
-    contact
-        Friction law; None for the law of the parameters.
-    step
-        Largest distance of neighbouring points, in units of the ranges.
-
-    Raises
-    ------
-    ValueError
-        If the kind is unknown, or the disc rests on single points.
-
+    Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
     """
     return tuple(
         boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)
@@ -116,27 +94,11 @@ def boundaries(
 def crossings(
     plane: ParameterPlane, kind: Kind, name: str, value: float, contact: IsotropicContact | None = None
 ) -> tuple[float, ...]:
-    """Return where a line in ``plane`` crosses the curves of a kind, in increasing order.
+    """Return where a line in ``plane`` crosses the curves of a kind: increasing values of the other parameter.
 
-    Parameters
-    ----------
-    plane, kind, contact
-        As in :func:`boundaries`.
-    name
-        Name of the parameter that is constant along the line.
-    value
-        Its value.
-
-    Returns
-    -------
-    tuple of float
-        Values of the other parameter.
-
-    Raises
-    ------
-    ValueError
-        As :func:`boundaries`; if ``name`` is not in the plane, or ``value`` is not in its range.
-
+    ``value`` is that of the parameter ``name``, which is constant along the line. Other arguments are those of
+    :func:`boundaries`. Raises ``ValueError`` like it, if ``name`` is not in the plane, or if ``value`` is not in
+    its range.
     """
     if name not in plane.names:
         raise ValueError(f"name = {name!r}: it must be one of {' and '.join(plane.names)}")

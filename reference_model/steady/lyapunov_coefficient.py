@@ -32,26 +32,14 @@ ComplexVector = NDArray[np.complex128]
 
 
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
-    """Return Re c in 1/s of a whirl with a pair of eigenvalues on the imaginary axis.
+    """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
     The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. So a cycle of the
-    amplitude √(−Re λ/Re c) exists near the boundary.
+    amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on
+    the x axis; ``contact`` None means the law of the parameters.
 
-    Parameters
-    ----------
-    disc
-        Parameters of the system, without offset.
-    state : array of shape (6,)
-        A state on the whirl, with the centre on the x axis.
-    contact
-        Friction law; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If the eigenvalues nearest to the imaginary axis are real, the disc rests on single points, or its support is
-        not linear.
-
+    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, the disc rests on single
+    points, or its support is not linear.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the modulation")

@@ -25,21 +25,9 @@ INSET = 1e-6
 class ParameterPlane:
     """A rectangle in two parameters of a disc; all others are those of ``disc``.
 
-    Parameters
-    ----------
-    disc
-        The disc with all other parameters.
-    names
-        Names of the two parameters, as in ``DiscOnDisc``; all except those of contact, offset and nonlinear support.
-    lower, upper
-        Limits of their ranges.
-
-    Raises
-    ------
-    ValueError
-        If a name is not allowed, a range is empty or includes parameters without a whirl at any load, or if there is
-        an offset or a nonlinear support.
-
+    ``names`` are those of two parameters in ``DiscOnDisc``, except contact, offset and nonlinear support; ``lower``
+    and ``upper`` are the limits of their ranges. Raises ``ValueError`` if a name is not allowed, a range is empty
+    or includes parameters without a whirl at any load, or there is an offset or a nonlinear support.
     """
 
     disc: DiscOnDisc

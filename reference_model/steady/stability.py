@@ -29,23 +29,12 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
     """Return the derivative of the right side of eq. 1 or 19 by the state, for a sliding contact.
 
-    Parameters
-    ----------
-    state : array of shape (4,) or (6,)
-        x, y in m and vx, vy in m/s of a pin; x, y, angle (rad), vx, vy, spin (rad/s) of a disc.
-    contact
-        Friction law of a disc; None for the law of the parameters.
+    ``state`` is x, y in m and vx, vy in m/s of a pin, or x, y, angle (rad), vx, vy, spin (rad/s) of a disc; the
+    result has shape (4, 4) or (6, 6). ``contact`` is the friction law of a disc; None means the law of the
+    parameters.
 
-    Returns
-    -------
-    array of shape (4, 4) or (6, 6)
-
-    Raises
-    ------
-    ValueError
-        If a point of the contact is at rest, where Coulomb friction has no derivative; if the state is invalid or
-        exactly at the stop of the support; or if a contact is given for a pin.
-
+    Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the
+    state is invalid or exactly at the stop of the support; or if a contact is given for a pin.
     """
     state = checked_state(system, state)
     size = system.state_size // 2
@@ -93,26 +82,17 @@ def equilibrium_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
-    For a pin (3) they are known in closed form. It slips along the circumference, so friction resists its radial
-    velocity like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So the eigenvalues are the roots of mλ²
-    + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and the equilibrium is always stable if β > 0, as the paper says below
-    (5). For a disc, and for a pin on a nonlinear support, they are those of :func:`sliding_jacobian` without the
-    angle.
+    A pin slips along the circumference, so friction resists its radial velocity like a damper μN/(|ω|ρ*) and its
+    tangential velocity not at all. So its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ +
+    C, and (3) is always stable if β > 0, as the paper says below (5). For a disc, and for a pin on a nonlinear
+    support, they are those of :func:`sliding_jacobian` without the angle.
 
-    Parameters
-    ----------
-    state : array of shape (6,) or None
-        State of the disc with its centre at rest, see :func:`reference_model.self_centred_equilibria`; not used for a
-        pin.
-    contact
-        Friction law of a disc; None for the law of the parameters.
+    ``state``, shape (6,), is that of a disc with its centre at rest, see
+    :func:`reference_model.self_centred_equilibria`; a pin needs none. ``contact`` is that of
+    :func:`sliding_jacobian`.
 
-    Raises
-    ------
-    ValueError
-        If a pin has no such equilibrium, or has it on the axis, where it does not slide; if a disc rests on single
-        points, whose friction depends on the angle; as :func:`sliding_jacobian`.
-
+    Raises ``ValueError`` if a pin has no such equilibrium, or has it on the axis, where it does not slide; if a
+    disc rests on single points, whose friction depends on the angle; and as :func:`sliding_jacobian`.
     """
     if isinstance(system, DiscOnDisc):
         if state is None:
@@ -143,23 +123,15 @@ def turning_frame_jacobian(
 ) -> FloatArray:
     """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
-    The state is the position in m and the absolute velocity in m/s, both in components along the turning axes, and
-    the spin of a disc in rad/s. Without offset eq. 1 and 19 are isotropic, so the whirl is a fixed point there: p' =
-    v − κ×p, v' = a(p, v) − κ×v.
+    The unknowns are the position in m and the absolute velocity in m/s, both in components along the turning axes,
+    and the spin of a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) −
+    κ×v.
 
-    Parameters
-    ----------
-    state : array of shape (4,) or (6,), or None
-        A state on the whirl, with the centre on the x axis: y = vx = 0. None for a pin, which has at most one whirl.
-    contact
-        Friction law of a disc; None for the law of the parameters.
+    ``state`` lies on the whirl, with the centre on the x axis: y = vx = 0. A pin needs none, because it has at most
+    one whirl. ``contact`` is that of :func:`sliding_jacobian`.
 
-    Raises
-    ------
-    ValueError
-        If a pin has no whirl; if the state cannot lie on a whirl; if a disc rests on single points, whose friction
-        depends on the angle; as :func:`sliding_jacobian`.
-
+    Raises ``ValueError`` if a pin has no whirl; if the state cannot lie on a whirl; if a disc rests on single
+    points, whose friction depends on the angle; and as :func:`sliding_jacobian`.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)
@@ -190,30 +162,20 @@ def whirl_eigenvalues(
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the largest μN in N for a stable rotation of a centred disc about the axis.
 
-    With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the moment
-    of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that turns with
-    the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
+    With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the
+    moment of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that
+    turns with the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
-    C is the stiffness for small deflections, so hardening and a stop with a gap do not matter. A motion z ~ exp(±ikt)
-    in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. The instability ends
-    at the load b|ω − Ω| = μN·M, above which the disc sticks.
+    C is the stiffness for small deflections, so hardening and a stop with a gap do not matter. A motion z ~
+    exp(±ikt) in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. The
+    instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
-    Parameters
-    ----------
-    disc
-        Parameters of the system, without offset; ``friction_force`` is ignored.
-    contact
-        Friction law; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the rotation is stable
-        at every load; if b = 0 or Ω = ω, where the disc may stick at every load; or if the disc rests on single
-        points.
-
+    The result does not depend on ``friction_force``. ``contact`` None means the law of the parameters. Raises
+    ``ValueError`` if there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the
+    rotation is stable at every load; if b = 0 or Ω = ω, where the disc may stick at every load; or if the disc
+    rests on single points.
     """
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)

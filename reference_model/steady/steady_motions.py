@@ -13,15 +13,8 @@ from reference_model.systems import FloatArray
 class SelfCentredEquilibrium:
     """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
 
-    Parameters
-    ----------
-    x, y
-        Position in m.
-    eigenvalues
-        Eigenvalues in 1/s, slowest decay first: four for a pin, five for a disc, whose angle drops out.
-    stable
-        Whether all small deviations decay.
-
+    The position ``x``, ``y`` is in m. ``eigenvalues`` are in 1/s, slowest decay first: four for a pin, five for a
+    disc, whose angle drops out. The equilibrium is ``stable`` if all small deviations decay.
     """
 
     x: float
@@ -37,14 +30,7 @@ class SelfCentredEquilibrium:
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningEquilibrium(SelfCentredEquilibrium):
-    """The self-centred equilibrium of a disc, which spins about its resting centre.
-
-    Parameters
-    ----------
-    spin
-        φ̇ in rad/s.
-
-    """
+    """The self-centred equilibrium of a disc, which spins about its resting centre with ``spin`` φ̇ in rad/s."""
 
     spin: float
 
@@ -58,18 +44,10 @@ class SpinningEquilibrium(SelfCentredEquilibrium):
 class Whirl:
     """A motion on a circle about the axis with permanent slip (11).
 
-    Parameters
-    ----------
-    radius
-        Radius in m.
-    frequency
-        Angular frequency in rad/s, negative if clockwise.
-    eigenvalues
-        Eigenvalues in 1/s in the frame that turns with the whirl: first the exact zero of the free phase, then the
-        others, slowest decay first: three for a pin, four for a disc, whose angle drops out.
-    stable
-        Whether all small deviations decay, apart from a shift in phase.
-
+    ``radius`` is in m, ``frequency`` in rad/s, negative if clockwise. ``eigenvalues`` are in 1/s in the frame that
+    turns with the whirl: first the exact zero of the free phase, then the others, slowest decay first: three for a
+    pin, four for a disc, whose angle drops out. The whirl is ``stable`` if all small deviations decay, apart from a
+    shift in phase.
     """
 
     radius: float
@@ -85,14 +63,7 @@ class Whirl:
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningWhirl(Whirl):
-    """The whirl of a disc, which spins about its circling centre.
-
-    Parameters
-    ----------
-    spin
-        φ̇ in rad/s, constant.
-
-    """
+    """The whirl of a disc, which spins about its circling centre with a constant ``spin`` φ̇ in rad/s."""
 
     spin: float
 

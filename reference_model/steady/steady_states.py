@@ -66,29 +66,21 @@ def self_centred_equilibria(
     - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring it
-    is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² + (μN·F)² =
-    (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. If X0 = 0, C = 0 or ω
-    = 0 the disc spins about a centre without slip. If b = 0 and ω = Ω it behaves like a pin. It has none
+    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring
+    it is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² +
+    (μN·F)² = (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. If X0 = 0,
+    C = 0 or ω = 0 the disc spins about a centre without slip. If b = 0 and ω = Ω it behaves like a pin. It has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
-    the deflection d at the force μN·F. :func:`why_no_equilibrium` returns the condition that fails.
+    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0²
+    with the deflection d at the force μN·F. :func:`why_no_equilibrium` returns the condition that fails.
 
-    Parameters
-    ----------
-    contact
-        Friction law of a disc; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If a disc rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as
-        the rim of a continuous ring, where eigenvalues do not exist.
-
+    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` if a disc
+    rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as the rim of a
+    continuous ring, where eigenvalues do not exist.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
@@ -144,17 +136,8 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     0, the pin finally sticks. The circles of a disc are smaller and slower, because its friction acts only partly
     along the circle, so a disc may have whirls where a pin sticks.
 
-    Parameters
-    ----------
-    contact
-        Friction law of a disc; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If the offset is not zero, where the orbit is not a circle about the axis. Otherwise as
-        :func:`self_centred_equilibria`.
-
+    Raises ``ValueError`` if the offset is not zero, where the orbit is not a circle about the axis; otherwise
+    arguments and errors are those of :func:`self_centred_equilibria`.
     """
     _require_centred(system)
     if isinstance(system, PinOnDisc):
@@ -252,19 +235,9 @@ def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None 
     :func:`reference_model.formulas.disc.whirl_at`. The smallest of these loads belongs either to a whirl of zero
     radius, where it is :func:`reference_model.steady.stability.onset_load`, or to a fold, where two whirls meet.
 
-    Parameters
-    ----------
-    disc
-        Parameters of the system; ``friction_force`` is ignored.
-    contact
-        Friction law; None for the law of the parameters.
-
-    Raises
-    ------
-    ValueError
-        If whirls do not exist at any load, see :func:`whirls`, or if the support is not linear, where whirls may
-        begin and end at several loads.
-
+    The result does not depend on ``friction_force``. ``contact`` None means the law of the parameters. Raises
+    ``ValueError`` if whirls do not exist at any load, see :func:`whirls`, or if the support is not linear, where
+    whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)

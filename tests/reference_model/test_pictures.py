@@ -67,6 +67,8 @@ def test_animation_of_a_pin_ends_where_the_pin_ends(pin_motion):
 def test_invalid_speed_and_missing_matplotlib_are_errors(pin_motion, monkeypatch):
     with pytest.raises(ValueError, match=r"speed = 0 s/s: it must be > 0"):
         pin_motion.animate(speed=0.0)
+    with pytest.raises(ValueError, match=r"speed = 1e-09 s/s: more than 100,000 frames; use a larger speed"):
+        pin_motion.animate(speed=1e-9)
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
     for draw in (pin_motion.plot, pin_motion.animate):
         with pytest.raises(ModuleNotFoundError, match="pip install matplotlib"):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from compare.claims.parameters import FIG5, FIG11
-from reference_model import SimulationError, plain, self_centred_equilibria, simulate, whirls
+from reference_model import SimulationError, plain, simulate
 from reference_model.contact.contact_law import Ring
 
 STUCK_DISC = replace(FIG11, friction_force=0.3, disc_speed=0.7, shaft_speed=0.6, offset=0.05)
@@ -59,20 +59,6 @@ def test_friction_of_the_wrong_sign_is_detected(fault, monkeypatch):
     monkeypatch.setattr(plain, "on_ring", wrong)
     error, change = errors(*MOTIONS["a ring that slips"])
     assert error > 100.0 * min(change, 5e-5)
-
-
-def test_equilibrium_rests_by_eq_1():
-    (rest,) = self_centred_equilibria(replace(FIG5, friction_force=0.07))
-    friction = plain.on_ring(0.07, 0.0, 1, 0.0)
-    assert plain.rates(FIG5, friction, rest.state) == pytest.approx(np.zeros(4), abs=1e-16)
-
-
-def test_whirl_circles_by_eqs_19_to_21():
-    (whirl, *_) = whirls(FIG11)
-    friction = plain.on_ring(FIG11.friction_force, FIG11.contact_radius, 720, 0.0)
-    x, vy, spin = whirl.radius, whirl.radius * whirl.frequency, whirl.spin
-    expected = [0.0, vy, spin, -x * whirl.frequency**2, 0.0, 0.0]
-    assert plain.rates(FIG11, friction, whirl.state) == pytest.approx(expected, abs=1e-14)
 
 
 @pytest.mark.parametrize("slip", [(0.01, 0.02, 0.5, 0.3), (0.3, -0.1, -0.5, 2.0)])

@@ -1,7 +1,7 @@
 """Decorators for compiled functions: inlined, called from compiled code, or called from Python.
 
-Results must be the same bit by bit in any lane, on any number of threads, and on machines with and without FMA. So
-nothing may be reordered or contracted: ``fastmath`` stays off, although FMA would make steps a tenth faster.
+Results must be the same bit by bit in any lane, on any number of threads, and on machines with and without FMA, so
+nothing may be reordered or contracted. ``fastmath`` would make steps a tenth faster and stays off.
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-A processor takes a step in eight lanes in the time of one. One record holds all numbers of all lanes, each number in
-its own row (:mod:`records`), so a loop over the lanes becomes vector instructions. For this the loop needs its own
-function, and may call only inlined functions of numbers and tuples. The step is also compiled for one lane, with
-bit-identical results, because a single trajectory would pay for all lanes.
+A processor takes a step in eight lanes in the time of one. Each number has its own row (:mod:`records`), so a loop
+over the lanes becomes vector instructions. For this it needs its own function, and may call only inlined functions
+of numbers and tuples. The step is also compiled for one lane, because a single trajectory would pay for all.
 
 A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
-release, the end), which scalar code handles lane by lane. The result of a trajectory is the same bit by bit wherever
-and next to whichever others it runs.
+release, the end), which scalar code handles. Results are the same bit by bit in every lane and next to any others.
 """
 
 from __future__ import annotations
@@ -70,9 +68,9 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    Compiled code has no methods, so all functions of a kind of system are arguments. ``record``, shape (1,), contains
-    all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both are zeros. ``kind`` contains the
-    properties that the compiler must know. ``settings`` is passed often and should contain few arrays.
+    Compiled code has no methods, so the functions of a kind of system are arguments. ``record``, shape (1,),
+    contains all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both are zeros. ``kind``
+    contains properties for the compiler. ``settings`` is passed often and should contain few arrays.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)

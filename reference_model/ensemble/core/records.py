@@ -1,9 +1,8 @@
 """Records: the data of a lane, by name.
 
-A record is declared as a class with annotations, so code reads ``lanes.now.state.x[lane]``, and a type checker knows
-these names. For the compiler all fields have constant offsets from one address. So it sees that no two rows overlap
-and can vectorise loops over lanes. With an array of rows or a tuple of arrays such loops would take four times as
-long.
+A record is a class with annotations, so code reads ``lanes.now.state.x[lane]`` and is type-checked. For the
+compiler all fields have constant offsets from one address, so it sees that no two rows overlap and can vectorise
+loops over lanes. An array of rows or a tuple of arrays would take four times as long.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ def grown(
     """Return position, slip, rotation, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
     It ends where an explicit method can continue, or after ``longest``. ``first`` is the initial rate of slip. The
-    rotation is relative to the master disc and multiplied by κ. The work is that of friction per newton. A duration
+    rotation is relative to the master disc and multiplied by κ; the work is that of friction per newton. A duration
     of zero means that the motion could not be resolved.
     """
     carried = 1j * law.disc_speed

@@ -1,10 +1,10 @@
 """End states of a disc, detected during its motion.
 
 Self-centred
-    The state is checked once per free period. It converges to a fixed point if the motion goes to an equilibrium: if
-    d is the distance between checks and q the larger of its last two ratios, d·q/(1 − q) remains
-    (:mod:`.core.convergence`). A motion may come close to an unstable equilibrium and leave it later, as some of Fig.
-    11 do. So the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
+    The state is checked once per free period. It converges if d·q/(1 − q) is small, with the distance d between
+    checks and q the larger of its last two ratios (:mod:`.core.convergence`). Because a motion may come close to an
+    unstable equilibrium and leave it later, as some of Fig. 11 do, the equilibrium must also attract, and be as
+    close by Newton's method (:mod:`.stability`).
 Whirl
     The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
     velocities along and across it, and the spin converge from check to check.

@@ -40,9 +40,8 @@ class Moment(Record):
 class DiscLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    Further fields are the tolerance of a step; the usual step, before the edge shortened it; the end of the motion
-    (``duration``), and an earlier time that needs attention (``due``); how closely it is watched; the reasons for
-    attention (``flag``); the number of steps; and the number of successive short steps.
+    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, and ``due`` an earlier
+    time that needs attention. ``watch``, ``flag`` and ``short`` are those of a pin.
     """
 
     now: Moment

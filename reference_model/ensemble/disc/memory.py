@@ -65,10 +65,11 @@ class Series(Record):
 
 
 class DiscMemory(Record):
-    """Data of a lane: number of the trajectory, units, end state so far and its measures, the period of checks.
+    """Data of a lane that no vector needs.
 
-    Further fields are the motion at checks, at the largest x and at the largest radius; the window for measuring an
-    end state; the proposed implicit step; and the numbers of checkpoints taken and of requested times passed.
+    They are the end state so far and the period of checks; the motion at checks, at the largest x and at the
+    largest radius; the window that measures an end state; the proposed implicit step; and counts of checkpoints and
+    requested times.
     """
 
     number: int

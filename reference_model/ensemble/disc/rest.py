@@ -65,8 +65,8 @@ def _creeps_out(
 ) -> bool:
     """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
 
-    This is possible only if its pull just rotates with the master disc. As for a pin, see
-    ``pin.slip.creeps_steadily``, the remaining speed and distance are far below the tolerance.
+    This is possible only if its pull just rotates with the master disc, as for a pin in
+    ``pin.slip.creeps_steadily``. The remaining speed and distance are far below the tolerance.
     """
     s, left = slip_left(lanes, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2

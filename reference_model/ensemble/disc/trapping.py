@@ -1,13 +1,13 @@
 """Trapping regions of a disc's equilibria and whirls: a motion that enters one is decided.
 
-Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
-fan of directions shows how far out it falls along the true motion. The fan spans (x, y, vx, vy, r) or, about the
-circle of a whirl without offset, (ρ, v along and across the radius, r). If all motion crosses a sphere of V and every
+Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion.
+A fan of directions in (x, y, vx, vy, r) or, about the circle of a whirl without offset, in (ρ, v along and across
+the radius, r) shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
 smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used.
 
-Friction of single points depends on the angle, so a disc on points oscillates about the motion on a ring. There the
-spheres must be crossed inwards at all angles from INNER of the size on, and the motion ends inside of that. With an
-offset a whirl is not a circle, and no region is known beforehand.
+A disc on points oscillates about the motion on a ring. There the spheres must be crossed inwards at all angles from
+INNER of the size on, and the motion ends inside of that. With an offset a whirl is not a circle, and no region is
+known beforehand.
 """
 
 from __future__ import annotations

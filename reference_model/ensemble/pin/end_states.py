@@ -2,13 +2,13 @@
 
 Permanent stick
     In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside this largest
-    radius slips once per turn, more briefly the closer it is: if the pull exceeds g by δ, then for a time ~√δ, with
-    slip ~δ^(3/2), and the radius changes by ~δ². It decreases if k > |ω|, and no radius in between maps to itself.
-    So a pin that moves inward in a turn by less than the remaining distance creeps forever and never passes that
-    radius. It counts as stuck there (``laws.creeps_by_turns``). Without offset it does not even rest in between, but
-    slips ever more slowly, if damping prevents it from overshooting (``slip.creeps_steadily``). The same holds if the
-    simulation ends earlier, while slip is along the pull (``slip.creeps_slaved``).
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside this
+    largest radius slips once per turn: if the pull exceeds g by δ, then for a time ~√δ, with slip ~δ^(3/2), and the
+    radius changes by ~δ². It decreases if k > |ω|, and no radius in between maps to itself. So a pin that moves
+    inward in a turn by less than the remaining distance creeps forever and counts as stuck
+    (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping prevents it from
+    overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while slip is along the
+    pull (``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
@@ -22,22 +22,21 @@ Self-centred
     oscillator, except for coupling and R, which :func:`equilibrium_region` bounds. It is small and reached late.
 
 Whirl
-    The points where x is largest form a section that every closed orbit crosses once per turn. A stable orbit is a
-    fixed point on the section, and the distance from it shrinks geometrically. If all trajectories have the same
-    parameters, the orbit is computed beforehand, with a neighbourhood that the return map contracts (``trapping``): a
-    trajectory that crosses the section there tends to the orbit. Otherwise its crossings must show convergence. If d
-    is the distance between the last two crossings and q the larger of its last two ratios, d·q/(1 − q) remains. This
-    must be below ACCURACY times the speed at the crossing, which would vanish at an equilibrium. Distances that are
-    only noise also count, as long as they do not grow. A motion may come close to an unstable orbit and leave it
-    later. So the orbit must also attract, and be as close by the derivative of the return map (``stability``).
+    Every closed orbit crosses the section where x is largest once per turn. If all trajectories have the same
+    parameters, the orbit and a neighbourhood that its return map contracts are known beforehand (``trapping``).
+    Otherwise the crossings must converge: if d is the distance between the last two and q the larger of its last
+    two ratios, d·q/(1 − q) remains, and must be below ACCURACY times the speed at the crossing, which would vanish
+    at an equilibrium. Distances that are only noise also count, as long as they do not grow. Because a motion may
+    come close to an unstable orbit and leave it later, the orbit must also attract, and be as close by the
+    derivative of the return map (``stability``).
 
 Stick-slip
-    The state of a pin at its release is given by one number, its distance from the axis. So the change of that
-    distance from one release to the next is judged like the crossings above. Geometric convergence already shows that
-    the cycle attracts, because a motion cannot leave it in any other direction.
+    The distance from the axis at a release determines the state of a pin. So the change of that distance is judged
+    like the crossings above. Convergence shows that the cycle attracts, because a motion cannot leave it in another
+    direction.
 
-A motion that meets none of these criteria by the end stays undecided. A pin without damping or friction may never
-meet one, and close to a basin boundary it may take long.
+A motion that meets none of these criteria by the end stays undecided, for example without damping or friction, or
+close to a basin boundary.
 """
 
 from __future__ import annotations

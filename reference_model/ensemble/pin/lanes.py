@@ -34,9 +34,9 @@ class Moment(Record):
 class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    Further fields are the tolerance of a step; the slip speed below which rest may be near; when the lane next needs
-    attention (``due``); how closely it is watched; the reasons for attention (``flag``); the number of steps and the
-    largest allowed; and the number of successive short steps.
+    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next attention, ``watch`` how
+    closely the lane is watched, ``flag`` the reasons for attention, and ``short`` the number of successive short
+    steps.
     """
 
     now: Moment

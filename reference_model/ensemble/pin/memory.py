@@ -78,11 +78,11 @@ class Releases(Record):
 
 
 class PinMemory(Record):
-    """Data of a lane: number of the trajectory, units, duration in units, end state so far and its measures.
+    """Data of a lane that no vector needs.
 
-    Further fields are the self-centred equilibrium with its trapping region and the time between checks; crossings
-    and releases so far, and the window for measuring an end state; the proposed implicit step; and the numbers of
-    checkpoints taken and of requested times passed.
+    They are the units and the end state so far; the self-centred equilibrium with its trapping region and the time
+    between checks; crossings, releases and the window that measures an end state; the proposed implicit step; and
+    counts of checkpoints and requested times.
     """
 
     number: int

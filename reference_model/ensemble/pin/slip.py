@@ -99,9 +99,9 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
     """Return whether slip, which need not be slow, follows the pull closely enough to decay like slow slip.
 
-    Friction draws the direction of slip to that of the pull at the rate g/s. The rotation of either is slower by
-    SLAVED or more, and so are the terms omitted in s' = e − c·s and e' = −K·s of :func:`creeps_steadily`. These
-    equations keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and e >= c·s/2 implies that.
+    Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. s' =
+    e − c·s and e' = −K·s of :func:`creeps_steadily` keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and
+    e >= c·s/2 implies that.
     """
     a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
     across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0

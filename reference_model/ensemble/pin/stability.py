@@ -44,9 +44,9 @@ def orbit_attracts(
 ) -> bool:
     """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
-    ``came`` is the difference of x, y and ẏ from the previous crossing. With the derivative M of the return map, the
-    crossing of the orbit differs from the previous crossing by (1 − M)⁻¹ times ``came``. It may be up to ``near``
-    from this crossing.
+    ``came`` is the difference of x, y and ẏ from the previous crossing. With the derivative M of the return map,
+    the crossing of the orbit differs from the previous one by (1 − M)⁻¹ times ``came``, and from this one by at
+    most ``near``.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):

@@ -1,9 +1,9 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
 Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
-stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The map itself shows
-how far this extends. It is applied to points on the surface of ever larger ellipsoids, as long as each image lies in
-a clearly smaller ellipsoid, on a whirl without stick. All motions inside these ellipsoids are attracted.
+stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
+points on ever larger ellipsoids, as long as each image lies in a clearly smaller ellipsoid, on a whirl without
+stick. All motions inside these ellipsoids are attracted.
 """
 
 from __future__ import annotations

@@ -8,13 +8,10 @@ The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
   angles and senses of rotation change sign if ω < 0: the whirl for ω < −k has the frequency −k.
 - If the offset is on the other side, x and y change sign. So conditions such as (5) and (8) hold with |X0|.
 
-The balances (3) and (11) also hold for a support that hardens or has a stop, with its force in place of the spring's.
-All other formulas refuse a nonlinear support.
+The balances (3) and (11) also hold for a support that hardens or has a stop. All other formulas refuse it.
 
 A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16),
-statements about a matrix that the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where
-ω/(ω − k) is undefined.
-
+which the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where ω/(ω − k) is undefined.
 """
 
 from reference_model.formulas.pin.rest import (

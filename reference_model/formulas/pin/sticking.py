@@ -16,18 +16,8 @@ from reference_model.systems import FloatArray, PinOnDisc
 def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLike) -> FloatArray:
     """Return the right side of (7) in N²: the square of the friction force that holds a pin on the disc.
 
-    Parameters
-    ----------
-    radius : float or array
-        A, the distance of the stuck pin from the axis, in m.
-    disc_angle : float or array
-        ωt, the angle of the stuck pin, in rad.
-
-    Raises
-    ------
-    ValueError
-        If the support is not linear.
-
+    ``radius`` is the distance A of the stuck pin from the axis in m, ``disc_angle`` its angle ωt in rad; both may
+    be arrays. Raises ``ValueError`` if the support is not linear.
     """
     require_linear_support(pin)
     A, angle = np.asarray(radius, dtype=float), np.asarray(disc_angle, dtype=float)
@@ -44,30 +34,15 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 
 
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
-    """Return the rotation of the disc until release: the first root of (7) with equality.
+    """Return the rotation of the disc until release in rad, the first root of (7) with equality.
 
-    The holding force is the third side of a triangle. The first two sides are the force that carries the pin round on
-    springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle
-    between these two changes in time, and it grows as the disc turns.
+    The holding force is the third side of a triangle. The first two sides are the force that carries the pin round
+    on springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the
+    angle between these two changes in time, and it grows as the disc turns.
 
-    Parameters
-    ----------
-    radius
-        A, the distance of the stuck pin from the axis, in m, >= 0.
-    start_angle
-        Angle of the pin at the start, in rad.
-
-    Returns
-    -------
-    float
-        Angle in rad, >= 0 for either sense of rotation; ``inf`` for permanent stick, 0 if friction cannot hold the
-        pin at the start.
-
-    Raises
-    ------
-    ValueError
-        If ``radius`` is negative or the support not linear.
-
+    ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is >= 0 for
+    either sense of rotation; ``inf`` for permanent stick, 0 if friction cannot hold the pin at the start. Raises
+    ``ValueError`` if ``radius`` is negative or the support not linear.
     """
     require_linear_support(pin)
     if radius < 0.0:

@@ -12,15 +12,11 @@ from reference_model.systems import PinOnDisc
 def whirl_radius(pin: PinOnDisc) -> float:
     """Return ρ_c of (11) in m, the radius of the whirl without offset.
 
-    By the balance along the circle the pin moves at the speed v = μN/β, whatever its support. The circle follows from
-    m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap). It is unique because the right side grows with ρ.
+    By the balance along the circle the pin moves at the speed v = μN/β, whatever its support. The circle follows
+    from m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap). It is unique because the right side grows with ρ.
 
-    Raises
-    ------
-    ValueError
-        If there is no whirl. The paper says it "always exists", but by the sense of the friction force in (10) it
-        requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
-
+    Raises ``ValueError`` if there is no whirl. The paper says it "always exists", but by the sense of the friction
+    force in (10) it requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
     """
     require_whirl(pin)
     return driven_radius(pin, pin.friction_force)

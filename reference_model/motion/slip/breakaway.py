@@ -2,9 +2,8 @@
 
 If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
 that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time, and an implicit method that solves for all nodes of a polynomial at once (Radau
-IIA; Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5) needs only a few steps until slip is fast
-enough.
+motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
+Differential Equations II, IV.5) needs only a few steps until slip is fast enough.
 """
 
 from __future__ import annotations
@@ -66,28 +65,9 @@ def begin_slip(
 ) -> Outcome:
     """Follow slip from rest until an explicit method in standard unknowns can continue.
 
-    Parameters
-    ----------
-    run
-        The simulation.
-    motion
-        Coordinates of the slip.
-    t
-        Initial time.
-    y : sequence
-        Initial unknowns without the slip.
-    drift : sequence
-        Their rates at rest.
-    direction : array of shape (slip,)
-        Unit vector of the incipient slip.
-    leave
-        Returns whether the motion needs another description, for example because a point comes to rest.
-
-    Raises
-    ------
-    SimulationError
-        If the motion cannot be resolved.
-
+    ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape
+    (slip,), the unit vector of the incipient slip. ``leave`` returns whether the motion needs another description,
+    for example because a point comes to rest. Raises ``SimulationError`` if the motion cannot be resolved.
     """
     rest = _Rest(motion, np.array(y), np.array(drift), direction)
     if rest.sudden:
@@ -171,20 +151,10 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
 class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
-    It interpolates the values at the nodes. An integral of the rates would be less accurate, because stiffness
-    amplifies the residual of Newton's method in the rates.
-
-    Parameters
-    ----------
-    values
-        Unknowns as functions of the time since the step began.
-    rates : array of shape (NODES, unknowns)
-        Rates at the nodes.
-    stiffness
-        Relaxation rate of the direction of slip at the end, in 1/T.
-    falling
-        Whether slip decelerates at the end.
-
+    It interpolates the values, because stiffness amplifies the residual of Newton's method in an integral of the
+    rates. ``values`` are functions of the time since the step began, and ``rates``, shape (NODES, unknowns), those
+    at the nodes. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling``
+    is True if slip decelerates.
     """
 
     values: Polynomial

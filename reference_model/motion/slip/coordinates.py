@@ -42,18 +42,14 @@ class Coordinates:
 
     Parameters
     ----------
-    rates
-        Takes the unknowns and returns their rates in 1/T, including friction; never evaluated at zero slip.
-    many
-        The vectorised ``rates``, for arrays of shape (k,).
-    slip
-        Number of components of the slip.
+    rates, many
+        Takes the unknowns and returns their rates in 1/T, never at zero slip; vectorised for arrays of shape (k,).
     slow
         Takes the unknowns and returns the speed limit of slow slip.
     pace
         Largest rate of everything except the slip, in 1/T.
     standard
-        Takes unknowns of shape (k, n) and returns the standard unknowns of the body, (unknowns, n).
+        Converts unknowns of shape (k, n) to the standard unknowns of the body, (unknowns, n).
     angle
         Index of an angle, which has an absolute tolerance.
     turning
@@ -62,7 +58,7 @@ class Coordinates:
         Derivative of the velocity of the centre by the slip.
     grip
         Returns the margin of a held friction force; the motion ends where it falls to zero.
-    surfaces : tuple of SwitchingSurface
+    surfaces
         Surfaces of continuous but not smooth friction or support.
 
     """

@@ -1,9 +1,9 @@
 """Stiff slip by an implicit method: creep, persistently slow slip, and strong damping.
 
-If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs steps
-of about s/g, however smooth the motion. Slip of a strongly damped body may even decay forever: it creeps towards a
-position where friction just holds it, s ~ exp(−λt) (:mod:`reference_model.motion.bodies`). As functions of time, n
-and ln s are smooth, and collocation takes steps as long as the motion allows.
+If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs
+steps of about s/g. Slip of a strongly damped body may even decay forever, s ~ exp(−λt), towards a position where
+friction just holds it (:mod:`reference_model.motion.bodies`). As functions of time, n and ln s are smooth, and
+collocation takes steps as long as the motion allows.
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from compare.claims.parameters import FIG11
 from reference_model.contact.annulus import Annulus
@@ -41,17 +40,6 @@ def averaged(slip, spin, around, inverse_speed=None):
     inverse_speed = 1.0 / np.hypot(x, y) if inverse_speed is None else inverse_speed
     force_x, force_y, moment = np.mean([-x, -y, R * tangential] * inverse_speed, axis=1)
     return complex(force_x, force_y), moment
-
-
-@motions
-def test_ring_is_the_integral_20(slip, spin):
-    def integrand(around, i):
-        x, y, tangential = along_circle(slip, spin, 2.1 + around)
-        return (-x, -y, R * tangential)[i] / math.hypot(x, y) / (2.0 * math.pi)
-
-    force, moment = RING.force_and_moment(slip, spin, 2.1)
-    expected = [quad(integrand, 0.0, 2.0 * math.pi, args=(i,), epsabs=1e-13, limit=200)[0] for i in range(3)]
-    assert (force.real, force.imag, moment) == pytest.approx(expected, abs=1e-12)
 
 
 @motions

@@ -158,15 +158,6 @@ def test_sticking_radius_of_a_strongly_damped_pin_falls_from_rest(damping):
 # ---------------------------------------------------------------- (11) to (16)
 
 
-@pytest.mark.parametrize("disc_speed", [1.01, 1.6, 9.0, -1.6])
-def test_whirl_solves_the_equations_of_motion(disc_speed):
-    pin = replace(HEAVY, offset=0.0, disc_speed=disc_speed * HEAVY.natural_frequency)
-    frequency = formulas.whirl_frequency(pin)
-    residual = residual_of_eq_1_on(pin, {1: formulas.whirl_radius(pin)}, frequency)
-    assert np.abs(residual).max() < ROUNDING
-    assert frequency * disc_speed > 0.0
-
-
 def polar_rates_of_eq_10(pin, rho, rho_rate, turning_speed):
     """Return the time derivatives of ρ, ρ̇ and ψ̇ by (10) without offset, also for complex arguments."""
     lag = rho * (pin.disc_speed - turning_speed)

@@ -15,7 +15,7 @@ from disc_equations import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare.claims.parameters import FIG8, FIG11
+from compare.claims.parameters import FIG11
 from reference_model import plain
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
@@ -89,35 +89,33 @@ def slip_ratio(disc, state):
     return math.hypot(vx + disc.disc_speed * y, vy - disc.disc_speed * x) / max(rim, 1e-300)
 
 
-def assert_is_derivative(jacobian, function, state, tolerance):
-    expected = derivative(function, state)
-    assert jacobian == pytest.approx(expected, abs=tolerance * np.abs(expected).max())
+def slowest_point(disc, state):
+    x, y, angle, vx, vy, spin = state
+    slip = complex(vx + disc.disc_speed * y, vy - disc.disc_speed * x)
+    arms = disc.contact_radius * np.exp(1j * (angle + 2.0 * math.pi * np.arange(6) / 6))
+    return np.abs(slip - 1j * (disc.disc_speed - spin) * arms).min()
 
 
-@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, shaft_damping=0.0)]))
-def test_jacobian_of_a_disc_on_points_is_the_derivative_of_eq_19(state, disc):
-    disc = replace(disc, contact_points=6)
-    places = state[2] + 2.0 * math.pi * np.arange(6) / 6
-    slip = complex(state[3] + disc.disc_speed * state[1], state[4] - disc.disc_speed * state[0])
-    of_points = slip - 1j * (disc.disc_speed - state[5]) * disc.contact_radius * np.exp(1j * places)
-    if np.abs(of_points).min() > 1e-3:
-        friction = points_on_ring(disc, 6)
-        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
-
-
-@given(disc_states, st.sampled_from([LARGE, mirrored(LARGE), replace(LARGE, stiffness=0.0)]))
-def test_jacobian_of_a_disc_on_the_ring_is_the_derivative_of_eq_19(state, disc):
+@pytest.mark.parametrize("law", ["six points", "ring", "eq. 23"])
+@given(
+    state=disc_states,
+    disc=st.sampled_from(
+        [LARGE, mirrored(LARGE), replace(LARGE, shaft_damping=0.0), replace(LARGE, stiffness=0.0)]
+    ),
+)
+def test_jacobian_of_a_disc_is_the_derivative_of_eq_19(state, disc, law):
     ratio = slip_ratio(disc, state)
-    if ratio < 0.95 or ratio > 1.05:
-        friction = points_on_ring(disc, 1024)  # the error is of order ratio^1024
-        assert_is_derivative(sliding_jacobian(disc, state), lambda s: rates(disc, friction, s), state, 1e-10)
-
-
-@given(disc_states)
-def test_jacobian_of_a_disc_on_another_contact_is_the_derivative_of_eq_23(state):
-    if slip_ratio(LARGE, state) > 1e-3:
-        jacobian = sliding_jacobian(LARGE, state, ThreeTermRing(LARGE.contact_radius))
-        assert_is_derivative(jacobian, lambda s: rates(LARGE, eq_23(LARGE), s), state, 1e-10)
+    if law == "six points":
+        smooth, contact, friction = slowest_point(disc, state) > 1e-3, None, points_on_ring(disc, 6)
+        disc = replace(disc, contact_points=6)
+    elif law == "ring":  # the error of 1024 points is of order ratio^1024
+        smooth, contact, friction = abs(ratio - 1.0) > 0.05, None, points_on_ring(disc, 1024)
+    else:
+        smooth, contact, friction = ratio > 1e-3, ThreeTermRing(disc.contact_radius), eq_23(disc)
+    if smooth:
+        expected = derivative(lambda s: rates(disc, friction, s), state)
+        found = sliding_jacobian(disc, state, contact)
+        assert found == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
 
 
 # ---------------------------------------------------------------- eigenvalues
@@ -160,21 +158,6 @@ def test_slow_eigenvalue_of_a_strongly_damped_equilibrium_is_accurate_to_roundin
     assert slowest == pytest.approx(-1e-8, rel=1e-14, abs=0.0)
 
 
-@pytest.mark.parametrize("disc", [FIG8, replace(FIG8, disc_speed=-0.8), LARGE])
-def test_disc_without_relative_spin_has_the_eigenvalues_of_a_pin_and_one_of_the_spin(disc):
-    disc = replace(disc, shaft_speed=disc.disc_speed)
-    pin = PinOnDisc(
-        mass=disc.mass, stiffness=disc.stiffness, damping=disc.damping, friction_force=disc.friction_force,
-        disc_speed=disc.disc_speed, offset=disc.offset,
-    )  # fmt: skip
-    (equilibrium,) = self_centred_equilibria(disc)
-    # At pure slip U the moment is μN·R·W/(2U) for small W.
-    slip = abs(disc.disc_speed) * math.hypot(equilibrium.x, equilibrium.y)
-    resistance = disc.shaft_damping + disc.friction_force * disc.contact_radius**2 / (2.0 * slip)
-    expected = [*equilibrium_eigenvalues(pin), -resistance / disc.polar_inertia]
-    assert_same_eigenvalues(equilibrium.eigenvalues, expected, tolerance=1e-12)
-
-
 # ---------------------------------------------------------------- the onset
 
 TURNING = [
@@ -203,11 +186,6 @@ def test_centred_rotation_loses_stability_at_the_onset_load_with_the_natural_fre
     )
     assert below
     assert not above
-
-
-def test_onset_on_the_ring_is_that_of_rotating_damping():
-    """Calculated by hand: W = 0.12·0.25 − μN·0.0144/0.015 and μN·0.5/(2W) = 0.5 give μN = 0.03/1.46."""
-    assert onset_load(FIG11) == pytest.approx(0.03 / 1.46, rel=1e-14)
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.5, 1.0, -1.0])
@@ -262,16 +240,6 @@ def test_pin_without_a_sliding_equilibrium(changes):
 
 
 # ---------------------------------------------------------------- existence of whirls
-
-
-@pytest.mark.parametrize("damping", [1e-10, 0.1, 10.0])
-@pytest.mark.parametrize("disc_speed", [1.0 + 1e-9, 1.5, 1e4, -1.5])
-def test_whirl_is_stable_wherever_it_exists(damping, disc_speed):
-    pin = replace(CENTRED, damping=damping, disc_speed=disc_speed)
-    (whirl,) = whirls(pin)
-    assert (whirl.radius, whirl.frequency) == (formulas.whirl_radius(pin), formulas.whirl_frequency(pin))
-    assert whirl.eigenvalues == whirl_eigenvalues(pin)
-    assert whirl.stable
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,13 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
 Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit an explicit step long after the fast motion has died out, but not this method (Hairer and
-Wanner, Solving Ordinary Differential Equations II, IV.5).
+β/m. These rates limit an explicit step, but not this method (Hairer and Wanner, Solving Ordinary Differential
+Equations II, IV.5).
 
-The unknowns of Newton's method are the components of slip at the nodes: (u_x, u_y) of a pin, and also r of a disc.
-The position of the centre depends on slip linearly. Friction is the gradient of a mean slip speed P, so its
-derivative −g·P'' is symmetric and zero along the slip. The component along the slip is removed from the differences,
-because rounding would spoil it.
+The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The position
+of the centre depends on slip linearly. The derivative −g·P'' of friction is symmetric and zero along the slip,
+because P is a potential of degree one. Rounding would spoil the component along the slip, so it is removed from the
+differences.
 """
 
 from __future__ import annotations
@@ -253,9 +253,8 @@ def stride_with(
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
-    ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns the position, the
-    components of slip, the angle, the duration (zero if the step is not worthwhile), the slip distance and the
-    proposed next step.
+    ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns position, slip,
+    angle, duration (zero if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)

@@ -37,9 +37,8 @@ E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
 TURNED_BACK = 256.0
 """Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
-The error estimate cannot judge such a step, because friction reverses between two stages: at a tolerance of 1e-8 it
-accepted 65 of 20,000 reversals with errors of more than a hundred tolerances. Slip that falls to zero in stretched
-time never reverses.
+Friction reverses between two stages of such a step. At a tolerance of 1e-8 the error estimate accepted 65 of 20,000
+reversals with errors of more than a hundred tolerances.
 """
 
 LOCAL = 0.1
