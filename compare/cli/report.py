@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from compare.run.workers import Failure
 
 
+FULL = "report"
+"""Default folder of a full report."""
+
 MOST_LISTED = 10
 """Largest number of measurements that a message lists."""
 
@@ -120,7 +123,7 @@ def report(
     seed: Seed = None,
     study_limit: Limit = None,
     min_conclusive: LeastConclusive = 1,
-    output: Folder = Path("report"),
+    output: Folder = Path(FULL),
     jobs: Jobs = None,
     resume: Resume = False,
     data: Logs = None,
@@ -145,6 +148,7 @@ def report(
       friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.claims.errata import ERRATA
+    from compare.report.results_json import seconds_of_last_run
     from compare.run.runner import loaded, run, seed_of
     from compare.run.workers import Workers
 
@@ -167,6 +171,7 @@ def report(
             limit=study_limit,
             resume=resume,
             errata=() if part else ERRATA,
+            expected=seconds_of_last_run(output, Path(FULL)),
             progress=progress,
         )
     matrix = _write(result, output)
