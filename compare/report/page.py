@@ -43,15 +43,6 @@ class Picture:
         return str(PurePosixPath(self.path).with_suffix(".png")) if self.moves else self.path
 
 
-@dataclass(frozen=True)
-class Exceptional:
-    """A line below the totals; ``target`` is the anchor of its explanation."""
-
-    state: State
-    text: str
-    target: str
-
-
 HERO = "drivetrain-picture"
 """Figure on the first screen, if it was drawn."""
 
@@ -175,8 +166,8 @@ def _others_in_words(totals: Counter[State]) -> str:
     return ", ".join(words + [f"{totals[state]} {state.value}" for state in GAPS if totals[state]])
 
 
-def _exceptions(matrix: Matrix) -> list[Exceptional]:
-    """Return the claims that differ or are inconclusive, and the engines that failed, worst first."""
+def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
+    """Return state, text and anchor of claims that differ or are inconclusive and of failed engines, worst first."""
     found: dict[tuple[State, str, str], list[str]] = {}
     for row in matrix.rows:
         for column, cell in row.cells.items():
@@ -189,10 +180,9 @@ def _exceptions(matrix: Matrix) -> list[Exceptional]:
             columns = found.setdefault((cell.state, text, target), [])
             columns += [column] if column not in columns else []
     lines = [
-        Exceptional(state, f"{', '.join(columns)}: {text}", target)
-        for (state, text, target), columns in found.items()
+        (state, f"{', '.join(columns)}: {text}", target) for (state, text, target), columns in found.items()
     ]
-    return sorted(lines, key=lambda line: WORST_FIRST.index(line.state))
+    return sorted(lines, key=lambda line: WORST_FIRST.index(line[0]))
 
 
 def _particular(row: Row, claim: Claim) -> str:

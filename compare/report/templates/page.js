@@ -4,10 +4,12 @@
   document.documentElement.classList.add("scripted");
   const form = document.getElementById("find");
   const found = document.getElementById("found");
-  // "Eq. 16" finds "(16)"; hyphens, dashes, accents and the height of digits do not count
+  // "Eq. 16" finds "(16)"; hyphens, dashes, accents and the height of digits do not count.
+  // Claims call a quasi-periodic motion modulated.
   const plain = (text) => text.normalize("NFKD").toLowerCase()
     .replace(/\b(?:eqs?|equations?)\.?\s*\(?(\d+)\)?/g, "eq. ($1)")
-    .replace(/[\p{Pd}\u2212\u00ad\p{M}]/gu, "");
+    .replace(/[\p{Pd}\u2212\u00ad\p{M}]/gu, "")
+    .replace(/quasi ?periodic/g, "modulated");
   const recorded = [...document.querySelectorAll("tbody[data-engine]")];
   const claims = [...document.querySelectorAll("details.claim")].map((element) => ({
     element,

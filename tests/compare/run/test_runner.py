@@ -54,6 +54,21 @@ def test_a_failing_engine_and_a_dying_process_do_not_affect_the_rest(way, both_w
         assert result.outcomes["death", "good"].reason == "its process ended unexpectedly (exit status 7)"
 
 
+def test_progress_names_the_running_work_and_the_remaining_time(tmp_path, in_this_process):
+    told = []
+    run(
+        (fake.AGREEMENT,),
+        (fake.GOOD, fake.ALSO_GOOD),
+        folder=tmp_path,
+        expected={("agreement", "good"): 1000.0},  # the study itself expects 1 s
+        progress=lambda *one: told.append(one),
+    )
+    assert told[0] == (0, 3, "agreement good", pytest.approx(1001.0, abs=1e-6))
+    assert told[1] == (1, 3, "agreement also-good", pytest.approx(1.0, abs=1e-6))
+    assert told[2][2] == "agreement figures"
+    assert told[-1] == (3, 3, "", 0.0)
+
+
 def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
     """The clock jumps during the measurement, first to just before the limit, then beyond it.
 
