@@ -1,8 +1,9 @@
 """Take the numbers in README, docs/findings.md and the paper from a report.
 
 ``builders/findings.md`` and the paper's source name each number as in ``#n("fig05: dividing velocity, reference")``:
-a study and a quote of one of its claims (see ``compare.report.quotes``). "claims" and "verdicts: independent" are
-counts of a whole report. README contains the numbers of ``IN_README`` literally::
+a study and a quote of one of its claims (see ``compare.report.quotes``). "claims", "checks" and
+"verdicts: independent" are counts of a whole report, and "engine: Bullet" is its sentence about an engine. README
+contains the numbers of ``IN_README`` literally::
 
     python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md
     python builders/findings.py check report/results.json   # fails if the report deviates from them
@@ -17,7 +18,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
@@ -46,17 +47,21 @@ Results = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Number:
-    """A printed number with its value, its error and its nature."""
+    """A printed number with its value, its error and its nature; a sentence about an engine has only its text."""
 
     text: str
     value: float
     error: float
-    nature: Nature
+    nature: Nature | Literal["text"]
+
+    def __str__(self) -> str:
+        """Return the sentence, or the value with its error."""
+        return self.text if self.nature == "text" else f"{self.value:.12g} ± {self.error:.2g}"
 
     def deviates_from(self, other: Number) -> bool:
         """Return whether two reports differ: counts by any amount, other numbers by more than their errors."""
-        if self.nature != other.nature:
-            return True
+        if self.nature != other.nature or self.nature == "text":
+            return (self.nature, self.text) != (other.nature, other.text)
         if self.nature == "count":
             return self.value != other.value
         if self.nature == "error":
@@ -90,11 +95,14 @@ def number_in(results: Results, name: str) -> Number | None:
     Raises ``ValueError`` if the report contains the study but none of its claims has that name.
     """
     kind, _, rest = name.partition(": ")
-    if kind in ("claims", "verdicts"):
+    if kind in ("claims", "checks", "verdicts", "engine"):
         if not _is_whole(results):
             return None
-        counts = _agreeing_by_evidence(results) if kind == "verdicts" else {"": _count_of_claims(results)}
-        return Number(str(counts[rest]), counts[rest], 0.0, "count")
+        if kind == "engine":
+            return Number(results["in_short"][rest], 0.0, 0.0, "text")
+        counts = {"claims": _count_of_claims(results), "checks": sum(results["totals"].values())}
+        count = counts[kind] if kind in counts else _agreeing_by_evidence(results)[rest]
+        return Number(str(count), count, 0.0, "count")
     study = next((study for study in results["studies"] if study["name"] == kind), None)
     if study is None:
         return None
@@ -154,10 +162,7 @@ def deviations(results: Results, root: Path = ROOT) -> Iterator[str]:
     for name, number in kept(root).items():
         measured = number_in(results, name)
         if measured is not None and number.deviates_from(measured):
-            yield (
-                f"{name}: docs/numbers.json has {number.value:.12g} ± {number.error:.2g}, "
-                f"the report {measured.value:.12g} ± {measured.error:.2g}"
-            )
+            yield f"{name}: docs/numbers.json has {number}, the report {measured}"
 
 
 def unmeasured(results: Results) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -69,6 +70,12 @@ class Recorded:
         True if the friction is the engine's own, False if it is a user-defined force.
     cases : mapping
         Name of the motion and "slip" or "stick", by the sentence of each claim.
+    law, says, adapter : str
+        Shape of the friction law, description of the setting, and file of the adapter; "" if unknown.
+    advice : str
+        Refinement for a small error, or the error of the finest run, as a clause; "" without advice.
+    whirl : float
+        Relative error of the radius of the whirl; NaN if not simulated.
 
     """
 
@@ -79,6 +86,11 @@ class Recorded:
     claims: tuple[Claim, ...]
     own: bool = True
     cases: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    law: str = ""
+    says: str = ""
+    adapter: str = ""
+    advice: str = ""
+    whirl: float = math.nan
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validations")

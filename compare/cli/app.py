@@ -10,6 +10,8 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 try:
@@ -33,7 +35,7 @@ try:
     from compare.cli.matrix import matrix
     from compare.cli.options import studies_of
     from compare.cli.plan import plan
-    from compare.cli.report import report
+    from compare.cli.report import FULL, report
     from compare.cli.simulate import simulate
     from compare.cli.sweep import sweep
 except KeyboardInterrupt:  # Ctrl-C during the imports
@@ -47,19 +49,43 @@ if TYPE_CHECKING:
 def list_studies(context: typer.Context) -> None:
     """List studies and engines.
 
+    Each study has its time, its level and its engines. Times are those of the last report in the folder report, or
+    estimates for one engine.
+
     \b
     Example:
       friction-discs list
     """
-    from compare.engines import engines, on_request
+    from compare.engines import INSTALLED, engines, on_request
+    from compare.engines.registry import ENTRY_POINTS
+    from compare.report.results_json import seconds_of_last_run
 
-    studies = studies_of(context, [])
-    width = max((len(study.name) for study in studies), default=0)
-    usual, others = (", ".join(engine.name for engine in some) for some in (engines(), on_request()))
+    spent: dict[str, float] = {}
+    for (name, _), seconds in seconds_of_last_run(Path(FULL)).items():
+        spent[name] = spent.get(name, 0.0) + seconds
+    lines = [
+        (
+            study.name,
+            f"{spent.get(study.name, study.seconds):.1f} s",
+            "quick" if study.quick else "full",
+            ", ".join(study.only) or "every engine",
+            study.title,
+        )
+        for study in studies_of(context, [])
+    ]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     print("Studies:")
-    for study in studies:
-        print(f"  {study.name:{width}}  {study.title}")
-    print(f"Engines: {usual}; on request: {others}")
+    for line in lines:
+        print("  " + "  ".join(f"{text:{width}}" for text, width in zip(line, widths, strict=True)).rstrip())
+    settings = (
+        f"{name}:{setting}" if i else name
+        for name, known in INSTALLED.items()
+        for i, setting in enumerate(known.settings)
+    )
+    packaged = [one.name for one in entry_points(group=ENTRY_POINTS)]
+    print("Engines:", ", ".join(engine.name for engine in engines()))
+    print("Engines on request:", ", ".join([*(engine.name for engine in on_request()), *settings, *packaged]))
+    print("Your own engines: MODULE:FUNCTION, exec:COMMAND, files:DIR, fmu:FILE")
 
 
 def errata() -> None:
@@ -92,7 +118,7 @@ def errata() -> None:
 
 app = typer.Typer(
     name="friction-discs",
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -167,6 +193,8 @@ def friction_discs(
       friction-discs sweep basin pin
       friction-discs export-fmu clutch --set plates=4 --output clutch.fmu
       friction-discs errata
+
+    Shell completion: run friction-discs --install-completion once, and open a new shell.
     """
     if version:
         from compare.run.provenance import version_of

@@ -92,28 +92,49 @@ LINE_INTERVAL = 10.0
 
 
 @contextmanager
-def measurements() -> Iterator[Callable[[int, int, str], None]]:
-    """Show the number of finished measurements: a bar on a terminal, else a line every ``LINE_INTERVAL`` s."""
+def _bar(*columns: Any) -> Iterator[Callable[..., None]]:
+    """Show a bar; the function sets its description and numbers, and forgets the rate so far on ``restart``."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress
+
+    bar = Progress(BarColumn(), MofNCompleteColumn(), *columns, console=Console(stderr=True), transient=True)
+    with bar:
+        task = bar.add_task("", total=None, visible=False)
+
+        def show(restart: bool, **numbers: Any) -> None:
+            if restart:
+                bar.reset(task, total=numbers["total"], completed=numbers["completed"])
+            bar.update(task, visible=True, **numbers)
+
+        yield show
+
+
+@contextmanager
+def measurements() -> Iterator[Callable[..., None]]:
+    """Show finished measurements, the remaining time in s and the running ones: a bar, or a line at intervals."""
     if not sys.stderr.isatty():
         yield _lines()
         return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import TextColumn, TimeElapsedColumn
 
-    columns = (BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TextColumn("{task.description}"))
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("")
-        yield lambda done, total, name: bar.update(task, completed=done, total=total, description=name)
+    with _bar(TimeElapsedColumn(), TextColumn("{task.description}", markup=False)) as show:
+        yield lambda done, total, now, left=0.0: show(
+            False, completed=done, total=total, description=_left(left) + now
+        )
 
 
-def _lines() -> Callable[[int, int, str], None]:
+def _left(seconds: float) -> str:
+    return f"about {seconds:.0f} s left: " if seconds >= 1.0 else ""
+
+
+def _lines() -> Callable[..., None]:
     last = time.monotonic()
 
-    def show(done: int, total: int, name: str) -> None:
+    def show(done: int, total: int, now: str, left: float = 0.0) -> None:
         nonlocal last
         if time.monotonic() - last >= LINE_INTERVAL:
             last = time.monotonic()
-            print(f"{done} of {total}: {name}", file=sys.stderr, flush=True)
+            print(f"{done} of {total}: {_left(left)}{now}", file=sys.stderr, flush=True)
 
     return show
 
@@ -124,27 +145,19 @@ def trajectories() -> Iterator[Progress]:
     if not sys.stderr.isatty():
         yield lambda what, done, total: None
         return
-    from rich import progress as rich
-    from rich.console import Console
+    from rich.progress import ProgressColumn, Task, TextColumn, TimeRemainingColumn
     from rich.text import Text
 
-    class Rate(rich.ProgressColumn):
-        def render(self, task: rich.Task) -> Text:
+    class Rate(ProgressColumn):
+        def render(self, task: Task) -> Text:
             return Text("" if task.speed is None else f"{task.speed:.3g}/s")
 
-    columns = (
-        rich.TextColumn("{task.description}"),
-        rich.BarColumn(),
-        rich.MofNCompleteColumn(),
-        Rate(),
-        rich.TimeRemainingColumn(),
-    )
-    with rich.Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("")
+    with _bar(Rate(), TimeRemainingColumn(), TextColumn("{task.description}")) as show:
+        last = ""
 
-        def show(what: str, done: int, total: int) -> None:
-            if bar.tasks[0].description != what:
-                bar.reset(task, total=total, completed=done, description=what)
-            bar.update(task, completed=done)
+        def shown(what: str, done: int, total: int) -> None:
+            nonlocal last
+            show(what != last, description=what, completed=done, total=total)
+            last = what
 
-        yield show
+        yield shown

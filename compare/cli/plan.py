@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from compare.cli.command import FINE, SOMETHING_DIFFERS, BadInputError, measurements, printing, refused, say
 from compare.cli.options import Folder, Jobs, Seed, check_folder, cores, studies_of
 from compare.cli.report import Level
+
+if TYPE_CHECKING:
+    from compare.claims.study import Study
+    from compare.run.plan import Planned
+    from compare.run.workers import Failure
 
 Names = Annotated[
     list[str] | None,
@@ -53,22 +59,16 @@ def plan(
         kinds = tuple(dict.fromkeys(one_of("kind of system", one, KINDS) for one in kind or ["pin"]))
         check_folder(output)
 
-    from compare.run.plan import Planned, planned, write_plan
+    from compare.run.plan import Planned, write_plan
     from compare.run.runner import seed_of
-    from compare.run.workers import Failure, Workers
+    from compare.run.workers import Failure
 
     for study in studies:
         if names and study.only:
             say(f"{study.name} applies only to {' and '.join(study.only)}; skipped", FINE)
     studies = tuple(study for study in studies if not study.only)
-    found: dict[str, Planned | Failure] = {}
     seed = seed_of(level, seed)
-    with Workers(jobs or cores()) as workers, measurements() as progress:
-        for study in sorted(studies, key=lambda study: -study.seconds):
-            workers.submit(study.name, planned, study, kinds, seed)
-        for count, done in enumerate(workers.finished(), 1):
-            found[str(done.key)] = done.value
-            progress(count, len(studies), str(done.key))
+    found = _found(studies, kinds, seed, jobs or cores())
     plans = {study.name: one for study in studies if isinstance(one := found[study.name], Planned)}
     motions = dict.fromkeys(line for one in plans.values() for line in one.motions)
     for name, failure in found.items():
@@ -81,6 +81,28 @@ def plan(
             "no motions to plan: they are of another --kind, or they depend on earlier answers"
         )
     write_plan(output, kinds, motions)
+    _print_plans(plans, len(motions), output, seed)
+    return FINE if len(plans) == len(found) else SOMETHING_DIFFERS
+
+
+def _found(
+    studies: tuple[Study, ...], kinds: tuple[str, ...], seed: int | None, jobs: int
+) -> dict[str, Planned | Failure]:
+    """Return the plan of each study, or its failure."""
+    from compare.run.plan import planned
+    from compare.run.workers import Workers
+
+    found: dict[str, Planned | Failure] = {}
+    with Workers(jobs) as workers, measurements() as progress:
+        for study in sorted(studies, key=lambda study: -study.seconds):
+            workers.submit(study.name, planned, study, kinds, seed)
+        for count, done in enumerate(workers.finished(), 1):
+            found[str(done.key)] = done.value
+            progress(count, len(studies), str(done.key))
+    return found
+
+
+def _print_plans(plans: Mapping[str, Planned], count: int, output: Path, seed: int | None) -> None:
     with printing():
         for name, one in plans.items():
             print(
@@ -89,5 +111,4 @@ def plan(
         command = f"friction-discs report --engine files:{output}" + (
             f" --seed {seed}" if seed is not None else ""
         )
-        print(f"{len(motions)} motions in {output}; judge the answers with {command}")
-    return FINE if len(plans) == len(found) else SOMETHING_DIFFERS
+        print(f"{count} motions in {output}; judge the answers with {command}")

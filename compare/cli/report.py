@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from compare.run.workers import Failure
 
 
+FULL = "report"
+"""Default folder of a full report."""
+
 MOST_LISTED = 10
 """Largest number of measurements that a message lists."""
 
@@ -120,22 +123,20 @@ def report(
     seed: Seed = None,
     study_limit: Limit = None,
     min_conclusive: LeastConclusive = 1,
-    output: Folder = Path("report"),
+    output: Folder = Path(FULL),
     jobs: Jobs = None,
     resume: Resume = False,
     data: Logs = None,
 ) -> int:
     """Measure the claims of studies and write a report.
 
-    The report consists of index.html, results.json, junit.xml and figures. A full report goes into the folder report,
-    a partial one (some studies or engines, one claim, the quick level) into report-part. Choose another folder with
-    --output.
+    It writes index.html, results.json, junit.xml and figures. Without --output, a full report goes into the folder
+    report, and a partial one (some studies or engines, one claim, the quick level) into report-part.
 
     The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
     if too few claims agree or some were not finished in time. It is 4 if an engine named with --engine has no
-    verdict, or omits a claim without a reason. It is 130 after Ctrl-C; the report then contains the finished
-    measurements, and --resume completes it.
-    --resume does not notice changes to data files of your own engine; then run the command without it.
+    verdict, or omits a claim without a reason. It is 130 after Ctrl-C; --resume then completes the report. --resume
+    does not notice changes to data files of your own engine.
 
     \b
     Examples:
@@ -145,6 +146,7 @@ def report(
       friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.claims.errata import ERRATA
+    from compare.report.results_json import seconds_of_last_run
     from compare.run.runner import loaded, run, seed_of
     from compare.run.workers import Workers
 
@@ -157,7 +159,6 @@ def report(
         check_folder(output)
         check_folder(store := store_of(output))
 
-    part = context.obj is not None or names or claim is not None or level != "full"
     with measurements() as progress:
         result = run(
             studies,
@@ -166,7 +167,8 @@ def report(
             jobs=jobs or cores(),
             limit=study_limit,
             resume=resume,
-            errata=() if part else ERRATA,
+            errata=() if context.obj is not None or names or claim or level != "full" else ERRATA,
+            expected=seconds_of_last_run(output, Path(FULL)),
             progress=progress,
         )
     matrix = _write(result, output)

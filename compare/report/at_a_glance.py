@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from urllib.parse import quote
 
-from compare.claims.claim import GRADES, Evidence, Verdict
+from compare.claims.claim import GRADES, Claim, Evidence, Verdict
 from compare.claims.study import Recorded
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
 from compare.report.numbers import error_text
@@ -25,7 +25,7 @@ class Glance:
     """Summary of one engine.
 
     ``cells`` are the recorded motions at its best setting, None for a motion that it does not simulate. ``where``
-    links to the details.
+    links to its claims, and ``why`` to the reasons for its grade.
     """
 
     engine: str
@@ -33,6 +33,7 @@ class Glance:
     grade: str
     sentence: str
     where: str
+    why: str
     cells: tuple[Cell | None, ...] = ()
 
 
@@ -47,7 +48,7 @@ def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
             if engine not in run.engines
         }
         order = sorted(others, key=lambda name: (_RANKS.index(_grade(others[name])), _share(others[name])))
-        found += [_recorded(recorded, others[name], recorded.by_engine[name]) for name in order]
+        found += [_recorded(recorded, others[name]) for name in order]
     return tuple(found)
 
 
@@ -57,8 +58,31 @@ _RANKS = [grade.value for grade in GRADES] + [ROUGH, OPEN, DIFFERS]
 
 def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
     """Return a heading for each recorded motion."""
-    first = recorded.settings[0]
-    return tuple(first.cases.get(claim.sentence, (claim.sentence, ""))[0] for claim in recorded.claims)
+    return tuple(_case(recorded.settings[0], claim) for claim in recorded.claims)
+
+
+def _case(setting: Recorded, claim: Claim) -> str:
+    return setting.cases.get(claim.sentence, (claim.sentence, ""))[0]
+
+
+def contrast(found: Sequence[Glance]) -> str:
+    """Return an example of a small error that differs and a larger one that agrees; "" if there is none."""
+    errors = {
+        state: [
+            (float(cell.claims[0].difference.max()), one.engine)
+            for one in found
+            for cell in one.cells
+            if cell is not None and cell.state is state
+        ]
+        for state in (State.DIFFERS, State.AGREES)
+    }
+    if not (errors[State.DIFFERS] and errors[State.AGREES]):
+        return ""
+    small, large = min(errors[State.DIFFERS]), max(errors[State.AGREES])
+    if small >= large:
+        return ""
+    texts = [f"{error_text(size, 1)} m of {engine}" for size, engine in (small, large)]
+    return f"For example, the {texts[0]} do not fall with the step, but the {texts[1]} do."
 
 
 def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | None) -> Glance:
@@ -71,19 +95,21 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
     else:
         grade = OPEN
     independent = matrix.of_evidence(INDEPENDENT, engine)
-    agreeing = (
-        f"{independent[State.AGREES]} of {sum(independent.values())} claims agree on independent evidence"
-    )
+    agreeing = f"{independent[State.AGREES]} of {sum(independent.values())} checks against independent evidence agree"
     gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
     rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
+    where = why = f"?engine={quote(engine)}#studies"
+    sentences = [", ".join([agreeing, *rest])]
+    cells: tuple[Cell | None, ...] = ()
     settings = recorded.by_engine.get(engine, []) if recorded is not None else []
-    if settings and grade != DIFFERS:  # compare all engines by the same motions
-        grade = _grade(settings[0])
-    errors = _errors(settings[0]) if settings else ""
-    parts = [agreeing, *rest, *([errors] if errors else [])]
-    cells = recorded.cells(settings[0]) if recorded is not None and settings else ()
-    where = f"?engine={quote(engine)}#studies"
-    return Glance(engine, run.versions.get(engine, ""), grade, f"{'; '.join(parts)}.", where, cells)
+    if recorded is not None and settings:
+        best = settings[0]
+        if grade != DIFFERS:  # compare all engines by the same motions
+            grade, why = _grade(best), f"#{recorded.anchor(engine)}"
+        sentences = [_judged(best), *([best.advice] if best.advice else []), *sentences]
+        cells = recorded.cells(best)
+    version = run.versions.get(engine, "")
+    return Glance(engine, version, grade, _joined(sentences), where, why, cells)
 
 
 INDEPENDENT: Evidence = "independent"
@@ -103,41 +129,54 @@ def _best(settings: Sequence[Recorded]) -> Recorded:
     return min([setting for setting in settings if setting.own] or settings, key=badness)
 
 
-def _recorded(recorded: RecordedMatrix, best: Recorded, settings: Sequence[Recorded]) -> Glance:
-    """Return the summary of a recorded engine: its best setting, and the settings that differ."""
+def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
+    """Return the summary of a recorded engine: its best setting, and the settings to avoid."""
     cells = recorded.cells(best)
-    names = cases(recorded)
-    parts = [f"{best.setting}: {_errors(best)}" if best.setting else _errors(best)]
-    for state, word in ((State.DIFFERS, "differs"), (State.INCONCLUSIVE, "too coarse to decide")):
-        listed = [name for name, cell in zip(names, cells, strict=True) if cell and cell.state is state]
-        parts += [f"{word}: {', '.join(listed)}"] if listed else []
-    lacking = [name for name, cell in zip(names, cells, strict=True) if cell is None]
-    parts += [f"not simulated: {', '.join(lacking)}"] if lacking else []
-    wrong = [one.setting for one in settings if one is not best and _grade(one) == DIFFERS]
-    parts += [f"another friction law with {', '.join(wrong)}"] if wrong else []
-    return Glance(
-        best.engine,
-        best.version,
-        _grade(best),
-        f"{'; '.join(parts)}.",
-        f"#{recorded.study.name}-recorded",
-        cells,
-    )
+    sentences = [f"{best.setting}: {_judged(best)}" if best.setting else _judged(best)]
+    sentences += [best.advice] if best.advice else []
+    if coarse := [_case(best, one) for one in best.claims if one.verdict is Verdict.INCONCLUSIVE]:
+        sentences.append(f"too coarse to decide: {', '.join(coarse)}")
+    if lacking := [name for name, cell in zip(cases(recorded), cells, strict=True) if cell is None]:
+        sentences.append(f"not simulated: {', '.join(lacking)}")
+    avoided: dict[str, list[str]] = {}
+    for one in recorded.by_engine[best.engine]:
+        if one is not best and _grade(one) == DIFFERS:
+            avoided.setdefault(_judged(one), []).append(one.setting)
+    sentences += [f"avoid {' and '.join(names)}: {judged}" for judged, names in avoided.items()]
+    anchor = recorded.anchor(best.engine)
+    where = f"?engine={quote(best.engine)}#{quote(anchor)}"
+    return Glance(best.engine, best.version, _grade(best), _joined(sentences), where, f"#{anchor}", cells)
 
 
-def _errors(setting: Recorded) -> str:
-    """Return the largest errors of agreeing motions, separately for slipping and for stick and release."""
-    words = []
-    for part, name in (("slip", "slipping"), ("stick", "in stick and release")):
-        claims = [
-            claim
-            for claim in setting.claims
-            if setting.cases.get(claim.sentence, ("", ""))[1] == part and claim.verdict is Verdict.AGREES
-        ]
-        if claims:
-            largest = max(claims, key=lambda claim: float(claim.difference.max()))
-            words.append(f"≤ {error_text(float(largest.difference.max()), 1)} {largest.unit} {name}")
-    return ", ".join(words)
+def _judged(setting: Recorded) -> str:
+    """Return the verdict on the friction of a setting as a clause."""
+    wrong = [_case(setting, claim) for claim in setting.claims if claim.verdict is Verdict.DIFFERS]
+    if not wrong:
+        agrees = any(claim.verdict is Verdict.AGREES for claim in setting.claims)
+        return (
+            "Coulomb friction correct, errors fall with the step" if agrees else "errors too large to decide"
+        )
+    which = f" ({', '.join(wrong)})" if len(wrong) <= MOST_NAMED else ""
+    text = f"wrong in {len(wrong)} of {len(setting.claims)} motions{which} at any step"
+    if setting.law not in ("", CONE):
+        text = f"friction is a {setting.law}, {text}"
+    if setting.whirl > LEAST_SHARE:
+        text += f", radius of the whirl {100.0 * setting.whirl:.0f} % off"
+    return text
+
+
+MOST_NAMED = 2
+"""Largest number of wrong motions that a sentence names."""
+
+LEAST_SHARE = 0.01
+"""Smallest relative error of the radius of a whirl that a sentence names."""
+
+CONE = "cone"
+"""Name of Coulomb's law, as in ``compare.diagnosis.laws``."""
+
+
+def _joined(sentences: Sequence[str]) -> str:
+    return " ".join(f"{text[0].upper()}{text[1:]}." for text in sentences)
 
 
 def _share(setting: Recorded) -> float:

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from pathlib import Path
 from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
@@ -13,6 +14,7 @@ from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
 from compare.engines import repeated_by, shares_code
 from compare.report.numbers import deciding, in_short
+from compare.run.provenance import ROOT
 from compare.run.runner import Run
 from compare.run.workers import Failure
 
@@ -144,6 +146,20 @@ class RecordedMatrix:
         for setting in self.settings:
             found.setdefault(setting.engine, []).append(setting)
         return found
+
+    @property
+    def adapters(self) -> dict[str, Path]:
+        """The source files of the engines' adapters that exist here, by their paths in the report."""
+        found = {
+            f"adapters/{Path(one.adapter).name}.txt": ROOT / one.adapter
+            for one in self.settings
+            if one.adapter
+        }
+        return {path: file for path, file in found.items() if file.is_file()}
+
+    def anchor(self, engine: str) -> str:
+        """Return the anchor of an engine's settings in the page."""
+        return f"{self.study.name}-recorded/{slug(engine)}"
 
     @property
     def claims(self) -> tuple[Claim, ...]:

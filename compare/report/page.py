@@ -18,7 +18,7 @@ from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.errata import TEXT
 from compare.claims.study import Study
 from compare.report import quotes
-from compare.report.at_a_glance import cases, glances
+from compare.report.at_a_glance import cases, contrast, glances
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Matrix, Row, State, state_of
 from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
 from compare.report.results_json import erratum_id
@@ -43,15 +43,6 @@ class Picture:
         return str(PurePosixPath(self.path).with_suffix(".png")) if self.moves else self.path
 
 
-@dataclass(frozen=True)
-class Exceptional:
-    """A line below the totals; ``target`` is the anchor of its explanation."""
-
-    state: State
-    text: str
-    target: str
-
-
 HERO = "drivetrain-picture"
 """Figure on the first screen, if it was drawn."""
 
@@ -73,8 +64,10 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             GRADE_SYMBOLS=GRADE_SYMBOLS,
             kinds=[evidence for evidence in EVIDENCE if matrix.of_evidence(evidence)],
             summary=summary(matrix),
+            counted=counted(matrix),
             paths=paths,
-            glances=glances(run, matrix),
+            glances=(found := glances(run, matrix)),
+            contrast=contrast(found),
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
             deviation=_largest_difference,
             validations=[(study, one) for study in matrix.studies for one in study.validations()],
@@ -116,33 +109,53 @@ def environment() -> Environment:
 
 
 def summary(matrix: Matrix) -> str:
-    """Return the totals in words: agreement by kind of evidence, then the other states.
-
-    Example: "41 agree on independent evidence, plus 7 by self-check, 3 by algebra and 5 by implication; 1 differs".
-    """
-    agree = {evidence: matrix.of_evidence(evidence)[State.AGREES] for evidence in EVIDENCE}
-    other = [f"{agree[evidence]} {name}" for evidence, name in OTHER_EVIDENCE.items() if agree[evidence]]
-    words = f"{_agree(agree['independent'])} on independent evidence"
-    if other:
-        listed = " and ".join([", ".join(other[:-1]), other[-1]] if len(other) > 1 else other)
-        words += f", plus {listed}"
-    return f"{words}; {_others_in_words(matrix.totals)}"
+    """Return the headline: "41 checks against independent evidence and 7 others agree, 1 differs, 0 inconclusive"."""
+    count = matrix.of_evidence("independent")[State.AGREES]
+    more = matrix.totals[State.AGREES] - count
+    others = f" and {more} other{'s' * (more != 1)}" if more else ""
+    return (
+        f"{_number_of('check', count)} against independent evidence{others} {_agree(count + more)}, "
+        f"{_others_in_words(matrix.totals)}"
+    )
 
 
-OTHER_EVIDENCE: dict[Evidence, str] = {
-    "self-check": "by self-check",
-    "algebra": "by algebra",
-    "implied": "by implication",
+def counted(matrix: Matrix) -> str:
+    """Return how the number of checks follows from the number of claims."""
+    of_kind = [
+        f"{sum(matrix.of_evidence(kind).values())} {words}"
+        for kind, words in KINDS.items()
+        if matrix.of_evidence(kind)
+    ]
+    gaps = [f"{matrix.totals[state]} {state.value}" for state in GAPS if matrix.totals[state]]
+    *first, last = of_kind + gaps or ["none"]
+    listed = f"{', '.join(first)} and {last}" if first else last
+    claims, checks = _number_of("claim", len(matrix.rows)), _number_of("check", len(matrix.cells))
+    return f"{claims}, {checks} (each claim in every engine of its study): {listed}."
+
+
+def _number_of(noun: str, count: int) -> str:
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
+KINDS: dict[Evidence, str] = {
+    "independent": "against independent evidence",
+    "self-check": "self-checks",
+    "algebra": "of algebra",
+    "implied": "implied by others",
 }
-"""Words for verdicts without independent evidence."""
+"""Words for the checks with each kind of evidence."""
+
+GAPS = (State.FAILED, State.MISSING, State.NOT_SIMULATED)
+"""States without a verdict."""
 
 
 def _in_words(totals: Counter[State]) -> str:
-    return f"{_agree(totals[State.AGREES])}, {_others_in_words(totals)}"
+    agreeing = totals[State.AGREES]
+    return f"{agreeing} {_agree(agreeing)}, {_others_in_words(totals)}"
 
 
 def _agree(count: int) -> str:
-    return f"{count} agree" + "s" * (count == 1)
+    return "agrees" if count == 1 else "agree"
 
 
 def _others_in_words(totals: Counter[State]) -> str:
@@ -150,13 +163,11 @@ def _others_in_words(totals: Counter[State]) -> str:
         f"{totals[State.DIFFERS]} differ" + "s" * (totals[State.DIFFERS] == 1),
         f"{totals[State.INCONCLUSIVE]} inconclusive",
     ]
-    gaps = (State.FAILED, State.MISSING, State.NOT_SIMULATED)
-    words += [f"{totals[state]} {state.value}" for state in gaps if totals[state]]
-    return ", ".join(words)
+    return ", ".join(words + [f"{totals[state]} {state.value}" for state in GAPS if totals[state]])
 
 
-def _exceptions(matrix: Matrix) -> list[Exceptional]:
-    """Return the claims that differ or are inconclusive, and the engines that failed, worst first."""
+def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
+    """Return state, text and anchor of claims that differ or are inconclusive and of failed engines, worst first."""
     found: dict[tuple[State, str, str], list[str]] = {}
     for row in matrix.rows:
         for column, cell in row.cells.items():
@@ -169,10 +180,9 @@ def _exceptions(matrix: Matrix) -> list[Exceptional]:
             columns = found.setdefault((cell.state, text, target), [])
             columns += [column] if column not in columns else []
     lines = [
-        Exceptional(state, f"{', '.join(columns)}: {text}", target)
-        for (state, text, target), columns in found.items()
+        (state, f"{', '.join(columns)}: {text}", target) for (state, text, target), columns in found.items()
     ]
-    return sorted(lines, key=lambda line: WORST_FIRST.index(line.state))
+    return sorted(lines, key=lambda line: WORST_FIRST.index(line[0]))
 
 
 def _particular(row: Row, claim: Claim) -> str:
@@ -299,7 +309,9 @@ def _largest_difference(cell: Cell) -> str:
 def _filters(matrix: Matrix) -> dict[str, list[str]]:
     """Return the options of the filters: engines, verdicts, kinds of evidence, studies and equations."""
     return {
-        "engine": list(matrix.columns),
+        "engine": list(
+            dict.fromkeys([*matrix.columns, *(name for one in matrix.recorded for name in one.by_engine)])
+        ),
         "verdict": [state.value for state in State if matrix.totals[state]],
         "evidence": [kind for kind in EVIDENCE if matrix.of_evidence(kind)],
         "study": [study.name for study in matrix.studies],

@@ -12,6 +12,7 @@ import json
 import lzma
 import sys
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from importlib.resources import files
 from itertools import count, cycle, repeat
@@ -26,6 +27,7 @@ from compare.claims.errata import Erratum, Evidence
 from compare.claims.prose import slug
 from compare.claims.study import Study
 from compare.output.outside_text import all_printable, printable
+from compare.report.at_a_glance import glances
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, Row, State
 from compare.report.numbers import worst
 from compare.report.quotes import filled
@@ -193,6 +195,20 @@ def read_results(path: Path) -> dict[str, Any]:
         ) from None
 
 
+def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
+    """Return the duration in s of each measurement in the first report of ``folders``; {} without a report."""
+    for folder in folders:
+        with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+            content = json.loads((folder / FILE).read_text(encoding="utf-8"))
+            return {
+                (study["name"], engine): float(unit["seconds"])
+                for study in content["studies"]
+                for engine, unit in study["units"].items()
+                if unit["seconds"] is not None
+            }
+    return {}
+
+
 def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of ``results.json``; numbers that JSON lacks are "nan", "inf" and "-inf".
 
@@ -204,6 +220,7 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
         "stamp": dict(stamp),
         "engines": list(run.engines),
         "engine_versions": {name: run.versions.get(name, "") for name in run.engines},
+        "in_short": {one.engine: one.sentence for one in glances(run, matrix)},
         "interrupted": run.interrupted,
         "totals": {state.value: matrix.totals[state] for state in State},
         "evidence": {

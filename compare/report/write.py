@@ -29,6 +29,8 @@ def write_report(run: Run, output: Path) -> Matrix:
     for drawing in run.drawings.values():
         if isinstance(drawing, Drawing):
             _write(_pictures(drawing), output)
+    for recorded in verdicts.recorded:
+        _write({path: file.read_bytes() for path, file in recorded.adapters.items()}, output)
     arrays = tables(verdicts)
     _write(dict(arrays.values()), output)
     paths = {identity: path for identity, (path, _) in arrays.items()}

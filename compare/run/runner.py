@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,9 @@ from compare.run.provenance import engine_stamp, engine_version
 from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
 from reference_model.systems import PinOnDisc
+
+Progress = Callable[[int, int, str, float], None]
+"""Takes the numbers of finished and of all pieces of work, the names of the running ones and the time left in s."""
 
 
 @dataclass
@@ -113,7 +116,8 @@ def run(
     limit: float | None = None,
     resume: bool = False,
     errata: tuple[Erratum, ...] = (),
-    progress: Callable[[int, int, str], None] = lambda done, total, name: None,
+    expected: Mapping[tuple[str, str], float] | None = None,
+    progress: Progress = lambda done, total, now, left: None,
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
@@ -129,8 +133,10 @@ def run(
         Longest duration of a piece of work in s; exceeding it is a failure.
     resume : bool
         Reuse findings in ``folder`` with the same digest of code and libraries, see ``compare.run.provenance``.
-    progress : callable
-        Called with the number of finished pieces of work, their total and the name of the last one.
+    expected : mapping, optional
+        Duration of each measurement in s in an earlier run, see ``Run.seconds``.
+    progress : Progress
+        Called whenever a piece of work begins or ends.
 
     Returns
     -------
@@ -147,9 +153,10 @@ def run(
         versions={one.name: engine_version(one.name, one.kin, one.version) for one in engines},
         seed=next((engine.seed for engine in engines), None),
     )
-    with Workers(jobs, limit) as workers:
+    runner = _Runner(result, folder, jobs, expected or {}, progress)
+    with Workers(jobs, limit, runner.show) as workers:
         try:
-            _Runner(result, workers, folder, progress).work({e.name: e for e in engines}, resume)
+            runner.work(workers, {e.name: e for e in engines}, resume)
         except KeyboardInterrupt:
             result.interrupted = True
     return result
@@ -158,19 +165,28 @@ def run(
 class _Runner:
     """Scheduler of the measurements, and of each study's drawing after its last one unless a stored drawing fits."""
 
+    _workers: Workers
+
     def __init__(
-        self, result: Run, workers: Workers, folder: Path, progress: Callable[[int, int, str], None]
+        self,
+        result: Run,
+        folder: Path,
+        jobs: int,
+        expected: Mapping[tuple[str, str], float],
+        progress: Progress,
     ) -> None:
         self._result = result
-        self._workers = workers
+        self._jobs = jobs
+        self._expected = expected
+        self._began: dict[Hashable, float] = {}
         self._store = Store(folder)
         self._drawings = DrawingStore(folder)
         self._progress = progress
         self._stamps: dict[str, str | None] = {}
         self._drawn_from: dict[str, str] = {}
 
-    def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
-        result = self._result
+    def work(self, workers: Workers, engines: Mapping[str, Engine], resume: bool) -> None:
+        self._workers, result = workers, self._result
         work = {
             (study.name, column): (study, engines.get(column))
             for study in sorted(result.studies, key=lambda study: -study.seconds)
@@ -189,31 +205,43 @@ class _Runner:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):
             self._workers.submit(("errata", i), erratum.evidence)
-        total = len(work) + len(result.studies) + len(result.errata)
-        self._progress(result.done, total, "")
-        for finished in self._workers.finished():
-            name = self._take(finished)
-            self._progress(result.done, total, name)
+        for finished in workers.finished():
+            self._take(finished)
+        self.show([])
 
-    def _take(self, done: Done) -> str:
-        """Store a finished piece of work and return its name."""
+    def show(self, running: Collection[Hashable]) -> None:
+        """Report the names of the running work, and the remaining time by the durations of an earlier run."""
+        result, now = self._result, time.monotonic()
+        self._began = {key: self._began.get(key, now) for key in running}
+        left: dict[Hashable, float] = {}
+        for study in result.studies:
+            for column in result.columns(study):
+                if (key := (study.name, column)) not in result.outcomes:
+                    spent = now - self._began.get(key, now)
+                    left[key] = max(self._expected.get(key, study.seconds) - spent, 0.0)
+        total = sum(len(result.columns(study)) + 1 for study in result.studies) + len(result.errata)
+        names = ", ".join(_name_of(key) for key in running)
+        seconds = max(sum(left.values()) / self._jobs, *left.values(), 0.0)
+        self._progress(result.done, total, names, seconds)
+
+    def _take(self, done: Done) -> None:
+        """Store a finished piece of work."""
         kind: Any
         name: Any
         kind, name = done.key  # type: ignore[misc]
         if kind == "errata":
             self._result.evidence[name] = done.value
-            return "errata"
+            return
         if kind == "draw":
             self._result.drawings[name] = done.value
             if isinstance(done.value, Drawing):
                 self._drawings.keep(name, self._drawn_from[name], done.value)
-            return f"{name} figures"
+            return
         self._result.outcomes[kind, name] = done.value
         self._result.seconds[kind, name] = done.seconds
         if isinstance(done.value, Findings):
             self._store.keep(kind, name, self._stamps[name], done.value, done.seconds)
         self._draw_if_complete(kind)
-        return f"{kind} {name}"
 
     def _draw_if_complete(self, name: str) -> None:
         study = next(study for study in self._result.studies if study.name == name)
@@ -226,6 +254,11 @@ class _Runner:
             self._result.drawings[name] = found
         else:
             self._workers.submit(("draw", name), drawn, study, data, first=True)
+
+
+def _name_of(key: Any) -> str:
+    first, second = key
+    return "errata" if first == "errata" else f"{second} figures" if first == "draw" else f"{first} {second}"
 
 
 QUICK_SEED = 1

@@ -92,12 +92,19 @@ class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager.
 
     A piece of work that takes longer than ``limit`` (in s) fails. The limit may change while no work is pending.
+    ``watch`` is called with the keys of the running work whenever they may have changed.
     Leaving the context kills all processes.
     """
 
-    def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
+    def __init__(
+        self,
+        jobs: int = 1,
+        limit: float | None = None,
+        watch: Callable[[list[Hashable]], None] = lambda running: None,
+    ) -> None:
         self._jobs = jobs
         self.limit = limit
+        self._watch = watch
         self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
@@ -135,6 +142,7 @@ class Workers:
         """Yield each result as soon as it is available, until no work is left; you may submit more meanwhile."""
         while self._queue or any(worker.key is not None for worker in self._processes):
             yield from self._start()
+            self._watch([worker.key for worker in self._processes if worker.key is not None])
             yield from self._collect()
 
     def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:

@@ -18,7 +18,7 @@ BUILDER = runpy.run_path(str(ROOT / "builders" / "findings.py"))
 PLACE, ERROR = "fig05: place, 3 digits", "fig05: place, error, good"
 
 
-def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0):
+def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="Right."):
     """Return the results of a report on one or all studies, with claims of "fig05" for two engines."""
     found = [
         claim("Place", engine, measured, measured, error, unit="m", named={"place": 0})
@@ -36,6 +36,7 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0):
     return {
         "engines": [engine.name for engine in engines()],
         "totals": {"failed": 0, "missing": 0},
+        "in_short": {"good": sentence},
         "studies": [{"name": name, "claims": written if name == "fig05" else []} for name in names],
     }
 
@@ -57,7 +58,7 @@ def root(tmp_path, monkeypatch):
 
 def test_the_texts_contain_the_stored_numbers():
     assert list(BUILDER["outdated"](ROOT)) == []
-    names = {study.name for study in STUDIES} | {"claims", "verdicts"}
+    names = {study.name for study in STUDIES} | {"claims", "checks", "engine", "verdicts"}
     assert {name.partition(":")[0] for name in BUILDER["wanted"](ROOT)} <= names
 
 
@@ -85,6 +86,17 @@ def test_a_report_writes_its_numbers(root):
     assert kept["claims"].value == 2
     assert kept["verdicts: independent"].value == 2  # the position by two engines; the order is a self-check
     assert list(BUILDER["deviations"](results(), root)) == []
+
+
+def test_a_changed_sentence_about_an_engine_is_reported(root):
+    (root / "builders" / "findings.md").write_text('Good: #n("engine: good")\n')
+    (root / "docs" / "numbers.json").write_text("{}")
+    BUILDER["write"](results(), root)
+    assert (root / "docs" / "findings.md").read_text(encoding="utf-8") == "Good: Right.\n"
+    assert list(BUILDER["deviations"](results(), root)) == []
+    assert list(BUILDER["deviations"](results(sentence="Wrong."), root)) == [
+        "engine: good: docs/numbers.json has Right., the report Wrong."
+    ]
 
 
 def test_a_text_without_the_stored_numbers_is_detected(root):

@@ -4,20 +4,30 @@
   document.documentElement.classList.add("scripted");
   const form = document.getElementById("find");
   const found = document.getElementById("found");
+  // "Eq. 16" finds "(16)"; hyphens, dashes, accents and the height of digits do not count.
+  // Claims call a quasi-periodic motion modulated.
+  const plain = (text) => text.normalize("NFKD").toLowerCase()
+    .replace(/\b(?:eqs?|equations?)\.?\s*\(?(\d+)\)?/g, "eq. ($1)")
+    .replace(/[\p{Pd}\u2212\u00ad\p{M}]/gu, "")
+    .replace(/quasi ?periodic/g, "modulated");
+  const recorded = [...document.querySelectorAll("tbody[data-engine]")];
   const claims = [...document.querySelectorAll("details.claim")].map((element) => ({
     element,
     study: element.closest("details.study"),
-    text: element.textContent.toLowerCase() + " " + element.id,
+    text: plain(`${element.textContent} ${element.id}`),
     equation: element.dataset.equation,
     cells: element.dataset.cells.split(";").map((cell) => cell.split("|")),
   }));
   const studies = [...document.querySelectorAll("details.study")].map((element) => ({
     element,
     opened: false,
-    text: [...element.children].filter((child) => !child.matches("details")).map((child) => child.textContent)
-      .join(" ").toLowerCase(),
+    text: plain([...element.children].filter((child) => !child.matches("details"))
+      .map((child) => child.textContent).join(" ")),
   }));
   const fields = [...form.elements].filter((field) => field.name);
+
+  const narrow = matchMedia("screen and (max-width: 900px)").matches;
+  document.querySelector(".toc").open = !narrow;
 
   function wanted() {
     return Object.fromEntries(fields.filter((field) => field.value).map((field) => [field.name, field.value]));
@@ -33,7 +43,7 @@
 
   function filter() {
     const asked = wanted();
-    const words = (asked.q || "").toLowerCase().split(/\s+/).filter(Boolean);
+    const words = plain(asked.q || "").replaceAll("eq. (", "(").split(/\s+/).filter(Boolean);
     const active = Object.keys(asked).length > 0;
     const onlyWords = words.length > 0 && Object.keys(asked).length === 1;
     const within = new Map();
@@ -53,7 +63,11 @@
         study.element.open = study.opened = false;
       }
     }
-    found.textContent = active ? `${count} of ${claims.length} claims` : "";
+    const settings = recorded.filter((one) => one.dataset.engine === asked.engine);
+    for (const one of recorded) one.hidden = settings.length > 0 && !settings.includes(one);
+    for (const one of settings) one.closest("details").open = true;
+    const tables = settings.length ? ", and recorded motions" : "";
+    found.textContent = active ? `${count} of ${claims.length} claims${tables}` : "";
     for (const heading of document.querySelectorAll("h3.section")) {
       let next = heading.nextElementSibling;
       let any = false;
@@ -74,8 +88,9 @@
   }
 
   function show() {
-    const beside = matchMedia("screen and (min-width: 901px)").matches;
-    if (beside && Object.keys(wanted()).length) document.getElementById("studies").scrollIntoView();
+    const one = recorded.find((it) => it.dataset.engine === wanted().engine);
+    const place = one && !claims.some((it) => !it.element.hidden) ? one : document.getElementById("studies");
+    if (!narrow && Object.keys(wanted()).length) place.scrollIntoView();
   }
 
   function reveal() {
@@ -122,17 +137,22 @@
   for (const link of document.querySelectorAll("a.play")) {
     const image = link.closest("figure").querySelector("img");
     const still = image.getAttribute("src");
+    const play = (moves) => {
+      image.src = moves ? link.getAttribute("href") : still;
+      link.textContent = moves ? "Pause" : "Play";
+    };
     link.setAttribute("role", "button");
     link.addEventListener("click", (event) => {
       event.preventDefault();
-      const plays = image.getAttribute("src") !== still;
-      image.src = plays ? still : link.getAttribute("href");
-      link.textContent = plays ? "Play" : "Pause";
+      play(image.getAttribute("src") === still);
     });
+    const study = link.closest("details.study");
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    study.addEventListener("toggle", () => play(study.open && !calm && !matchMedia("print").matches));
   }
   let closed = [];
   addEventListener("beforeprint", () => {
-    closed = [...document.querySelectorAll("details.study:not([open])")];
+    closed = [...document.querySelectorAll("details:not([open])")];
     for (const one of closed) one.open = true;
     for (const image of document.images) image.loading = "eager";
   });

@@ -13,7 +13,7 @@ from compare.claims.claim import BASES, THEORY, Verdict
 from compare.claims.study import Findings
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
 from compare.report.matrix import State, evidence_of
-from compare.report.page import summary
+from compare.report.page import counted, summary
 from compare.report.write import write_report
 from compare.run.runner import Run, run
 from compare.studies import STUDIES, studies
@@ -168,13 +168,16 @@ def theory():
 
 def test_the_first_line_counts_independent_evidence_first(reported):
     matrix, folder = reported
-    line = (
-        "4 agree on independent evidence, plus 1 by self-check, 1 by algebra and 1 by implication; "
-        "0 differ, 0 inconclusive"
-    )
+    line = "4 checks against independent evidence and 3 others agree, 0 differ, 0 inconclusive"
     assert summary(matrix) == line
+    assert counted(matrix) == (
+        "3 claims, 7 checks (each claim in every engine of its study): 4 against independent evidence, "
+        "1 self-checks, 1 of algebra and 1 implied by others."
+    )
     page = (folder / "index.html").read_text(encoding="utf-8")
-    assert f'<p class="totals" id="totals"><strong>{line}.</strong></p>' in page
+    assert (
+        f'<p class="totals" id="totals"><strong>{line}.</strong> <span>{counted(matrix)}</span></p>' in page
+    )
     assert f"<title>Friction discs: {line}</title>" in page
 
 

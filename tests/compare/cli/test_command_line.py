@@ -35,9 +35,27 @@ def test_help_of_simulate_has_the_parameters_of_the_figure(name, figure, capsys)
 def test_list_names_studies_and_engines(capsys):
     assert cli.status(["list"], fake_studies.ALL) == 0
     out = capsys.readouterr().out
-    assert "  verdicts      Fig. 3: self-centring of the pin at low speed\n" in out
-    assert "Engines: reference, exudyn" in out
-    assert "; on request: compiled, plain\n" in out
+    assert re.search(
+        r"^  verdicts +1.0 s  full +every engine +Fig. 3: self-centring of the pin at low speed$", out, re.M
+    )
+    assert re.search(r"^  agreement +1.0 s  quick ", out, re.M)
+    assert "\nEngines: reference, exudyn, exudyn-native\n" in out
+    assert "on request: compiled, plain, " in out
+    assert ", mujoco:pyramid" in out
+
+
+def test_list_shows_the_times_of_the_last_report(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "report").mkdir()
+    units = {"good": {"seconds": 2.5}, "other": {"seconds": 4.0}, "stopped": {"seconds": None}}
+    results = {"studies": [{"name": "verdicts", "units": units}]}
+    (tmp_path / "report" / "results.json").write_text(json.dumps(results))
+    assert cli.status(["list"], fake_studies.ALL) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"^  verdicts +6.5 s ", out, re.M)
+    (tmp_path / "report" / "results.json").write_text("{")
+    assert cli.status(["list"], fake_studies.ALL) == 0
+    assert re.search(r"^  verdicts +1.0 s ", capsys.readouterr().out, re.M)
 
 
 def test_errata_prints_their_source_both_forms_and_both_errors(capsys):
@@ -87,7 +105,7 @@ def test_a_report_that_differs_ends_with_status_1(reported):
     assert "verdicts good differs: The equilibrium is lost at the load of eq. (5)" in process.stdout
     gave_up = "the step size became too small at t = 3.2 s: try a larger tolerance (fake_studies.py:"
     assert process.stdout.count(f"verdicts failing failed: {gave_up}") == 1
-    first = "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed"
+    first = "4 checks against independent evidence and 1 other agree, 1 differs, 1 inconclusive, 4 failed"
     totals, *diagnoses = process.stdout.partition(first)[2].splitlines()
     assert totals == f" ({folder / 'index.html'})"
     assert [line.partition(":")[0] for line in diagnoses] == ["good", "failing"]
@@ -95,27 +113,27 @@ def test_a_report_that_differs_ends_with_status_1(reported):
 
 
 LACKS = "fake_studies:straight does not simulate a disc on single points or a disc on a continuous ring"
-NONE = "0 agree on independent evidence"
+NONE = "0 checks against independent evidence"
 REPORTS = [
     (
         "verdicts",
         "fake_studies:straight",
         1,
-        "2 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive (",
+        "2 checks against independent evidence and 1 other agree, 1 differs, 1 inconclusive (",
     ),
     (
         "verdicts",
         "fake_studies:failing",
         1,
-        f"{NONE}, plus 1 by algebra; 0 differ, 0 inconclusive, 1 failed (",
+        f"{NONE} and 1 other agrees, 0 differ, 0 inconclusive, 1 failed (",
     ),
-    ("inconclusive", "fake_studies:straight", 3, f"{NONE}; 0 differ, 1 inconclusive ("),
+    ("inconclusive", "fake_studies:straight", 3, f"{NONE} agree, 0 differ, 1 inconclusive ("),
     (
         "partly",
         "fake_studies:straight",
         0,
         f"partly fake_studies:straight not simulated: {LACKS}\n"
-        "1 agrees on independent evidence; 0 differ, 0 inconclusive, 1 not simulated (",
+        "1 check against independent evidence agrees, 0 differ, 0 inconclusive, 1 not simulated (",
     ),
     ("undrawable", "reference", 1, "undrawable: the figures could not be drawn: KeyError: 'radius'"),
 ]
@@ -131,7 +149,7 @@ def test_a_report_without_differences_prints_its_totals_and_nothing_else(tmp_pat
     monkeypatch.chdir(tmp_path)
     assert report("--level", "quick", output="new/folder") == 0  # the default is all studies
     page = os.path.join("new", "folder", "index.html")
-    totals = f"1 agrees on independent evidence; 0 differ, 0 inconclusive ({page})\n"
+    totals = f"1 check against independent evidence agrees, 0 differ, 0 inconclusive ({page})\n"
     assert capsys.readouterr() == (totals, "")
     results = json.loads((tmp_path / "new" / "folder" / "results.json").read_text(encoding="utf-8"))
     assert [study["name"] for study in results["studies"]] == ["agreement"]
@@ -145,7 +163,9 @@ def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())
     assert report("agreement", output=tmp_path) == 0
-    assert "2/2" in sys.stderr.getvalue()
+    shown = sys.stderr.getvalue()
+    assert "2/2" in shown
+    assert "0/100" not in shown
 
 
 def test_missing_measurements_are_listed_once_at_the_end(tmp_path, monkeypatch, capsys):

@@ -73,7 +73,7 @@ def test_the_theorys_own_algebra_is_not_conclusive(least, status, tmp_path, caps
     arguments = ["report", "--engine", "fake_studies:straight", "--output", str(tmp_path)]
     assert cli.status([*arguments, "--min-conclusive", least], (study,)) == status
     out, err = capsys.readouterr()
-    assert out.startswith("1 agrees on independent evidence, plus 1 by algebra and 1 by implication; ")
+    assert out.startswith("1 check against independent evidence and 2 others agree, ")
     assert err == ("2 claims agree, but --min-conclusive requires 3\n" if status else "")
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, recorded
 
-from compare.report.at_a_glance import cases, glances
+from compare.report.at_a_glance import cases, contrast, glances
 from compare.report.matrix import matrix
 from compare.run.runner import Run, run
 
@@ -32,9 +32,9 @@ def settings():
     return (
         setting("ours", "", **dict.fromkeys(FINE, (1e-12, 1e-12))),
         setting("Wrong", "box", **WRONG),
-        setting("Kite", "box", **WRONG),
+        replace(setting("Kite", "box", **WRONG), law="box", whirl=0.26),
         setting("Kite", "a user's", own=False, **dict.fromkeys(FINE, (0.0, 0.0))),
-        setting("Kite", "cone", **FINE),
+        replace(setting("Kite", "cone", **FINE), law="cone", whirl=1e-6, advice="use small steps"),
         setting("Pins", "cone", slides=(1e-3, 2e-3), sticks=(1e-3, 9e-3)),
         setting("Open", "cone", **FINE | {"disc": (0.0, 0.5)}),
         setting("Blind", "cone", slides=(0.0, 0.5)),
@@ -69,25 +69,39 @@ def test_a_grade_is_the_largest_error_relative_to_the_effect_of_another_law(foun
 
 def test_the_best_setting_of_its_own_friction_represents_an_engine(found):
     assert found["Kite"].sentence == (
-        "cone: ≤ 1×10⁻⁶ m slipping, ≤ 3×10⁻⁶ m in stick and release; another friction law with box."
+        "Cone: Coulomb friction correct, errors fall with the step. Use small steps. Avoid box: friction is a box, "
+        "wrong in 1 of 3 motions (slides) at any step, radius of the whirl 26 % off."
     )
-    assert found["Kite"].where == "#agreement-recorded"
+    assert (found["Kite"].where, found["Kite"].why) == (
+        "?engine=Kite#agreement-recorded/kite",
+        "#agreement-recorded/kite",
+    )
 
 
 def test_a_sentence_lists_missing_motions_and_differences(found):
-    assert (
-        found["Pins"].sentence
-        == "cone: ≤ 0.001 m slipping, ≤ 0.001 m in stick and release; not simulated: disc."
-    )
-    assert found["Open"].sentence.endswith("; too coarse to decide: disc.")
-    assert "; differs: slides" in found["Wrong"].sentence
+    assert found["Pins"].sentence.endswith("correct, errors fall with the step. Not simulated: disc.")
+    assert found["Open"].sentence.endswith(". Too coarse to decide: disc.")
+    assert found["Blind"].sentence.startswith("Cone: errors too large to decide. ")
+    assert found["Wrong"].sentence == "Box: wrong in 1 of 3 motions (slides) at any step."
     assert found["Pins"].cells[2] is None
 
 
+def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(found):
+    small = replace(found["Wrong"], cells=(found["Kite"].cells[0],))
+    assert contrast(tuple(found.values())) == ""  # all that differ are larger
+    wrong = replace(found["Wrong"].cells[0], claims=found["Kite"].cells[0].claims)
+    assert contrast((replace(small, cells=(wrong,)), found["Pins"])) == (
+        "For example, the 1×10⁻⁶ m of Wrong do not fall with the step, but the 0.001 m of Pins do."
+    )
+
+
 def test_an_engine_of_the_run_is_described_by_its_claims(found):
-    assert found["good"].sentence == "3 of 5 claims agree on independent evidence; 1 differs; 1 inconclusive."
-    assert found["good"].version == "3"
-    assert found["failing"].sentence == "1 of 1 claims agree on independent evidence; 4 failed."
+    assert (
+        found["good"].sentence
+        == "3 of 5 checks against independent evidence agree, 1 differs, 1 inconclusive."
+    )
+    assert (found["good"].version, found["good"].why) == ("3", "?engine=good#studies")
+    assert found["failing"].sentence == "1 of 1 checks against independent evidence agree, 4 failed."
 
 
 def test_an_engine_that_was_also_recorded_has_the_grade_of_its_motions(seen):

@@ -90,7 +90,10 @@ def results(reported):
 def test_the_totals_are_those_of_the_claims(results, page):
     gaps = {"failed": 4, "missing": 0, "not simulated": 0}
     assert results["totals"] == {"agrees": 5, "differs": 1, "inconclusive": 1} | gaps
-    assert "4 agree on independent evidence, plus 1 by algebra; 1 differs, 1 inconclusive, 4 failed." in page
+    assert (
+        "4 checks against independent evidence and 1 other agree, 1 differs, 1 inconclusive, 4 failed."
+        in page
+    )
     verdicts = [claim["verdict"] for study in results["studies"] for claim in study["claims"]]
     for verdict in ("agrees", "differs", "inconclusive"):
         assert verdicts.count(verdict) == results["totals"][verdict]
@@ -274,7 +277,10 @@ def test_not_simulated_is_a_separate_state(partly_reported):
     assert row.cells["some"].reason == "some does not simulate a disc on a continuous ring"
     assert row.cells["pins"].state is State.NOT_SIMULATED
     assert matrix.totals == {yes: 7, no: 5}
-    assert summary(matrix) == "7 agree on independent evidence; 0 differ, 0 inconclusive, 5 not simulated"
+    assert (
+        summary(matrix)
+        == "7 checks against independent evidence agree, 0 differ, 0 inconclusive, 5 not simulated"
+    )
     assert set(result.data(RING_ONLY)) == {"all"}  # other studies have no figures
 
 
@@ -357,17 +363,24 @@ def test_a_gap_is_shown_even_if_no_engine_fills_it(tmp_path):
     matrix = write_report(run((RING_ONLY,), (Engine("pins", straight),), folder=tmp_path / "data"), tmp_path)
     (row,) = matrix.rows
     assert row.cells["pins"].state is State.NOT_SIMULATED
-    assert summary(matrix) == "0 agree on independent evidence; 0 differ, 0 inconclusive, 1 not simulated"
+    assert (
+        summary(matrix)
+        == "0 checks against independent evidence agree, 0 differ, 0 inconclusive, 1 not simulated"
+    )
+
+
+ADAPTER = "compare/engines/live/bullet_engine.py"
 
 
 def settings():
     """Return recorded results of two engines for two claims: one agrees with both, the other with neither."""
     settings = {("Kite", "cone"): 0.0, ("Kite", "box"): 0.25, ("ours", ""): 1e-6}
     return [
-        recorded(
-            *name,
-            {"A pin slides": (off, 1e-3), "A disc slides": (1e-4 + off, 1e-3)},
-            resolution=0.1,
+        replace(
+            recorded(
+                *name, {"A pin slides": (off, 1e-3), "A disc slides": (1e-4 + off, 1e-3)}, resolution=0.1
+            ),
+            adapter=ADAPTER if name[0] == "Kite" else "",
         )
         for name, off in settings.items()
     ]
@@ -396,16 +409,22 @@ def test_errors_of_recorded_engines_do_not_fail_the_report(recorded_reported):
 def test_recorded_engines_have_a_matrix_with_a_row_for_each_setting(recorded_reported):
     page = (recorded_reported[1] / "index.html").read_text(encoding="utf-8")
     found = Cells(page)
+    source = (recorded_reported[1] / "adapters" / "bullet_engine.py.txt").read_bytes()
+    assert source == (ROOT / ADAPTER).read_bytes()
+    assert found.links.count("adapters/bullet_engine.py.txt") == 1
+    assert found.links.count("?engine=Kite#agreement-recorded/kite") == 1
+    assert "agreement-recorded/kite" in found.ids
     said = [" ".join(cell[3].split()) for cell in found.cells if cell[0] == "matrix recorded"]
     assert said == [
         *("Engine, setting", "A pin slides", "A disc slides"),
-        "Kite 1.2, 2026-01-31",
+        f"Kite 1.2, 2026-01-31, adapter {ADAPTER}",
         *("cone", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
         *("box", "✗ differs by 0.25 m", "✗ differs by 0.25 m"),
-        *("ours 1.2, 2026-01-31", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
+        "ours 1.2, 2026-01-31",
+        *("all motions", "✓ agrees ± 0.0010 m", "✓ agrees ± 0.0010 m"),
     ]
     assert {link[1:] for link in found.links if link.startswith("#")} <= set(found.ids)
-    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive." in page
+    assert "1 check against independent evidence agrees, 0 differ, 0 inconclusive." in page
     assert "4 agree, 2 differ, 0 inconclusive." in page
 
 

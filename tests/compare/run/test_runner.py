@@ -54,6 +54,21 @@ def test_a_failing_engine_and_a_dying_process_do_not_affect_the_rest(way, both_w
         assert result.outcomes["death", "good"].reason == "its process ended unexpectedly (exit status 7)"
 
 
+def test_progress_names_the_running_work_and_the_remaining_time(tmp_path, in_this_process):
+    told = []
+    run(
+        (fake.AGREEMENT,),
+        (fake.GOOD, fake.ALSO_GOOD),
+        folder=tmp_path,
+        expected={("agreement", "good"): 1000.0},  # the study itself expects 1 s
+        progress=lambda *one: told.append(one),
+    )
+    assert told[0] == (0, 3, "agreement good", pytest.approx(1001.0, abs=1e-6))
+    assert told[1] == (1, 3, "agreement also-good", pytest.approx(1.0, abs=1e-6))
+    assert told[2][2] == "agreement figures"
+    assert told[-1] == (3, 3, "", 0.0)
+
+
 def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
     """The clock jumps during the measurement, first to just before the limit, then beyond it.
 
@@ -67,15 +82,15 @@ def test_a_measurement_ends_at_the_limit_and_the_rest_continues(tmp_path, monkey
         jump = 0.0 if not running.exists() else 0.9 if next(looks) < 9 else 2.0
         return time.monotonic() + jump * limit
 
-    def progress(done, total, name):
-        given_up[name] = next(looks)
+    def progress(done, total, now, left):
+        given_up.setdefault(done, next(looks))
 
     clock = SimpleNamespace(monotonic=monotonic, perf_counter=time.perf_counter, sleep=time.sleep)
     monkeypatch.setattr(workers, "time", clock)
     monkeypatch.setattr(workers, "wait", lambda connections, left: wait(connections, min(left, 0.05)))
     studies = (fake.UNENDING, fake.AGREEMENT)
     result = run(studies, (fake.ALSO_GOOD,), folder=tmp_path, limit=limit, progress=progress)
-    assert given_up["unending also-good"] > 9
+    assert given_up[1] > 9
     assert result.outcomes["unending", "also-good"] == Failure("not finished within 1000 s", unfinished=True)
     assert result.seconds["unending", "also-good"] == limit
     assert isinstance(result.outcomes["agreement", "also-good"], Findings)
@@ -149,7 +164,7 @@ def test_ctrl_c_keeps_finished_results_and_lists_missing_ones(tmp_path):
         f"Interrupted; still missing: {missing}. Repeat the command with --resume to complete the report."
     )
     assert err.splitlines()[-1] == sentence  # slow machines print their progress before
-    assert "1 agrees on independent evidence; 0 differ, 0 inconclusive, 2 missing" in out
+    assert "1 check against independent evidence agrees, 0 differ, 0 inconclusive, 2 missing" in out
     results = json.loads((output / "results.json").read_text(encoding="utf-8"))
     assert results["interrupted"]
     states = {engine: unit["state"] for engine, unit in results["studies"][0]["units"].items()}

@@ -14,7 +14,9 @@ from scipy.optimize import brentq
 from compare.claims import COARSENING, ROUNDING, Claim, ErrorBudget, Recorded, refined
 from compare.claims.parameters import parameters_of
 from compare.claims.prose import Table
+from compare.engines import INSTALLED
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Case, Recording, estimate, recordings
+from compare.report.numbers import error_text
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 
@@ -197,6 +199,14 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
 OUR_FORCE = "our force"
 """Setting with our force instead of the engine's own friction."""
 
+PROGRAM = "examples/exec_contact.js"
+ADAPTERS = {
+    **{known.title: f"compare/engines/live/{name}_engine.py" for name, known in INSTALLED.items()},
+    "reference": "reference_model/simulation.py",
+    **dict.fromkeys(("exudyn", "exudyn-native"), "exudyn_models/paper/simulate.py"),
+}
+"""Files that run the recorded engines, relative to the folder of the packages; the others run in ``PROGRAM``."""
+
 IN_SHORT = {
     "slip": ("slides", "slip"),
     "stick-slip": ("sticks 9 times", "stick"),
@@ -245,7 +255,57 @@ def recorded_claims(recording: Recording) -> Recorded:
         tuple(claims),
         own=recording.setting != OUR_FORCE,
         cases={CASES[name].sentence: words for name, words in IN_SHORT.items()},
+        law=recording.probes.get("law", {}).get("shape", ""),
+        says=recording.says,
+        adapter=ADAPTERS.get(recording.engine, PROGRAM),
+        advice=_advice(recording),
+        whirl=float(recording.runs["whirl"][-1, ERROR] / abs(CASES["whirl"].exact()[0])),
     )
+
+
+def _advice(recording: Recording) -> str:
+    """Return the refinement for an error of ``WANTED`` in converging motions, or the error of the finest run."""
+    runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
+    if not runs or recording.engine == "reference":
+        return ""
+    coarsest, rows = max(runs.items(), key=lambda one: float(one[1][-1, ERROR]))
+    fixed = len(halvings(recording.runs["slip"])) > 2
+    if rows[-1, ERROR] > WANTED:
+        finest = f"{_rounded(rows[-1, STEPS] / _periods(coarsest))} steps per natural period"
+        with_it = finest if fixed else f"a tolerance of {error_text(rows[-1, TOLERANCE], 1)}"
+        return f"the finest run, with {with_it}, leaves {error_text(rows[-1, ERROR], 1)} m"
+    for_it = f"for an error of {1e3 * WANTED:g} mm"
+    if fixed:
+        number = max(_at(WANTED, rows, STEPS) / _periods(case) for case, rows in runs.items())
+        return f"use {_rounded(number)} steps per natural period {for_it}"
+    tolerance = min(_at(WANTED, rows, TOLERANCE) for rows in runs.values())
+    if recording.setting:
+        return f"use a tolerance of {error_text(tolerance, 1)} {for_it}"
+    from exudyn_models.paper.simulate import REGULARISATION_PER_TOLERANCE  # deferred: it imports Exudyn
+
+    epsilon = error_text(REGULARISATION_PER_TOLERANCE * tolerance, 1)
+    return f"use ε ≤ {epsilon} of the typical speed {for_it}"
+
+
+def _rounded(number: float) -> str:
+    return f"{float(f'{number:.1e}'):,.0f}"
+
+
+def _periods(case: Case) -> float:
+    """Return the duration of a case in periods of the natural frequency."""
+    return float(case.times[-1] - case.times[0]) * case.system.natural_frequency / (2.0 * math.pi)
+
+
+def _at(wanted: float, runs: FloatArray, column: int) -> float:
+    """Return a column at the error ``wanted``, interpolated between runs by a power law; NaN if not reached."""
+    good = np.nonzero(runs[:, ERROR] <= wanted)[0]
+    if not good.size:
+        return math.nan
+    i = int(good[0])
+    if i == 0:
+        return float(runs[0, column])
+    error, values = np.log(runs[i - 1 : i + 1, ERROR]), np.log(runs[i - 1 : i + 1, column])
+    return math.exp(np.interp(math.log(wanted), error[::-1], values[::-1]))
 
 
 # --- Tables of all recorded settings
@@ -261,15 +321,10 @@ def _finest(runs: FloatArray) -> str:
 
 
 def time_to(wanted: float, runs: FloatArray) -> str:
-    """Return the processor time in ms for the error ``wanted`` as text, interpolated between runs by a power law."""
-    good = np.nonzero(runs[:, ERROR] <= wanted)[0]
-    if not good.size:
+    """Return the processor time in ms for the error ``wanted`` as text."""
+    if math.isnan(seconds := _at(wanted, runs, SECONDS)):
         return "not reached"
-    i = int(good[0])
-    if i == 0:
-        return f"≤ {1e3 * runs[0, SECONDS]:.3g}"
-    error, seconds = np.log(runs[i - 1 : i + 1, ERROR]), np.log(runs[i - 1 : i + 1, SECONDS])
-    return f"{1e3 * math.exp(np.interp(math.log(wanted), error[::-1], seconds[::-1])):.3g}"
+    return f"{'≤ ' * bool(runs[0, ERROR] <= wanted)}{1e3 * seconds:.3g}"
 
 
 def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> list[str]:
