@@ -33,10 +33,11 @@ from exudyn_models import (
     build_model,
     simulate,
 )
+from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, functions_on_axis
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, Contact, ring_friction
 from exudyn_models.forces.laws.calls import number_at
 from exudyn_models.forces.laws.places import ring_places, table_of
-from exudyn_models.forces.load_and_coefficient import NumberOrFunction
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient, NumberOrFunction
 from exudyn_models.parts.native_contact import add_native_friction
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
@@ -90,6 +91,28 @@ def with_force(force: Callable[..., Any], coordinates: int = 4) -> AddContact:
             forceUserFunction=force,
         )
     )
+
+
+def spring_damper(mbs: Any, *nodes: Any) -> None:
+    """Add Exudyn's connector with the law of ``RING`` under a constant load."""
+    markers = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]
+    radius, friction = RING["contact_radius"], FIG5.friction_force
+    mbs.AddObject(
+        items.ObjectConnectorCoordinateSpringDamperExt(
+            markerNumbers=markers,
+            dynamicFrictionForce=friction * radius,
+            frictionProportionalZone=SECTION["regularisation"] / radius,
+        )
+    )
+
+
+def user_function(mbs: Any, *nodes: Any) -> None:
+    """Add the same law as a Python function, which the package calls for any other load."""
+    mounted = LoadAndCoefficient(
+        on_circle(RING["contact_radius"], CONTINUOUS, 1e-6), 1.0, FIG5.friction_force
+    )
+    force, _ = functions_on_axis(ON_ONE_AXIS[0], mounted)
+    with_force(force, coordinates=2)(mbs, *nodes)
 
 
 NOTHING = [0.0] * 12
@@ -246,6 +269,8 @@ def constant_load(time: float) -> float:
 AXIAL: dict[str, AddContact] = {
     "two rotors, no friction": lambda mbs, master, disc: None,
     "the same with a ring under a constant load": ours(RING),
+    "Exudyn's spring-damper with the same law": spring_damper,
+    "the same law as a user function": user_function,
     "under a load of time": ours(RING, load_of_time),
     "Stribeck, load of time": ours(RING | {"friction_coefficient": stribeck}, load_of_time),
     "table over slip": ours(RING | {"friction_coefficient": TABLE}),

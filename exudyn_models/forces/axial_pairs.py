@@ -68,6 +68,17 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     return force, jacobian
 
 
+def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
+    """Return the sliding moment μN·r in N m and the relative spin ε/r in rad/s. Below it the moment is proportional.
+
+    None if the bodies are not on one axis, if load or coefficient is a function, or if r is zero.
+    """
+    if factors.contact is None or not on_one_axis(kinds, factors):
+        return None
+    radius = mean_radius(factors.contact)
+    return (factors.contact[2] * radius, factors.contact[3] / radius) if radius > 0.0 else None
+
+
 def _constant(grounded: bool, contact: Contact) -> Any:
     radius = mean_radius(contact)
     creep = radius / contact[3]  # P/ε over |S|

@@ -67,7 +67,7 @@ class LoadAndCoefficient:
         #: The contact with 1 N in place of μN.
         self.geometry = _with(contact, 1.0)
         self.contact_radius = contact[0]
-        self._static_ratio, self._plates = _checked_static_ratio(static_ratio), _checked_plates(plates)
+        self.static_ratio, self._plates = _checked_static_ratio(static_ratio), _checked_plates(plates)
         self.change(friction_coefficient, normal_load)
 
     def change(self, friction_coefficient: Coefficient, normal_load: NumberOrFunction) -> None:
@@ -80,7 +80,7 @@ class LoadAndCoefficient:
         functions = [factor if isinstance(factor, LawFunction) else None for factor in (coefficient, load)]
         self._reads = {name for function in functions if function for name in function.arguments}
         curve = coefficient if isinstance(coefficient, np.ndarray) else None
-        if self._static_ratio > 1.0 or curve is not None:
+        if self.static_ratio > 1.0 or curve is not None:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
         self.depends_on_direction = "relative_spin" in self._reads
@@ -91,7 +91,13 @@ class LoadAndCoefficient:
         #: The contact with its μN, or None if μN is not constant.
         self.contact = _with(self.geometry, constant) if is_number else None
         #: The law of μN, or None if it is constant.
-        self.law: Law | None = None if is_number else law_of(constant, self._static_ratio, curve, *functions)
+        self.law: Law | None = None if is_number else law_of(constant, self.static_ratio, curve, *functions)
+
+    def without_peak(self) -> LoadAndCoefficient:
+        """Return the sliding friction alone."""
+        return LoadAndCoefficient(
+            self.geometry, self.friction_coefficient, self.normal_load, plates=int(self._plates)
+        )
 
     def contact_at(self, t: float) -> Contact:
         """Return the contact with μN at the time t (s), or with 1 N if that depends on the motion."""

@@ -27,7 +27,6 @@ from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.planar_pairs import LAWS
 from exudyn_models.forces.slip_kinematics import Floats, Kinds
-from exudyn_models.forces.stick_dampers import StickDampers
 from reference_model.systems import FloatArray
 
 derivatives_on_nodes = KeptOnDisk(friction_derivatives_on_nodes)
@@ -39,24 +38,10 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def force_and_jacobian(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return both functions, for the present load and coefficient and the nodes' ``reference`` coordinates.
-
-    The force function carries the contact's ``StickDampers`` as an attribute.
-    """
+    """Return both functions, for the present load and coefficient and the nodes' ``reference`` coordinates."""
     if on_one_axis(kinds, factors):
-        force, jacobian = functions_on_axis(kinds, factors)
-    else:
-        force, jacobian = _compiled_functions(kinds, reference, factors)
-    setattr(force, _DAMPERS, StickDampers(kinds, reference, factors))
-    return force, jacobian
-
-
-_DAMPERS = "stick_dampers"
-
-
-def stick_dampers_of(force: Any) -> StickDampers | None:
-    """Return the dampers that a ``force`` of ``force_and_jacobian`` carries; None for any other function."""
-    return getattr(force, _DAMPERS, None)
+        return functions_on_axis(kinds, factors)
+    return _compiled_functions(kinds, reference, factors)
 
 
 def _compiled_functions(

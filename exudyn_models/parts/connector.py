@@ -1,24 +1,31 @@
-"""A massless connector over the nodes of *both* bodies, which applies the full reaction to both.
+"""Connectors over the nodes of *both* bodies, which apply the full reaction to both.
 
-It is an ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes. A force F on the
-disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker connectors omit that
-moment, which violates conservation of angular momentum for two free bodies.
+In general it is a massless ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes. A
+force F on the disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker
+connectors omit that moment, which violates conservation of angular momentum for two free bodies.
+
+Between rotors on one axis there is no such moment. Under a constant load ``ObjectConnectorCoordinateSpringDamperExt``
+then has the law of ``axial_pairs``, and takes a fraction of the time of a Python function.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.forces.axial_pairs import constant_law
 from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
+from exudyn_models.solver.contacts import Contact, register
 
 items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 
-def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction) -> Any:
+def add_connector(
+    mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction, name: str = ""
+) -> Any:
     """Add a connector over ``nodes``; return its ``ObjectIndex``.
 
     ``force`` returns the forces on all coordinates of the nodes. ``jacobian`` returns the sum of the derivatives of
@@ -27,9 +34,53 @@ def add_connector(mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(
         items.ObjectGenericODE2(
+            name=name,
             nodeNumbers=list(nodes),
             massMatrix=np.zeros((size, size)),
             forceUserFunction=force,
             jacobianUserFunction=jacobian,
         )
     )
+
+
+def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> Any:
+    """Add the connector of a contact over ``nodes`` and register the contact; return its ``ObjectIndex``."""
+    name = register(mbs, contact)
+    if not contact.built_in:
+        return add_connector(mbs, nodes, contact.functions["force"], contact.functions["jacobian"], name)
+    markers = rotor_markers(mbs, nodes)
+    item = mbs.AddObject(
+        items.ObjectConnectorCoordinateSpringDamperExt(
+            name=name, markerNumbers=markers, frictionProportionalZone=1.0
+        )
+    )
+    renew_friction(mbs, item, contact)
+    return item
+
+
+def renew_friction(mbs: Any, item: Any, contact: Contact) -> None:
+    """Let the connector ``item`` apply the present functions of a contact."""
+    if not contact.built_in:
+        for name, function in contact.functions.items():
+            mbs.SetObjectParameter(item, f"{name}UserFunction", function)
+        return
+    law = constant_law(contact.kinds, contact.factors)
+    resistance = 0 if law else _resistance(contact.functions["force"], len(contact.reference))
+    mbs.SetObjectParameter(item, "springForceUserFunction", resistance)
+    if law:
+        moment, spin = law
+        mbs.SetObjectParameter(item, "dynamicFrictionForce", moment)
+        mbs.SetObjectParameter(item, "frictionProportionalZone", spin)
+
+
+def _resistance(force: ForceFunction, size: int) -> Callable[..., float]:
+    """Return the moment against the relative spin as a user function for Exudyn's spring-damper."""
+    others = [0.0] * (size - 1)
+    return lambda mbs, t, item, twist, spin, *_: -force(mbs, t, item, [*others, twist], [*others, spin])[-1]
+
+
+def rotor_markers(mbs: Any, nodes: Sequence[Any]) -> list[Any]:
+    """Add markers of the angles of two rotors, or of the ground and one rotor; return their ``MarkerIndex``."""
+    if len(nodes) == 1:
+        nodes = [mbs.AddNode(items.NodePointGround()), *nodes]
+    return [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]

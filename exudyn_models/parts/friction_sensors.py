@@ -13,17 +13,18 @@ import exudyn as exu
 import exudyn.itemInterface
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import AxialStick, on_one_axis
+from exudyn_models.forces.axial_pairs import on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
-from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
+from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import (
     SIZES,
     Axes,
-    Kinds,
     slip_and_place_of_nodes,
 )
 from exudyn_models.forces.user_functions import force_and_jacobian
+from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
+from exudyn_models.solver.contacts import Contact
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.stick.planar_stick import PlanarStick
@@ -68,12 +69,8 @@ class RingFriction:
     mbs: Any
     item: Any
     nodes: tuple[Any, ...]
-    _kinds: Kinds = field(repr=False)
-    _reference: FloatArray = field(repr=False)
-    _factors: LoadAndCoefficient = field(repr=False)
-    _functions: dict[str, Any] = field(repr=False)
+    _contact: Contact = field(repr=False)
     _thermal: ThermalNode | None = field(default=None, repr=False)
-    _stick: AxialStick | None = field(default=None, repr=False)
 
     @property
     def compiled(self) -> bool:
@@ -83,12 +80,12 @@ class RingFriction:
         the values that outer names had when they were compiled. Any other function is called from compiled code too,
         at its own cost.
         """
-        return self._factors.compiled
+        return self._contact.factors.compiled
 
     @property
     def effective_radius(self) -> float:
         """Ratio of moment to friction force in m of a disc that only turns: M = μN·r, of all plates."""
-        return mean_radius(self._factors.geometry)
+        return mean_radius(self._contact.factors.geometry)
 
     def change(
         self,
@@ -104,21 +101,21 @@ class RingFriction:
             If a number is out of range; both then stay unchanged.
 
         """
-        factors = self._factors
+        factors = self._contact.factors
         if self._thermal is not None and friction_coefficient is not None:
             friction_coefficient = self._thermal.with_temperature(friction_coefficient)
         factors.change(
             factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
             factors.normal_load if normal_load is None else normal_load,
         )
-        if isinstance(self._stick, PlanarStick):
-            self._stick.sliding = force_and_jacobian(self._kinds, self._reference, factors)
-        if self._stick is not None:  # its own functions ask the factors each time
+        contact, stick = self._contact, self._contact.stick
+        if isinstance(stick, PlanarStick):
+            stick.sliding = force_and_jacobian(contact.kinds, contact.reference, factors)
+        if stick is not None:  # its own functions ask the factors each time
             return
-        force, jacobian = force_and_jacobian(self._kinds, self._reference, factors)
-        self._functions.update(force=force, jacobian=jacobian)
-        for name, function in self._functions.items():
-            self.mbs.SetObjectParameter(self.item, f"{name}UserFunction", function)
+        force, jacobian = force_and_jacobian(contact.kinds, contact.reference, factors)
+        contact.functions.update(force=force, jacobian=jacobian)
+        renew_friction(self.mbs, self.item, contact)
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
@@ -159,7 +156,7 @@ class RingFriction:
             if quantity == "centre_slip":
                 return [math.hypot(slip[0], slip[1])]
             if quantity == "rim_slip":
-                return [self._factors.contact_radius * slip[2]]
+                return [self._contact.factors.contact_radius * slip[2]]
             if quantity == "relative_spin":
                 return [float(slip[2])]
             if asked:
@@ -169,16 +166,16 @@ class RingFriction:
                 )
             asked = True
             try:
-                if self._stick is not None and quantity == "mode":
-                    return [float(self._stick.visible_mode)]
-                if self._stick is not None and quantity == "capacity_share":
-                    return [self._stick.capacity_share(mbs, t)]
+                if self._contact.stick is not None and quantity == "mode":
+                    return [float(self._contact.stick.visible_mode)]
+                if self._contact.stick is not None and quantity == "capacity_share":
+                    return [self._contact.stick.capacity_share(mbs, t)]
                 if quantity in ("capacity_share", "mode"):
                     creep = self._creep(t, slip, angle, radius)
                     return [
                         mode.at(t, creep, float(slip[2])) if quantity == "mode" else min(1.0, creep or 0.0)
                     ]
-                stick = self._stick
+                stick = self._contact.stick
                 friction = (
                     self._friction(t, slip, angle, radius)
                     if stick is None
@@ -207,14 +204,14 @@ class RingFriction:
             coordinates = values[first].tolist()
             if second:
                 coordinates += values[second].tolist()
-        forces = self._functions["force"](mbs, t, 0, coordinates, velocities)
+        forces = self._contact.functions["force"](mbs, t, 0, coordinates, velocities)
         return -float(sum(map(mul, forces, velocities)))
 
     @cached_property  # looking them up costs as much as calling them
     def _access(self) -> tuple[Any, Any, slice, slice | None]:
         """Functions for coordinates, if needed, and velocities of the assembled model, and slices of the nodes."""
         data = self.mbs.systemData
-        on_axis = on_one_axis(self._kinds, self._factors)
+        on_axis = on_one_axis(self._contact.kinds, self._contact.factors)
         first, second, *_ = *self._places, None
         return None if on_axis else data.GetODE2Coordinates, data.GetODE2Coordinates_t, first, second
 
@@ -235,7 +232,7 @@ class RingFriction:
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(self._kinds, coordinates)
+        to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(self._contact.kinds, coordinates)
         return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
@@ -247,12 +244,12 @@ class RingFriction:
             )  # half the cost of the nodes' own outputs
             for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
         )
-        return self._reference + q, q_t
+        return self._contact.reference + q, q_t
 
     @cached_property  # later nodes are added behind them
     def _places(self) -> list[Any]:
         """Slices of the nodes' coordinates among those of the assembled model."""
-        kinds = self._kinds[:2][-len(self.nodes) :]
+        kinds = self._contact.kinds[:2][-len(self.nodes) :]
         places: list[slice] = []
         for node, kind in zip(self.nodes, kinds, strict=True):
             start = self.mbs.GetNodeODE2Index(node)
@@ -263,18 +260,20 @@ class RingFriction:
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""
-        contact, spin = self._factors.geometry, float(slip[2])
+        contact, spin = self._contact.factors.geometry, float(slip[2])
         speed: float = potential_of(float(slip[0]), float(slip[1]), spin, angle, contact)
-        if self._factors.friction_force(t, radius, speed, spin) == 0.0:
+        if self._contact.factors.friction_force(t, radius, speed, spin) == 0.0:
             return None
         return speed / contact[3]
 
     def _friction(self, t: float, slip: FloatArray, angle: float, radius: float) -> FloatArray:
         """Return F_x, F_y (N) in the master's axes and M (N m)."""
-        arguments = (*slip.tolist(), angle, self._factors.contact_at(t))
+        arguments = (*slip.tolist(), angle, self._contact.factors.contact_at(t))
         friction = np.array(friction_of(*arguments))
-        if self._factors.depends_on_motion:
-            friction *= self._factors.friction_force(t, radius, potential_of(*arguments), float(slip[2]))
+        if self._contact.factors.depends_on_motion:
+            friction *= self._contact.factors.friction_force(
+                t, radius, potential_of(*arguments), float(slip[2])
+            )
         return friction
 
 

@@ -57,15 +57,12 @@ def add_native_friction(
         Master: a rotor, a planar body, or None for the ground. Disc: a planar body.
     contact_radius : float
         R in m, >= 0; 0 for a pin.
-    friction_coefficient : float
-        μ >= 0; only its product with N matters.
-    normal_load : float
-        N in N of all points together, >= 0.
+    friction_coefficient, normal_load : float
+        μ >= 0, and N >= 0 in N of all points together; only their product matters.
     regularisation : float
         ε in m/s, > 0.
     contact_points : int or sequence of (float, float, float)
-        n >= 1 points on the circle, or places and shares of the load in place of ``contact_radius``. A built-in
-        contact of a whole circle does not exist.
+        n >= 1 points on the circle, or places and shares of the load. The built-in contact has no whole circle.
     reach : float
         Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 
@@ -76,21 +73,15 @@ def add_native_friction(
 
     """
     _, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
-    coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
-    friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
-    reach = positive_number("reach", reach, "m")
     if places is None:
         raise ValueError(
             "contact_points = None: Exudyn's built-in contact supports points only; it must be a whole number, "
             "for example 6, or places of points"
         )
-    sides = checked_sides(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
-    if nodes_and_kinds(*sides)[1][2] is not None:
-        raise ValueError(
-            f"master_node {master_node!r}, disc_node {disc_node!r}: Exudyn's built-in contact sits at the nodes, and "
-            "a rotor or a ground must have the global z-axis; use add_ring_friction for markers and other axes"
-        )
-    master, disc = (side.node for side in sides)
+    coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
+    friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
+    reach = positive_number("reach", reach, "m")
+    master, disc = _checked_nodes(mbs, master_node, disc_node)
     size = 2.0 * reach  # from the triangle's centre to a corner; the inscribed circle has half of it
     master_marker = _marker(mbs, master, 0j)
     contacts = []
@@ -100,6 +91,17 @@ def add_native_friction(
         markers = [_marker(mbs, disc, arm), master_marker]
         contacts.append(_add_sphere(mbs, markers, data, size, friction_force, epsilon, share))
     return contacts
+
+
+def _checked_nodes(mbs: Any, master_node: Any, disc_node: Any) -> tuple[Any, Any]:
+    sides = checked_sides(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
+    if nodes_and_kinds(*sides)[1][2] is not None:
+        raise ValueError(
+            f"master_node {master_node!r}, disc_node {disc_node!r}: Exudyn's built-in contact sits at the nodes, and "
+            "a rotor or a ground must have the global z-axis; use add_ring_friction for markers and other axes"
+        )
+    master, disc = sides
+    return master.node, disc.node
 
 
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:

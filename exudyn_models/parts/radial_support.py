@@ -133,22 +133,19 @@ def add_radial_support(
 ) -> RadialSupport:
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
-    They act across the z-axis of the base and turn with it, like an elastic shaft. The ground has the axes of the
-    ``ObjectGround``, or else the global axes. The springs are relaxed if the disc's node is at ``offset``, and equal
-    in all radial directions. They neither hold the disc along the axis nor resist tilting.
-    ``computeMassMatrixInversePerBody`` must stay False unless the support is linear and on the ground with the global
-    axes, because its nodes are shared with their bodies.
+    They act across the z-axis of the base and turn with it, like an elastic shaft. The springs are relaxed if the
+    disc's node is at ``offset``, and equal in all radial directions. They neither hold the disc along the axis nor
+    resist tilting. ``computeMassMatrixInversePerBody`` must stay False unless the support is linear and on the ground
+    with the global axes, because its nodes are shared with their bodies.
 
     Parameters
     ----------
     mbs : exudyn MainSystem
         The model, not yet assembled, with the nodes.
     base_node : NodeIndex or ObjectIndex or MarkerIndex or None
-        None or an ``ObjectGround`` for the ground. Otherwise one of the following nodes, its body, or a
-        ``MarkerBodyRigid`` on it: a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a
-        ``NodeRigidBodyRxyz`` or, for implicit solvers, a ``NodeRigidBodyEP``.
+        Body as in ``add_ring_friction``, or None or an ``ObjectGround`` for the ground.
     disc_node : NodeIndex or ObjectIndex or MarkerIndex
-        One of those, except a ``Node1D``.
+        Body with any of these nodes, except a ``Node1D``.
     stiffness : float
         C in N/m, >= 0.
     damping : float

@@ -100,7 +100,7 @@ class JumpCheck:
             + f": the energy across that step may be wrong by {size * (end - start) / 2.0:.2g} J. If a load jumps "
             "there, pass its time to solve_dynamic, as breaks=[...]; otherwise use shorter steps",
             RuntimeWarning,
-            stacklevel=4,
+            stacklevel=5,
         )
 
 

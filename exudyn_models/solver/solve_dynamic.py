@@ -1,4 +1,23 @@
-"""``mbs.SolveDynamic`` for any model, with checks for problems that Exudyn does not report."""
+"""``mbs.SolveDynamic`` for any model, with checks for problems that Exudyn does not report.
+
+- *Load jumps.* A step across a load jump has an error of the jump times the part of the step before it, and a larger
+  one with an implicit solver. With ``breaks`` the run stops just before these times and continues just after. A
+  ``RuntimeWarning`` at the end reports a jump of a power of ``add_energy_balance`` or of a heat sensor, see
+  ``jumps``.
+- *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
+  success with a state that is not finite. A check after every step, which costs about 1.5 μs, ends the run in that
+  case; the model's own function after a step is still called.
+- *Fixed explicit steps.* If the step exceeds the stability limit of sticking contacts, a ``RuntimeWarning`` reports
+  it, because the run looks normal; see ``largest_stable_step``. The check includes the contacts of
+  ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Functions for loads
+  and coefficients are evaluated at the start and at a hundred times of the run, with the motion of the run.
+- *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero. Repeated
+  steps start with the complete state from their beginning, see ``repeated_steps``; for this, modified Newton renews
+  its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of friction are
+  repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
+- *Exact stick.* Friction contacts without a regularisation lock and release at the times of Coulomb's law, see
+  ``stick.switching``. Sensors have an additional row at each of these times.
+"""
 
 from __future__ import annotations
 
@@ -40,24 +59,7 @@ def solve_dynamic(
 ) -> list[ModeChange]:
     """Run ``mbs.SolveDynamic`` with the same arguments, and raise errors that it does not report.
 
-    - *Load jumps.* A step across a load jump has an error of the jump times the part of the step before it, and a
-      larger one with an implicit solver. With ``breaks`` the run stops just before these times and continues just
-      after. A ``RuntimeWarning`` at the end reports a jump of a power of ``add_energy_balance`` or of a heat sensor,
-      see ``jumps``.
-    - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and
-      report success with a state that is not finite. A check after every step, which costs about 1.5 μs, ends the run
-      in that case; the model's own function after a step is still called.
-    - *Fixed explicit steps.* If the step exceeds the stability limit of sticking contacts, a ``RuntimeWarning``
-      reports it, because the run looks normal; see ``largest_stable_step``. The check includes the contacts of
-      ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Functions for
-      loads and coefficients are evaluated at the start and at a hundred times of the run, with the motion of the run.
-    - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero.
-      Repeated steps start with the complete state from their beginning, see ``repeated_steps``; for this, modified
-      Newton renews its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of
-      friction are repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see
-      ``steep_laws``.
-    - *Exact stick.* Friction contacts without a regularisation lock and release at the times of Coulomb's law, see
-      ``stick.switching``. Sensors have an additional row at each of these times.
+    The module describes its checks and repairs.
 
     Parameters
     ----------
@@ -102,6 +104,56 @@ def solve_dynamic(
     return changes
 
 
+class _Look:
+    """Checks the state of an assembled model after every step of a run by a ``solver``."""
+
+    def __init__(self, mbs: Any, solver: Any, options: Any) -> None:
+        data, self._solver, self._start = mbs.systemData, solver, options.startTime
+        self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
+        self._others, self._rates = data.GetODE1Coordinates, data.GetODE1Coordinates_t
+        automatic = (
+            solver not in IMPLICIT and solver.name not in INTERVALS
+        )  # steps as small as the solver likes
+        self._count = StepCount(options.endTime) if automatic else None
+        if self._count is not None:
+            self._count.look_from(self._start)
+        self._steps = StepCheck(mbs, solver.name, options)
+        self._steps.warn(self._start, self._positions(exu.ConfigurationType.Initial))
+        self._jumps = JumpCheck(mbs) if solver in IMPLICIT else None
+        self._reached, self._finite, self._too_many = self._start, True, ""
+
+    @property
+    def duration(self) -> float:
+        """Time in s from the start of the run to its last step."""
+        return float(self._reached - self._start)
+
+    def start(self) -> None:
+        """Note the initial rates, which the repairs of an implicit run determine."""
+        if self._jumps is not None:
+            self._jumps.look(self._start, self._rates(exu.ConfigurationType.Initial))
+
+    def __call__(self, mbs: Any, t: float) -> bool:
+        """Return whether the run may continue after a step to the time t (s)."""
+        self._reached = t
+        if t >= self._steps.next_time:
+            self._steps.warn(t, self._positions())
+        self._finite = math.isfinite(
+            sum(self._positions().tolist()) + sum(self._velocities().tolist()) + sum(self._others().tolist())
+        )
+        if self._jumps is not None:
+            self._jumps.look(t, self._rates())
+        if self._count is not None:
+            self._too_many = self._count.count(t)
+        return self._finite and not self._too_many
+
+    def finish(self) -> None:
+        """Raise ``SimulationError`` if a check ended the run; warn about jumps."""
+        if not self._finite or self._too_many:
+            raise SimulationError(advice(self._solver.name, self.duration, self._too_many or NOT_FINITE))
+        if self._jumps is not None:
+            self._jumps.warn()
+
+
 def _solve(
     mbs: Any,
     simulationSettings: Any,
@@ -114,61 +166,34 @@ def _solve(
 
     ``modes`` are the modes at the end of the previous part. They are empty in the first part.
     """
-    data = mbs.systemData
     options = simulationSettings.timeIntegration
-    start = reached = options.startTime
-    finite, too_many = True, ""
-    count = None if solver in IMPLICIT or solver.name in INTERVALS else StepCount(options.endTime)
-    if count is not None:  # steps are as small as the solver likes
-        count.look_from(start)
-    check = StepCheck(mbs, solver.name, options)
-    check.warn(start, data.GetODE2Coordinates(exu.ConfigurationType.Initial))
-    jumps = JumpCheck(mbs) if solver in IMPLICIT else None
+    look = _Look(mbs, solver, options)
     changes: list[ModeChange] = []
-
-    positions, velocities, others = (
-        data.GetODE2Coordinates,
-        data.GetODE2Coordinates_t,
-        data.GetODE1Coordinates,
-    )
-
-    def look(mbs: Any, t: float) -> bool:
-        nonlocal reached, finite, too_many
-        reached = t
-        if t >= check.next_time:
-            check.warn(t, positions())
-        finite = math.isfinite(
-            sum(positions().tolist()) + sum(velocities().tolist()) + sum(others().tolist())
-        )
-        if jumps is not None:
-            jumps.look(t, data.GetODE1Coordinates_t())
-        if count is not None:
-            too_many = count.count(t)
-        return finite and not too_many
-
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
-            contacts = repairs.enter_context(first_modes(mbs, contacts, start))
-            if jumps is not None:
-                repairs.enter_context(starting_rates(mbs, start))
-                repairs.enter_context(newton_without_restart(mbs, options.newton))
-                repairs.enter_context(peaks_resolved(mbs, options))
-                if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
-                    repairs.enter_context(restored_accelerations(mbs))
-                jumps.look(start, data.GetODE1Coordinates_t(exu.ConfigurationType.Initial))
+            contacts = repairs.enter_context(first_modes(mbs, contacts, options.startTime))
+            if solver in IMPLICIT:
+                _repair_implicit(repairs, mbs, solver, options)
+            look.start()
             if contacts:
                 changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:
-        _raise_cause(error, mbs, solver.name, reached - start)
+        _raise_cause(error, mbs, solver.name, look.duration)
         raise
-    if not finite or too_many:
-        raise SimulationError(advice(solver.name, reached - start, too_many or NOT_FINITE))
-    if jumps is not None:
-        jumps.warn()
+    look.finish()
     return changes
+
+
+def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) -> None:
+    """Repair rates, repeated steps and peaks of friction in a run of an implicit solver."""
+    repairs.enter_context(starting_rates(mbs, options.startTime))
+    repairs.enter_context(newton_without_restart(mbs, options.newton))
+    repairs.enter_context(peaks_resolved(mbs, options))
+    if solver == exu.DynamicSolverType.GeneralizedAlpha and options.adaptiveStep:
+        repairs.enter_context(restored_accelerations(mbs))
 
 
 def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +18,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.stick_dampers import StickDampers
-from exudyn_models.forces.user_functions import stick_dampers_of
+from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.linear_matrices import matrices_of_model, singular_mass
 from exudyn_models.solver.solver_run import raise_interrupt
 from reference_model.systems import FloatArray
@@ -55,18 +57,21 @@ class ModelInStick:
 
         Raises any error of the model's functions.
         """
-        found = contacts_of(mbs)
+        found = {item: contact for item, contact in contacts_of(mbs).items() if contact.stick is None}
         if not found:
             return None
-        mass, _, damping = matrices_of_model(mbs, t)
+        with _inactive(mbs, [item for item, contact in found.items() if contact.built_in]):
+            mass, _, damping = matrices_of_model(mbs, t)
         data, initial = mbs.systemData, exu.ConfigurationType.Initial
         q, q_t = data.GetODE2Coordinates(initial), data.GetODE2Coordinates_t(initial)
         contacts = []
-        for item, dampers, jacobian in found:
+        for item, contact in found.items():
             places = np.array(data.GetObjectLTGODE2(item))
-            now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
-            damping[np.ix_(places, places)] -= now  # the damping of its initial slip
-            contacts.append((places, dampers))
+            if not contact.built_in:
+                jacobian = contact.functions["jacobian"]
+                now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
+                damping[np.ix_(places, places)] -= now  # the damping of its initial slip
+            contacts.append((places, contact.dampers))
         return cls(mass, damping, tuple(contacts))
 
     @property
@@ -175,7 +180,7 @@ class StepCheck:
             f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5 with automatic steps, or "
             "an implicit solver",
             RuntimeWarning,
-            stacklevel=4,
+            stacklevel=5,
         )
 
 
@@ -189,13 +194,13 @@ def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
         return None
 
 
-def contacts_of(mbs: Any) -> list[tuple[int, StickDampers, Any]]:
-    """Return index, dampers and Jacobian of all contacts of a model."""
-    found = []
-    for item in range(mbs.systemData.NumberOfObjects()):
-        entry = mbs.GetObject(item)
-        force = entry.get("forceUserFunction")
-        dampers = stick_dampers_of(force["function"]) if isinstance(force, dict) else None
-        if dampers is not None:
-            found.append((item, dampers, entry["jacobianUserFunction"]["function"]))
-    return found
+@contextmanager
+def _inactive(mbs: Any, items: Sequence[int]) -> Iterator[None]:
+    """Let connectors exert no force."""
+    for item in items:
+        mbs.SetObjectParameter(item, "activeConnector", False)
+    try:
+        yield
+    finally:
+        for item in items:
+            mbs.SetObjectParameter(item, "activeConnector", True)

@@ -60,8 +60,9 @@ class LockedContacts:
         """Return velocities that give only this contact a slip; heavy bodies move the least."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
         held, weights = self._held_rows(others), self._mobilities()
-        rows = np.vstack([held, contact.slip_rows(self._mbs)]) * weights
-        wanted = np.concatenate([np.zeros(len(held)), slip])
+        resisted = slice(3 if contact.planar.mean_radius > 0.0 else 2)  # a pin may spin
+        rows = np.vstack([held, contact.slip_rows(self._mbs)[resisted]]) * weights
+        wanted = np.concatenate([np.zeros(len(held)), slip[resisted]])
         return np.asarray(weights * np.linalg.lstsq(rows, wanted, rcond=None)[0])
 
     def support(self, overloaded: StickingContact) -> bool:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
+from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.starting_rates import initialised_solver
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
 from exudyn_models.solver.stick.slip_motion import SlipMotion
@@ -293,14 +294,11 @@ def _sliding_mode(slip: FloatArray) -> Mode:
 
 def sticking_contacts(mbs: Any) -> list[StickingContact]:
     """Return all contacts of an assembled model that stick exactly."""
-    found = []
-    for item in range(mbs.systemData.NumberOfObjects()):
-        force = mbs.GetObject(item).get("forceUserFunction")
-        stick = getattr(force["function"], "__self__", None) if isinstance(force, dict) else None
-        if isinstance(stick, AxialStick):
-            places = np.array(mbs.systemData.GetObjectLTGODE2(item))
-            found.append(StickingContact(item, stick, places))
-    return found
+    return [
+        StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+        for item, contact in contacts_of(mbs).items()
+        if contact.stick is not None
+    ]
 
 
 @contextmanager

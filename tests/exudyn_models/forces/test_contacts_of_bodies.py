@@ -65,8 +65,8 @@ def pair_of(kinds, contact, **more):
 
 
 WITH_EULER = [(None, EULER), ("rotor", EULER), (EULER, "planar"), (EULER, EULER)]
-CONSTANT = ("pin", "ring", "points", "feet", "annulus", "annulus that wears", "plates")
-"""Contacts whose friction between two rotors does not change while they slip."""
+CONSTANT = ("pin", "ring", "creeping ring", "points", "feet", "annulus", "annulus that wears", "plates")
+"""Contacts without a Jacobian of ours between two rotors: constant moments, or Exudyn's own connector."""
 CASES = [
     (kinds, contact)
     for kinds in (*PAIRS, *GROUND)

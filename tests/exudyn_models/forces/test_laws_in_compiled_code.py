@@ -41,7 +41,7 @@ def added(kinds, **law):
 def forces(kinds, **law):
     """Forces of the user function at ten states, shape (10, n)."""
     mbs, friction = added(kinds, **law)
-    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
+    force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
     states = np.random.default_rng(2).normal(size=(10, 2, size)).tolist()
     return np.array([force(mbs, 0.7, 0, *state) for state in states])
@@ -87,7 +87,7 @@ def out_of_range(time):
 @pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar"), ("Tait-Bryan", "Tait-Bryan")])
 def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, function):
     mbs, friction = added(kinds, normal_load=function)
-    force = mbs.GetObject(friction.item)["forceUserFunction"]["function"]
+    force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
     state = [0.1] * size, [0.3 * i for i in range(size)]
     with pytest.raises(ZeroDivisionError, match="a word of its own"):

@@ -115,7 +115,7 @@ def test_a_load_on_the_limit_surface_releases_the_contact(annulus):
             **geometry,
         )
         mbs.Assemble()
-        force = np.array(contact._functions["force"](mbs, 0.0, 0, [0.0] * 3, slip))
+        force = np.array(contact._contact.functions["force"](mbs, 0.0, 0, [0.0] * 3, slip))
 
         mbs = new_model()
         node = planar_body(mbs, MASS, INERTIA, [0.0, 0.0, 0.0], [0.0] * 3)

@@ -1,0 +1,153 @@
+"""Friction of rotors under a constant load: Exudyn's own spring-damper has the law of the user functions."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from free_bodies import drive, items, new_model, rate_of, rotor, settings_of
+
+from exudyn_models import add_ring_friction, largest_stable_step, solve_dynamic
+from exudyn_models.solver.linear_matrices import matrices_of_model
+
+SOLVERS = exu.DynamicSolverType
+LOAD, EPSILON = 500.0, 1e-2
+BUILT_IN, USER_FUNCTION = "ConnectorCoordinateSpringDamperExt", "GenericODE2"
+GEOMETRIES = ({"contact_radius": 0.12}, {"inner_radius": 0.05, "outer_radius": 0.12, "pressure": "wear"})
+
+
+def in_python(time):
+    """Return the same load, as a function."""
+    return LOAD
+
+
+def braked(load, grounded, spin=20.0, **contact):
+    """Return a model of a rotor that another one or the ground brakes, the rotor and its contact."""
+    mbs = new_model()
+    master = None if grounded else rotor(mbs, 0.3, 1.5)
+    disc = rotor(mbs, 0.9, spin if grounded else 1.5 + spin)
+    facing = {"friction_coefficient": 0.3, "regularisation": EPSILON, "contact_radius": 0.12} | contact
+    if "inner_radius" in facing:
+        del facing["contact_radius"]
+    return mbs, disc, add_ring_friction(mbs, master, disc, normal_load=load, **facing)
+
+
+def kind_of(contact):
+    return contact.mbs.GetObject(contact.item)["objectType"]
+
+
+def end_of(load, grounded, solver, **contact):
+    """Return the speeds and the heat of a run that ends in stick."""
+    mbs, disc, friction = braked(load, grounded, **contact)
+    drive(mbs, disc, 3.0)
+    heat = friction.add_sensor("heat")
+    settings = settings_of(1.2, 3000, newton=1e-12)
+    settings.timeIntegration.absoluteTolerance, settings.timeIntegration.relativeTolerance = 1e-9, 0.0
+    solve_dynamic(mbs, settings, solver)
+    return np.append(mbs.systemData.GetODE2Coordinates_t(), mbs.GetSensorValues(heat)), kind_of(friction)
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES, ids=["ring", "worn annulus"])
+@pytest.mark.parametrize("grounded", [False, True])
+@pytest.mark.parametrize("solver", ["RK44", "DOPRI5", "TrapezoidalIndex2", "GeneralizedAlpha"])
+def test_motion_and_heat_are_those_of_the_user_function_to_rounding(solver, grounded, geometry):
+    built_in, first = end_of(LOAD, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
+    by_function, second = end_of(in_python, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
+    assert (first, second) == (BUILT_IN, USER_FUNCTION)
+    np.testing.assert_allclose(built_in, by_function, rtol=1e-11, atol=1e-11)
+
+
+@pytest.mark.parametrize("grounded", [False, True])
+@pytest.mark.parametrize("spin", [0.0, 1e-9, 0.05, -0.05, 0.0834, -7.0])
+def test_moments_are_those_of_the_user_function_to_rounding(spin, grounded):
+    def accelerations(load):
+        mbs, *_ = braked(load, grounded, spin)
+        mbs.Assemble()
+        mbs.SolveDynamic(settings_of(1e-9, 1), SOLVERS.GeneralizedAlpha)
+        return mbs.systemData.GetODE2Coordinates_tt()
+
+    np.testing.assert_allclose(accelerations(LOAD), accelerations(in_python), rtol=1e-9, atol=1e-15)
+
+
+def test_the_solvers_know_the_damping_of_creep():
+    mbs, *_ = braked(LOAD, False, 0.05)
+    mbs.Assemble()
+    *_, damping = matrices_of_model(mbs)
+    by_hand = 0.3 * LOAD * 0.12**2 / EPSILON * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    np.testing.assert_allclose(damping, by_hand, rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        {"static_ratio": 1.2},
+        {"friction_coefficient": [[0.0, 0.3], [1.0, 0.2]]},
+        {"friction_coefficient": lambda slip_speed: 0.3},
+        {"regularisation": None},
+        {"contact_radius": 0.0},
+    ],
+    ids=["static friction", "table", "function", "exact stick", "pin"],
+)
+def test_any_other_law_keeps_its_user_function(contact):
+    assert kind_of(braked(LOAD, False, **contact)[2]) == USER_FUNCTION
+
+
+def test_the_load_may_become_a_function_and_a_number_again():
+    mbs, disc, contact = braked(LOAD, True)
+    mbs.Assemble()
+    settings = settings_of(0.1, 100)
+    rate = 0.3 * LOAD * 0.12 / 0.9  # rad/s²
+    speed = 20.0
+    for part, (load, expected) in enumerate(
+        (
+            (LOAD, lambda speed: speed - 0.1 * rate),
+            (lambda time: 2.0 * LOAD, lambda speed: speed - 0.2 * rate),
+            (lambda slip_speed: LOAD * slip_speed, lambda speed: speed * np.exp(-0.1 * rate * 0.12)),
+            (3.0 * LOAD, lambda speed: speed - 0.3 * rate),
+        )
+    ):
+        contact.change(normal_load=load)
+        settings.timeIntegration.startTime, settings.timeIntegration.endTime = 0.1 * part, 0.1 * (part + 1)
+        solve_dynamic(mbs, settings, SOLVERS.RK44, updateInitialValues=True)
+        speed = expected(speed)
+        assert rate_of(mbs, disc) == pytest.approx(speed, rel=1e-11), part
+
+
+def test_an_invalid_load_after_a_change_is_reported_with_its_time():
+    mbs, _, contact = braked(LOAD, True)
+    contact.change(normal_load=lambda time: -1.0)
+    with pytest.raises(exu.ExudynError, match="normal_load") as error:
+        solve_dynamic(mbs, settings_of(0.1, 10), SOLVERS.RK44)
+    assert "-1" in str(error.value)
+
+
+@pytest.mark.parametrize("spin", [0.0, 20.0, EPSILON / 0.12])
+def test_the_largest_stable_step_does_not_depend_on_the_connector(spin):
+    limits = [largest_stable_step(braked(load, False, spin)[0], SOLVERS.RK44) for load in (LOAD, in_python)]
+    inertia = 1.0 / (1.0 / 0.3 + 1.0 / 0.9)
+    assert limits == pytest.approx([2.7852935 * inertia * EPSILON / (0.3 * LOAD * 0.12**2)] * 2, rel=1e-9)
+
+
+def test_the_step_limit_leaves_the_contact_active():
+    mbs, disc, _ = braked(LOAD, True)
+    largest_stable_step(mbs, SOLVERS.RK44)
+    mbs.SolveDynamic(settings_of(0.1, 100), SOLVERS.RK44)
+    assert rate_of(mbs, disc) < 19.0
+
+
+def test_contacts_of_a_model_that_was_reset_are_forgotten():
+    mbs, *_ = braked(LOAD, True, regularisation=None)
+    mbs.Reset()
+    disc = rotor(mbs, 0.9, 20.0)
+    mbs.Assemble()
+    assert solve_dynamic(mbs, settings_of(0.1, 100), SOLVERS.RK44) == []
+    assert rate_of(mbs, disc) == 20.0
+    assert largest_stable_step(mbs, SOLVERS.RK44) == np.inf
+
+
+def test_a_contact_is_found_after_an_earlier_object_was_deleted():
+    mbs = new_model()
+    ground = mbs.AddObject(items.ObjectGround())
+    friction = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": LOAD}
+    add_ring_friction(mbs, None, rotor(mbs, 0.9, 20.0), regularisation=EPSILON, **friction)
+    mbs.DeleteObject(ground)
+    limit = 2.7852935 * 0.9 * EPSILON / (0.3 * LOAD * 0.12**2)
+    assert largest_stable_step(mbs, SOLVERS.RK44) == pytest.approx(limit, rel=1e-9)
