@@ -81,7 +81,7 @@ def standard_headers() -> Path:
     found = importlib.util.find_spec("fmpy")
     if found is None or found.origin is None:
         raise HeadersMissingError(
-            "FMPy is not installed, which provides the headers of FMI: pip install 'friction-discs[fmu]'"
+            "FMPy is not installed, which provides the headers of FMI: pip install fmpy"
         )
     return Path(found.origin).parent / "c-code"
 

@@ -12,6 +12,6 @@ EXTRA = "friction-discs[sweep]"
 
 if _missing := [name for name in NEEDED if find_spec(name) is None]:
     raise ModuleNotFoundError(
-        f"sweeps need {EXTRA} (missing: {', '.join(_missing)}); install it with: pip install '{EXTRA}'",
+        f"sweeps need {', '.join(_missing)}; install with: pip install {' '.join(_missing)}",
         name=EXTRA,
     )

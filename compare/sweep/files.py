@@ -61,7 +61,7 @@ class Files:
         try:
             system, root = url_to_fs(self.url, **(OPTIONS["file"] if self.options is None else self.options))
         except ImportError as error:
-            s3 = "s3fs; install it with: pip install 'friction-discs[cluster]'"
+            s3 = "s3fs; install it with: pip install s3fs"
             needed = s3 if self.url.startswith("s3:") else f"a package that is not installed: {error}"
             raise StoreError(f"{self.url!r} needs {needed}") from None
         except ValueError as error:  # unknown protocol

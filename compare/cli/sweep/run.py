@@ -150,9 +150,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor]:
     except (ValueError, ClusterError) as error:
         raise BadInputError(str(error)) from None
     except ModuleNotFoundError:
-        raise BadInputError(
-            "--scheduler needs Dask; install it with: pip install 'friction-discs[cluster]'"
-        ) from None
+        raise BadInputError("--scheduler needs Dask; install it with: pip install distributed") from None
     with cluster:
         yield cluster
 

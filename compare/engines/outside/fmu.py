@@ -137,7 +137,7 @@ def _fmpy() -> Any:
     try:
         return importlib.import_module("fmpy.simulation")
     except ImportError as error:
-        raise ValueError(f"fmu:FILE needs FMPy, pip install 'friction-discs[fmu]': {error}") from None
+        raise ValueError(f"fmu:FILE needs FMPy; install it with: pip install fmpy ({error})") from None
 
 
 @functools.cache
