@@ -39,12 +39,12 @@ Figure: TypeAlias = "matplotlib.figure.Figure"
 BLACK = "#000000"
 BLUE = "#0b4f7d"
 ORANGE = "#d9730d"
-GREEN = "#1b9e77"
-PURPLE = "#a6559d"
-SKY = "#5ab4e5"
-GREY = "#7f7f7f"
+GREEN = "#086d3f"
+PURPLE = "#ce4bb8"
+SKY = "#57b4ff"
+GREY = "#888888"
 PALETTE = (BLUE, ORANGE, GREEN, PURPLE, SKY, GREY)
-"""Palette of Okabe and Ito, darkened or lightened so neighbours also differ in grey."""
+"""Colours that differ in pairs for a deuteranope too, and whose neighbours also differ in grey."""
 
 PANEL_WIDTH = 4.4
 PANEL_HEIGHT = 3.3

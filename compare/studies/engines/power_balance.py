@@ -203,7 +203,7 @@ def _residual(engine: Engine, name: str, motion: Motion) -> Measured | None:
         size=1.0,
         system=motion.system,
         source=motion.source,
-        data=_drawn(balances[motion.tolerance]) if motion.drawn else {},
+        data=_drawn(*balances.values()) if motion.drawn else {},
         named={name.replace(",", ""): None},
     )
 
@@ -226,7 +226,8 @@ def _relative_residual(balance: PowerBalance) -> float:
     return float(np.max(np.abs(balance.residual)) / balance.turned_over)
 
 
-def _drawn(balance: PowerBalance) -> Data:
+def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
+    """Return the curves of a balance; ``others`` have the same samples but other tolerances."""
     return {
         "times": balance.times,
         "drive work": balance.drive_work,
@@ -234,6 +235,7 @@ def _drawn(balance: PowerBalance) -> Data:
         "damper heat": balance.damper_heat,
         "stored energy": balance.stored_energy,
         "residual": balance.residual / balance.turned_over,
+        "change of residual": (balance.residual - others[-1].residual) / balance.turned_over,
     }
 
 
@@ -248,19 +250,26 @@ def draw(data: ByEngine) -> Figures:
         "damper heat": {"color": GREEN, "linestyle": (0.0, (1.0, 1.0))},
         "stored energy": {"color": GREY, "linestyle": "-"},
     }
+    sparse = slice(None, None, 5)
+
+    def draw_size(found: Data, name: str, **look: Any) -> None:
+        size = np.maximum(np.abs(found[name]), 1e-18)
+        residuals.semilogy(found["times"][sparse], size[sparse], **look)
+
     for rank, engine in enumerate(engines_in(data)):
         found = data[engine]
-        sparse = slice(None, None, 5)
         if rank == 0:
             for name, look in looks.items():
                 energies.plot(found["times"][sparse], found[name][sparse], label=name, linewidth=1.3, **look)
-        size = np.maximum(np.abs(found["residual"]), 1e-16)
-        residuals.semilogy(found["times"][sparse], size[sparse], **curve(engine, linewidth=1.0))
+            draw_size(found, "residual", color=GREY, linewidth=2.4, label=f"residual, {engine}")
+        draw_size(
+            found, "change of residual", **curve(engine, f"change with tolerance, {engine}", linewidth=1.0)
+        )
     residuals.axhline(RESOLUTION, color=BLACK, linewidth=0.8, linestyle=(0.0, (4.0, 3.0)), label="resolution")
     energies.set(xlabel=axis("t", "s"), ylabel="energy in J")
-    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-14, 1e-7))
+    residuals.set(xlabel=axis("t", "s"), ylabel="residual / energy turned over", ylim=(1e-18, 1e-7))
     energies.legend()
-    residuals.legend(loc="lower right")
+    residuals.legend(loc="lower right", fontsize=9.0)
     return {"power-balance": figure}
 
 

@@ -29,6 +29,7 @@ from reference_model.systems import FloatArray
 
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
+SHRINKING = "v"
 """Labels and marks of simulated results."""
 
 COLOURS = {"ring": GREEN, "(23)": PURPLE}
@@ -46,7 +47,6 @@ class Region(NamedTuple):
     up: float
     words: str
     at: tuple[float, float] | None = None
-    turn: float = 0.0
 
 
 class Panel(NamedTuple):
@@ -112,7 +112,7 @@ PANELS = {
         (
             Region(2.5, 0.0202, "rotation about the axis"),
             Region(2.5, 0.0142, "modulated cycle"),
-            Region(0.09, 0.0149, "whirl", turn=90.0),
+            Region(0.35, 0.0166, "whirl"),
             Region(2.0, 0.0096, "whirl or sticking"),
         ),
     ),
@@ -158,11 +158,11 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
     for law, colour in COLOURS.items():
         for kind, width, dashes, words in (
             ("Hopf", 2.0, DASHES[law], "whirl loses its stability (Hopf)"),
-            ("fold", 1.3, ":", "two whirls meet (fold); purple: (23)"),
+            ("fold", 1.3, ":", "two whirls meet (fold)"),
         ):
             found = [shown(name, curve) for curve in curves(theory, name, law, kind)]
             for i, (first, second) in enumerate(found):
-                label = f"{NAMES[law]}: {words}" if i == 0 and (kind, law) != ("fold", "(23)") else None
+                label = f"{NAMES[law]}: {words}" if i == 0 else None
                 axes.plot(
                     first, second, color=colour, linestyle=dashes, linewidth=width, zorder=3.0, label=label
                 )
@@ -174,6 +174,7 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
         color=GREY,
         linestyle="-.",
         linewidth=1.2,
+        label="largest shaft moment at which the disc sticks",
     )
     if panel.names[0] == "disc_speed":
         axes.axvline(K, color=SKY, linewidth=1.4)
@@ -194,7 +195,6 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
             (region.across, region.up),
             ha="center",
             va="center",
-            rotation=region.turn,
             style="italic",
             bbox=box if region.at else None,
             arrowprops={"arrowstyle": "-", "linewidth": 0.7} if region.at else None,
@@ -217,7 +217,7 @@ def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> Non
     style: dict[str, Any] = {"linestyle": "none", "markerfacecolor": "none", "zorder": 5.0}
     style |= {"color": engine_style(engine).colour, "markersize": 5.0}
     for chosen, mark in groups:
-        place = -1.0 - rank if mark in SIDES.values() else 1.0 + rank
+        place = 1.0 + rank if mark in ENDS_AS.values() else -1.0 - 2.0 * rank - (mark == SHRINKING)
         axes.plot(*shown(name, chosen), marker=mark, transform=beside(axes, place), **style)
 
 

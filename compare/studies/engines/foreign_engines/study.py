@@ -10,7 +10,7 @@ import numpy as np
 import compare.studies.engines.foreign_engines.theory as ladders
 from compare.claims import ByEngine, Data, Figures, Measured, Study, extrapolated_order, observed_exponent
 from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
-from compare.output.figures import BLACK, GREY, PURPLE, SKY, Axes, Figure, engine_style, new_figure
+from compare.output.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, Figure, new_figure
 from compare.studies.engines.foreign_engines.theory import (
     BOXES,
     BY_AXIS,
@@ -245,94 +245,54 @@ def creeps() -> Measured:
 
 # --- Figures
 
-COLOURS = {
-    "MuJoCo": PURPLE,
-    "Bullet": GREY,
-    "Drake": SKY,
-    "DART": BLACK,
-    "Chipmunk": "#8c564b",
-    "Box2D": "#b5a400",
-    "Rapier": "#c2185b",
-    "Jolt": "#5e35b1",
-    "Newton": "#00796b",
-    "cannon-es": "#ef6c00",
-    "planck": "#607d8b",
-}
+ROWS = (
+    *(("Bullet",), ("DART",), ("Drake",), ("MuJoCo",)),
+    *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
+)
+"""Engines of the rows; the engines of the last two rows have two settings each."""
 
-MARKERS = "os^Dv"
-"""Markers of an engine's own settings; our force, the last setting of each engine, has a dotted line and crosses."""
+LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
+"""Colours and markers of an engine's settings."""
+
+OURS = {"reference": "-", "exudyn": "--", "exudyn-native": ":"}
+"""Line styles of our own engines, which every panel shows in grey."""
 
 
 def draw(data: ByEngine) -> Figures:
     if "theory" not in data:
         return {}
-    ladders = data["theory"]
-    pin, (slides, sticks) = new_figure(ncols=2, width=9.6, height=6.2)
-    _draw(slides, ladders, "slip", "Sliding pin")
-    _draw(sticks, ladders, "stick-slip", "Pin that sticks nine times")
-    disc, (panel,) = new_figure(width=9.6, height=6.2)
-    _draw(panel, ladders, "disc", "Disc on six points")
-    for figure, first in ((pin, slides), (disc, panel)):
-        _legend(figure, first)
-    return {"foreign-engines-pin": pin, "foreign-engines-disc": disc}
+    cases = {
+        "foreign-engines-pin": {"slip": "Sliding pin", "stick-slip": "Pin that sticks nine times"},
+        "foreign-engines-disc": {"disc": "Disc on six points"},
+    }
+    return {name: _small_multiples(data["theory"], titles) for name, titles in cases.items()}
 
 
-def _legend(figure: Figure, panel: Axes) -> None:
-    """Put a legend below all panels; the engine with most settings determines the number of columns."""
-    from matplotlib.lines import Line2D
-
-    engines: dict[str, list[Any]] = {}
-    for line in panel.get_lines():
-        engine, _, setting = str(line.get_label()).partition(", ")
-        engines.setdefault(engine if setting else "", []).append(line)
-    rows = max(map(len, engines.values()))
-    columns: list[list[Any]] = [[]]
-    for settings in engines.values():
-        if len(columns[-1]) + len(settings) > rows:
-            columns.append([])
-        columns[-1] += settings
-    nothing = Line2D([], [], linestyle="none", label=" ")
-    lines = [line for column in columns for line in column + [nothing] * (rows - len(column))]
-    figure.legend(
-        handles=lines, loc="outside lower center", ncols=len(columns), fontsize=9.0, columnspacing=1.2
+def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
+    """Draw one row for each engine and one column for each motion, which all share their axes."""
+    columns = len(titles)
+    figure, axes = new_figure(
+        columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True
     )
-
-
-def _draw(panel: Axes, ladders: Data, case: str, title: str) -> None:
-    for name, look in _looks([key.removesuffix(f": {case}") for key in ladders if key.endswith(f": {case}")]):
-        seconds, errors = ladders[f"{name}: {case}"].T
-        panel.loglog(seconds, errors, label=name, **look)
-    panel.set(xlabel="time on one core in s", ylabel="largest error in m", title=title)
-
-
-def _looks(names: list[str]) -> list[tuple[str, dict[str, Any]]]:
-    """Return the style of each name: colour by engine, marker by setting, wide lines for our own engines."""
-    looks: list[tuple[str, dict[str, Any]]] = []
-    settings: dict[str, int] = {}
-    for name in names:
-        engine, _, setting = name.partition(", ")
-        if not setting:
-            style = engine_style(name)
-            look: dict[str, Any] = {
-                "color": style.colour,
-                "marker": style.marker,
-                "linewidth": 2.4,
-                "zorder": 4.0,
-            }
-        elif setting == "our force":
-            look = {
-                "color": COLOURS[engine],
-                "marker": "x",
-                "linestyle": ":",
-                "linewidth": 1.2,
-                "zorder": 3.0,
-            }
-        else:
-            marker = MARKERS[settings.setdefault(engine, 0)]
-            settings[engine] += 1
-            look = {"color": COLOURS[engine], "marker": marker, "linewidth": 1.0, "markerfacecolor": "none"}
-        looks.append((name, {"markersize": 4.5} | look))
-    return looks
+    for i, panel in enumerate(axes):
+        case = list(titles)[i % columns]
+        names = [key.removesuffix(f": {case}") for key in ladders if key.endswith(f": {case}")]
+        for name in OURS:
+            if name in names:
+                panel.loglog(*ladders[f"{name}: {case}"].T, color=GREY, linestyle=OURS[name], label=name)
+        shown = [name for name in names if name not in OURS and name.partition(",")[0] in ROWS[i // columns]]
+        for name, (colour, marker) in zip(shown, LOOKS[: len(shown)], strict=True):
+            look: dict[str, Any] = {"color": colour, "marker": marker, "markerfacecolor": "none"}
+            panel.loglog(*ladders[f"{name}: {case}"].T, label=name, linewidth=1.0, markersize=4.5, **look)
+        if i < columns:
+            panel.set_title(titles[case])
+        if i >= len(axes) - columns:
+            panel.set_xlabel("time on one core in s")
+        if i % columns == 0:
+            panel.set_ylabel("largest error in m")
+        if (i + 1) % columns == 0:
+            panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9.0)
+    return figure
 
 
 STUDY.provides(figures=draw, curves=curves, tables=tables, recorded=recorded_settings)

@@ -296,11 +296,19 @@ def draw(data: ByEngine) -> Figures:
     orbit.legend(loc="best")
 
     value, low, high = found["whirl"].T
-    share.fill_between(
-        found["speeds"], low, high, color=GREEN, alpha=0.35, linewidth=0.0, label="95 % interval"
+    # Points without a line, because the share between two speeds is unknown.
+    bars = np.abs([value - low, high - value])
+    share.errorbar(
+        found["speeds"],
+        value,
+        bars,
+        color=GREEN,
+        fmt="o",
+        markersize=3.5,
+        capsize=2.5,
+        label="whirl, 95 % interval",
     )
-    share.plot(found["speeds"], value, color=GREEN, linewidth=1.2, label="whirl")
-    share.set(xlabel=axis(r"\omega", "rad/s"), ylabel="share of the starts", ylim=(0.0, 1.0))
+    share.set(xlabel=axis(r"\omega", "rad/s"), ylabel="share of the starts", ylim=(-0.02, 1.02))
     share.legend(loc="lower right")
     return {"basins": figure}
 

@@ -15,12 +15,23 @@ from reference_model.systems import FloatArray
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
 LOOKS: dict[str, dict[str, Any]] = {
     "equilibrium": {"color": BLACK},
     "whirl": {"color": GREEN, "linestyle": (0.0, (5.0, 1.5))},
 }
 """As in the paper."""
+
+SERIES: dict[str, dict[str, Any]] = {
+    "equilibrium": {"linestyle": ":", "marker": "s", "markersize": 5.0},
+    "whirl": {"linestyle": ":", "marker": "o", "markersize": 6.0, "markerfacecolor": "none"},
+}
+BARS: dict[str, dict[str, Any]] = {
+    "equilibrium": {"linestyle": "--", "linewidth": 0.9},
+    "whirl": {"linestyle": "-.", "linewidth": 0.9},
+}
+"""Errors of stick and release times, and their error bars."""
 
 STUCK = PURPLE
 
@@ -48,8 +59,11 @@ def draw(data: ByEngine) -> Figures:
     history.legend(loc="upper left")
     errors.set(xlabel="stick, release, stick, ... (number of the event)", ylabel="error of the time in s")
     errors.xaxis.set_major_locator(MaxNLocator(integer=True))
+    errors.set_ylim(1e-18, None)  # room for the legend
+    labels = {line.get_label() for line in errors.lines}
+    drawn = tuple(engine for engine in engines_in(data) if engine in labels)
     if errors.lines:
-        errors.legend()
+        errors.legend(handles=_legend_of_errors(drawn), loc="lower right", ncols=2, fontsize=9.0)
     return {"fig05-motions": figure}
 
 
@@ -84,18 +98,24 @@ def _draw_errors(errors: Axes, found: Data, name: str, engine: str) -> None:
     if len(events) != len(exact):
         return
     gap = np.maximum(np.abs(events - exact), 1e-14)
-    filled = name == "equilibrium"
-    style = points(engine, "" if filled else engine, linestyle=":") | {
-        "fillstyle": "full" if filled else "none",
-        "markerfacecolor": None,
-    }
-    errors.semilogy(np.arange(1, len(gap) + 1), gap, **style)
-    errors.axhline(
-        float(found[f"{name}: error bar of sticks"]),
-        color=engine_style(engine).colour,
-        linewidth=0.9,
-        linestyle="--" if filled else "-.",
+    colour = engine_style(engine).colour
+    errors.semilogy(
+        np.arange(1, len(gap) + 1), gap, color=colour, label=engine if name == "whirl" else "", **SERIES[name]
     )
+    errors.axhline(float(found[f"{name}: error bar of sticks"]), color=colour, **BARS[name])
+
+
+def _legend_of_errors(engines: tuple[str, ...]) -> list[Line2D]:
+    from matplotlib.lines import Line2D
+
+    return [
+        *(
+            Line2D([], [], color=engine_style(engine).colour, linewidth=4.0, label=engine)
+            for engine in engines
+        ),
+        *(Line2D([], [], color=BLACK, label=f"to the {name}", **look) for name, look in SERIES.items()),
+        *(Line2D([], [], color=BLACK, label=f"error bar, {name}", **look) for name, look in BARS.items()),
+    ]
 
 
 def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
