@@ -75,7 +75,7 @@ def matrix(
       friction-discs matrix --engine reference
       friction-discs matrix --engine reference --engine exudyn --recorded
     """
-    from compare.diagnosis.row import UNDECIDED, Row, write_pictures, write_rows
+    from compare.diagnosis.row import Row, write_pictures, write_rows
     from compare.diagnosis.run import checked, diagnosed, recorded_rows
     from compare.run.runner import loaded
     from compare.run.workers import Workers
@@ -105,15 +105,21 @@ def matrix(
     with printing():
         _print_table(rows)
         print(*pictures, sep="\n")
-    if any(row.wrong for row in rows[others:]):
+    return _status(rows[others:])
+
+
+def _status(rows: Sequence[Row]) -> int:
+    """Return the exit status for the verdicts of the measured rows, and say why if it is not that of a verdict."""
+    from compare.diagnosis.row import UNDECIDED
+
+    if any(row.wrong for row in rows):
         return SOMETHING_DIFFERS
-    empty = [row.engine for row in rows[others:] if row.empty]
-    if empty:
+    if empty := [row.engine for row in rows if row.empty]:
         return say(
             f"nothing was measured: none of these motions can be simulated by {', '.join(empty)}",
             NOTHING_MEASURED,
         )
-    open_ = [row.engine for row in rows[others:] if row.verdict == UNDECIDED]
+    open_ = [row.engine for row in rows if row.verdict == UNDECIDED]
     return say(f"undecided: {', '.join(open_)}", NOTHING_SHOWN) if open_ else FINE
 
 

@@ -97,10 +97,7 @@ class Workers:
     """
 
     def __init__(
-        self,
-        jobs: int = 1,
-        limit: float | None = None,
-        watch: Callable[[list[Hashable]], None] = lambda running: None,
+        self, jobs: int = 1, limit: float | None = None, watch: Callable[[list[Hashable]], None] | None = None
     ) -> None:
         self._jobs = jobs
         self.limit = limit
@@ -142,7 +139,8 @@ class Workers:
         """Yield each result as soon as it is available, until no work is left; you may submit more meanwhile."""
         while self._queue or any(worker.key is not None for worker in self._processes):
             yield from self._start()
-            self._watch([worker.key for worker in self._processes if worker.key is not None])
+            if self._watch:
+                self._watch([worker.key for worker in self._processes if worker.key is not None])
             yield from self._collect()
 
     def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:
