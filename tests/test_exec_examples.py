@@ -73,8 +73,8 @@ def test_the_pin_in_javascript_knows_no_stick():
 
 
 @in_javascript
-@pytest.mark.parametrize("name", ["rapier", "jolt"])
-def test_contact_of_rapier_and_jolt_slides_as_the_reference_does_and_better_with_a_smaller_step(name):
+@pytest.mark.parametrize("name", ["rapier", "jolt", "planck"])
+def test_engines_from_npm_slide_as_the_reference_does_and_better_with_a_smaller_step(name):
     try:
         (engine,) = engines([f"exec:{shlex.join([NODE, str(EXAMPLES / 'exec_contact.js'), name])}"])
     except ValueError as error:

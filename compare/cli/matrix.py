@@ -90,7 +90,9 @@ def matrix(
         return _benchmark(chosen, bool(broken), limit, output)
     rows: list[Row] = list(recorded_rows()) if recorded else []
     others = len(rows)
-    rows += broken
+    if broken:
+        rows += broken
+        write_rows(rows, output)
     try:
         with measurements() as progress:
             for row in diagnosed(chosen, jobs=jobs or cores(), limit=limit, progress=progress):

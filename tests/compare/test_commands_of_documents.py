@@ -103,7 +103,8 @@ def run_of_pytest(words, capsys, fully):
 
 
 def check_script(words):
-    path = next(folder / words[0] for folder in (ROOT, ROOT / "examples") if (folder / words[0]).exists())
+    folders = (ROOT, ROOT / "examples", ROOT / "compare" / "diagnosis")
+    path = next(folder / words[0] for folder in folders if (folder / words[0]).exists())
     assert path.suffix == ".py"
 
 

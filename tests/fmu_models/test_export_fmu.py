@@ -243,5 +243,5 @@ def test_invalid_export_is_refused(tmp_path, monkeypatch, capsys, arguments, sen
 
 def test_missing_headers_are_reported_with_the_package_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(HeadersMissingError, match="pip install 'friction-discs\\[fmu\\]'"):
+    with pytest.raises(HeadersMissingError, match="pip install fmpy"):
         export(PIN, tmp_path / "pin.fmu")
