@@ -142,10 +142,19 @@ def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
     for one in recorded.by_engine[best.engine]:
         if one is not best and _grade(one) == DIFFERS:
             avoided.setdefault(_judged(one), []).append(one.setting)
-    sentences += [f"avoid {' and '.join(names)}: {judged}" for judged, names in avoided.items()]
+    sentences += [f"avoid {_listed(names)}: {judged}" for judged, names in avoided.items()]
     anchor = recorded.anchor(best.engine)
     where = f"?engine={quote(best.engine)}#{quote(anchor)}"
     return Glance(best.engine, best.version, _grade(best), _joined(sentences), where, f"#{anchor}", cells)
+
+
+def _listed(settings: Sequence[str]) -> str:
+    *first, last = ["the settings as shipped" if name == SHIPPED else name for name in settings]
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+SHIPPED = "as shipped"
+"""Name of the settings that an engine has without any change."""
 
 
 def _judged(setting: Recorded) -> str:

@@ -247,6 +247,7 @@ def recorded_claims(recording: Recording) -> Recorded:
                 "friction law, or of a release.",
             )
         )
+    law = recording.probes.get("law", {})
     return Recorded(
         recording.engine,
         recording.setting,
@@ -255,7 +256,7 @@ def recorded_claims(recording: Recording) -> Recorded:
         tuple(claims),
         own=recording.setting != OUR_FORCE,
         cases={CASES[name].sentence: words for name, words in IN_SHORT.items()},
-        law=recording.probes.get("law", {}).get("shape", ""),
+        law=law["shape"] if law.get("sure") else "",
         says=recording.says,
         adapter=ADAPTERS.get(recording.engine, PROGRAM),
         advice=_advice(recording),
