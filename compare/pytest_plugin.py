@@ -37,7 +37,7 @@ PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
 
-LIMITS = {"quick": 24.0, "full": 120.0}
+LIMITS = {"quick": 17.0, "full": 120.0}
 """Time limits in s for one study of one engine, by level. The quick level has about seven studies."""
 
 
