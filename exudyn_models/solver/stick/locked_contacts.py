@@ -43,7 +43,9 @@ class LockedContacts:
         locked: list[StickingContact] = []
         for contact in self._contacts:
             if isinstance(contact, PlanarContact):
-                free = scipy.linalg.null_space(self._held_rows(locked))
+                held = self._held_rows(locked)
+                # SciPy 1.12 fails for a matrix without rows
+                free = scipy.linalg.null_space(held) if held.size else np.eye(held.shape[1])
                 contact.allow(self._mbs, free)
                 contact.enter(self._mbs, contact.mode)
             if contact.mode == Mode.LOCKED:

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from random_systems import TIMES, RandomMotion, random_points, smooth_motion
+from scipy.integrate import trapezoid
 
 from reference_model import DiscOnDisc, Points, simulate
 
@@ -80,7 +81,7 @@ def test_friction_takes_the_kinetic_energy_of_a_thrown_body():
     energy = 0.5 * BODY.mass * (vx**2 + vy**2) + 0.5 * BODY.polar_inertia * spin**2
     arms = np.exp(1j * angle)[:, np.newaxis] * np.array(FEET.arms(0.0))
     slips = abs((vx + 1j * vy)[:, np.newaxis] + 1j * spin[:, np.newaxis] * arms)
-    heat = np.trapezoid(BODY.friction_force * slips @ FEET.shares, times)
+    heat = trapezoid(BODY.friction_force * slips @ FEET.shares, times)
     assert energy[-1] == 0.0
     assert heat == pytest.approx(energy[0], rel=1e-6)
 
