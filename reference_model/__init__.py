@@ -3,8 +3,7 @@
 Modules and packages:
 
 - ``plain``: the paper's equations as printed, integrated by SciPy in 100 lines; read it first;
-- ``systems``, ``trajectory``: parameters and results;
-- ``pictures``: figures and animations of a motion;
+- ``systems``, ``trajectory``: parameters and results, with figures and animations of a motion;
 - ``support``: the force of a support that may harden or have a stop;
 - ``simulation``: :func:`simulate`;
 - ``contact``: friction laws of a pin, points, a patch, a ring and an annulus, and the limit surface;

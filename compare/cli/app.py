@@ -10,7 +10,6 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -57,7 +56,7 @@ def list_studies(context: typer.Context) -> None:
       friction-discs list
     """
     from compare.engines import INSTALLED, engines, on_request
-    from compare.engines.registry import ENTRY_POINTS
+    from compare.engines.registry import packaged
     from compare.report.results_json import seconds_of_last_run
 
     spent: dict[str, float] = {}
@@ -82,9 +81,10 @@ def list_studies(context: typer.Context) -> None:
         for name, known in INSTALLED.items()
         for i, setting in enumerate(known.settings)
     )
-    packaged = [one.name for one in entry_points(group=ENTRY_POINTS)]
     print("Engines:", ", ".join(engine.name for engine in engines()))
-    print("Engines on request:", ", ".join([*(engine.name for engine in on_request()), *settings, *packaged]))
+    print(
+        "Engines on request:", ", ".join([*(engine.name for engine in on_request()), *settings, *packaged()])
+    )
     print("Your own engines: MODULE:FUNCTION, exec:COMMAND, files:DIR, fmu:FILE")
 
 

@@ -70,7 +70,7 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
     is "" for an engine that does not simulate blocks.
     """
     for engine in engines:
-        found = workers.ask(_first_check, engine, owner=owner_of(engine))
+        found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
         if isinstance(found, str):
             yield engine, ""
         elif isinstance(found, Failure):
@@ -82,13 +82,6 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
                 engine,
                 f"{text}and a block under half of the limit μN moves {moved:.2g} m (exact: {rest:g} m)",
             )
-
-
-def _first_check(engine: Engine) -> Any:
-    try:
-        return first_check(engine)
-    except UnsupportedSystemError as error:
-        return str(error)
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
@@ -114,8 +107,12 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 def measured(engine: Engine, part: str) -> Any:
     """Return one part of an engine's diagnosis, or the reason if the engine does not support it."""
+    return _or_reason(parts_of(engine)[part], engine)
+
+
+def _or_reason(measure: Callable[[Engine], Any], engine: Engine) -> Any:
     try:
-        return parts_of(engine)[part](engine)
+        return measure(engine)
     except UnsupportedSystemError as error:
         return str(error)
 

@@ -147,7 +147,7 @@ def _named(name: str) -> Engine:
         return imported(name, name)
     if name in _REGISTRY:
         return replace(_REGISTRY[name], contact_only=False)
-    return imported(name, _installed()[known_name(name)])
+    return imported(name, packaged()[known_name(name)])
 
 
 def known_name(name: str) -> str:
@@ -156,17 +156,17 @@ def known_name(name: str) -> str:
         scheme.check(name.partition(":")[2])
         return name
     alone = [name for name, scheme in _SCHEMES.items() if scheme.alone]
-    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *alone, *_installed()])
+    return name if ":" in name else one_of("engine", name, [*_REGISTRY, *alone, *packaged()])
 
 
 def _scheme(name: str) -> Scheme | None:
     """Return the scheme of ``name`` by its part before the colon, or None."""
     first, colon, _ = name.partition(":")
     scheme = _SCHEMES.get(first)
-    return scheme if scheme and (colon or scheme.alone) and first not in _installed() else None
+    return scheme if scheme and (colon or scheme.alone) and first not in packaged() else None
 
 
-def _installed() -> dict[str, str]:
+def packaged() -> dict[str, str]:
     """Return a map from the names of installed packages' engines to "module:function"."""
     return {point.name: point.value for point in entry_points(group=ENTRY_POINTS)}
 

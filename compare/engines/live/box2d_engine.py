@@ -20,7 +20,7 @@ import Box2D
 import numpy as np
 
 from compare.engines.live.setting import Setting, TopDown, inertia_of
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS, RECOMMENDED = 50, (8, 3)
 """Velocity iterations, and those that Box2D's manual recommends, with its position iterations."""
@@ -31,10 +31,6 @@ class _World(TopDown):
     method = f"Box2D {Box2D.__version__}, semi-implicit Euler, friction joints"
 
     turns = 0
-
-    def __init__(self, system: System, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
-        self.shipped = shipped
-        super().__init__(system, state, tolerance)
 
     def build(self, state: FloatArray) -> None:
         system, self.world = self.system, Box2D.b2World(gravity=(0.0, 0.0), doSleep=self.shipped)

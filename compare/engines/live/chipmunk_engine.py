@@ -21,7 +21,7 @@ from typing import Any
 import pymunk
 
 from compare.engines.live.setting import Setting, TopDown, inertia_of
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50
 
@@ -29,10 +29,6 @@ ITERATIONS = 50
 class _Space(TopDown):
     engine = "Chipmunk"
     method = f"pymunk {pymunk.version}, semi-implicit Euler, pivot joints with a greatest force"
-
-    def __init__(self, system: System, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
-        self.shipped = shipped
-        super().__init__(system, state, tolerance)
 
     def build(self, state: FloatArray) -> None:
         system, self.space = self.system, pymunk.Space()

@@ -60,7 +60,7 @@ class _Contact:
     def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
         """Return contact that converges to Coulomb's law with the smallest μ that MuJoCo accepts.
 
-        Feet and plate are larger than a foot sinks or rises, which has no effect in the plane.
+        A foot sinks and rises by less than the size of feet and plate, so this has no effect in the plane.
         """
         pair = 'margin="5e5" solimp="0.9999 0.9999 1 0.5 2" solref="0 -1" solreffriction="0 -1"'
         option = f'cone="{cone}" iterations="{iterations}" tolerance="0"'

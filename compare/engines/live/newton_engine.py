@@ -7,6 +7,7 @@ force set before each step, so any support is possible. Discs are not supported.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -25,7 +26,7 @@ RADIUS, PLATE = 0.5, 1e3
 
 
 class _Model(Model):
-    """A ball on a plate, advanced by the solver class ``solver`` with ``options``."""
+    """A ball on a plate, advanced by the solver class ``solver``."""
 
     engine = "Newton"
 
@@ -44,7 +45,7 @@ class _Model(Model):
         builder.add_shape_sphere(ball, radius=RADIUS, cfg=touch)
         with warp.ScopedDevice("cpu"):
             self.model = builder.finalize()
-            self.solver = getattr(newton.solvers, f"Solver{solver}")(self.model, **(options or {}))
+            self.solver = getattr(newton.solvers, f"Solver{solver}")(self.model)
             self.now, self.next = self.model.state(), self.model.state()
             self.contacts, self.control = self.model.contacts(), self.model.control()
         speeds = self.now.body_qd.numpy()  # of each body: velocity, then angular velocity
@@ -84,13 +85,10 @@ simulate_xpbd = Setting(
     finest=2e-3,
     precision=1e-6,
 )
-simulate_semi_implicit = Setting(
-    "semi-implicit, as shipped",
-    "with contact by stiff springs and regularised friction, its defaults, in single precision.",
-    _Model,
-    {"solver": "SemiImplicit"},
-    linear=False,
-    finest=2e-3,
-    precision=1e-6,
+simulate_semi_implicit = replace(
+    simulate_xpbd,
+    name="semi-implicit, as shipped",
+    says="with contact by stiff springs and regularised friction, its defaults, in single precision.",
+    options={"solver": "SemiImplicit"},
 )
 SETTINGS = (simulate_xpbd, simulate_semi_implicit)

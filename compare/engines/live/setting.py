@@ -189,11 +189,14 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 
 
 class TopDown(Model):
-    """A body with a kinematic partner at each contact point; subclasses implement it in an engine."""
+    """A body with a kinematic partner at each contact point; subclasses implement it in an engine.
 
-    def __init__(self, system: System, state: FloatArray, _: float) -> None:
+    If it is ``shipped``, the engine keeps its default settings.
+    """
+
+    def __init__(self, system: System, state: FloatArray, _: float, *, shipped: bool = False) -> None:
         self.system, self.arms = system, contact_arms(self.engine, system)
-        self.half = len(state) // 2
+        self.half, self.shipped = len(state) // 2, shipped
         self.build(state)
 
     def build(self, state: FloatArray) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from reference_model.systems import FloatArray, System
 
 if TYPE_CHECKING:
-    from reference_model.pictures import Figure, FuncAnimation
+    from reference_model.trajectory.pictures import Figure, FuncAnimation
 
 
 class SimulationError(RuntimeError):
@@ -155,7 +155,7 @@ class Trajectory:
         ``figure`` is the matplotlib figure to draw in; None makes a new one. Curves join the requested times.
         Raises ``ModuleNotFoundError`` without matplotlib.
         """
-        from reference_model.pictures import figure_of
+        from reference_model.trajectory.pictures import figure_of
 
         spans = self.stick_times.reshape(-1, 2)
         return figure_of(self.system, self.times, self.states, self.slip_speed, spans, figure)
@@ -169,6 +169,6 @@ class Trajectory:
         :class:`Points`, because a trajectory does not store them. Positions between requested times are interpolated.
         Raises ``ModuleNotFoundError`` without matplotlib.
         """
-        from reference_model.pictures import animation_of
+        from reference_model.trajectory.pictures import animation_of
 
         return animation_of(self.system, self.times, self.states, places, speed)
