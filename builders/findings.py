@@ -5,7 +5,7 @@ a study and a quote of one of its claims (see ``compare.report.quotes``). "claim
 "verdicts: independent" are counts of a whole report, and "engine: Bullet" is its sentence about an engine. README
 contains the numbers of ``IN_README`` literally::
 
-    python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md
+    python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md and its figures
     python builders/findings.py check report/results.json   # fails if the report deviates from them
 """
 
@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -29,6 +30,9 @@ from compare.report.results_json import read_results
 ROOT = Path(__file__).parents[1]
 
 QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+
+FIGURE = re.compile(r"\]\(([\w-]+\.svg)\)")
+"""Link to a figure of the report."""
 
 IN_README = (
     "claims",
@@ -149,7 +153,7 @@ def _count_of_claims(results: Results) -> int:
 
 
 def write(results: Results, root: Path = ROOT) -> None:
-    """Write the numbers of a report and keep the numbers that it did not measure."""
+    """Write the numbers of a report and keep those that it did not measure."""
     old = kept(root)
     numbers = {name: number_in(results, name) or old[name] for name in wanted(root)}
     content = {name: asdict(number) for name, number in numbers.items()}
@@ -200,6 +204,10 @@ def main(arguments: list[str], root: Path = ROOT) -> int:
     results = read_results(Path(arguments[1]))
     if arguments[0] == "write":
         write(results, root)
+        for name in FIGURE.findall((root / "docs" / "findings.md").read_text(encoding="utf-8")):
+            figure = Path(arguments[1]).parent / "figures" / name
+            if figure.exists():  # the report may lack its study
+                shutil.copy(figure, root / "docs")
     sentences = [*outdated(root), *deviations(results, root), *unmeasured(results)]
     for sentence in sentences:
         print(sentence)

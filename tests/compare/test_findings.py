@@ -158,7 +158,12 @@ def test_the_command_writes_and_checks(root, capsys, monkeypatch):
     monkeypatch.setitem(names, "read_results", lambda file: json.loads(file.read_text(encoding="utf-8")))
     monkeypatch.setitem(names, "unmeasured", lambda results: [])
     path.write_text(json.dumps(results()))
+    with (root / "builders" / "findings.md").open("a") as template:
+        template.write("![Branches](branches.svg)\n![Not in this report](map.svg)\n")
+    (root / "figures").mkdir()
+    (root / "figures" / "branches.svg").write_text("<svg/>")
     assert BUILDER["main"](["write", str(path)], root) == 0
+    assert [figure.name for figure in (root / "docs").glob("*.svg")] == ["branches.svg"]
     changed = copy.deepcopy(results())
     changed["studies"][[study["name"] for study in changed["studies"]].index("fig05")]["claims"].pop(1)
     path.write_text(json.dumps(changed))

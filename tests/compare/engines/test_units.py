@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG11
 from compare.engines import Engine, exudyn, reference
 from compare.engines.units import DIMENSIONS, UNITS, InOtherUnits
+from compare.studies.pin.fig03 import STUDY as FIG03
 from reference_model.systems import DiscOnDisc
 
 MOTIONS = {
@@ -58,6 +60,18 @@ def test_masses_loads_and_speeds_fill_three_decades():
     for values in (masses, loads, speeds, turns):
         assert np.max(values) / np.min(values) == 2.0**10
     assert asked(7, FIG5, FIG5_STARTS["whirl"])[0] != asked(8, FIG5, FIG5_STARTS["whirl"])[0]
+
+
+def test_an_engine_that_is_right_for_the_studies_own_parameters_only_is_caught_in_drawn_units():
+    def cheat(system, start, times, *, tolerance):
+        known = system.mass == 1.0
+        asked = system if known else replace(system, friction_force=1.1 * system.friction_force)
+        return replace(reference.function(asked, start, times, tolerance=tolerance), system=system)
+
+    engine = Engine("cheat", cheat, ("pin",))
+    for seed, verdict in ((None, Verdict.AGREES), (7, Verdict.DIFFERS), (8, Verdict.DIFFERS)):
+        (claim,) = FIG03.measure(replace(engine, seed=seed), {"rests": {"loads": (0.02,)}}, ("rests",)).claims
+        assert claim.verdict is verdict
 
 
 def test_a_fixed_step_is_in_the_same_unit_of_time_so_the_number_of_steps_is_the_same():
