@@ -1,9 +1,9 @@
 """The beginning of slip from rest, for any law.
 
-If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
-that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
+Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
 motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
-Differential Equations II, IV.5) needs only a few steps until slip is fast enough.
+Differential Equations II, IV.5) needs only a few steps until slip is fast enough for an explicit method. Under a pull
+well above friction slip grows like time, and the first step ends the stiffness.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference_model.motion.slip.coordinates import LEAST_SLIP, Coordinates, Leave, Outcome
-from reference_model.motion.slip.slide import slide_slowly
 from reference_model.motion.stepper import Run
 from reference_model.numerics.collocation import (
     FROM_START,
@@ -42,9 +41,6 @@ MOMENT = 1e-6
 TURN = 1e-7
 """Change of direction for the difference quotient of friction."""
 
-SUDDEN = 0.05
-"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time."""
-
 STIFF = 10.0
 """Stiffness of a step (rate times length) below which an explicit method is as efficient as this one."""
 
@@ -70,9 +66,6 @@ def begin_slip(
     for example because a point comes to rest. Raises ``SimulationError`` if the motion cannot be resolved.
     """
     rest = _Rest(motion, np.array(y), np.array(drift), direction)
-    if rest.sudden:
-        least = run.thresholds.reversal_slip * min(1.0, motion.slow(y))
-        return slide_slowly(run, motion, t, [*y, *(least * direction)], leave)
     return _follow(run, motion, t, rest.leading_order(), leave)
 
 
@@ -87,12 +80,6 @@ class _Rest:
         self._motion, self._others, self._carried, self._direction = motion, others, carried, direction
         self._at_first = self._growth(0.0, direction)
         self._first = max(float(self._at_first @ direction), 0.0)
-
-    @property
-    def sudden(self) -> bool:
-        """True if the pull is well above friction."""
-        against = float(self._growth(0.0, -self._direction) @ self._direction)
-        return self._first > SUDDEN * 0.5 * (against - self._first)
 
     def leading_order(self) -> Beginning:
         """Return the unknowns to leading order in time.
