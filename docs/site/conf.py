@@ -1,6 +1,7 @@
 """Sphinx settings of the site; ``build.py`` gathers the pages."""
 
 import re
+from pathlib import Path
 
 from reference_model import __version__
 
@@ -36,12 +37,22 @@ autodoc_preserve_defaults = True
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
+ADDED = {
+    'role="heading">': 'role="heading" aria-level="2">',
+    "<pre>": '<pre tabindex="0">',
+    '<div class="math-wrapper': '<div tabindex="0" class="math-wrapper',
+    '<aside class="sidebar-drawer">': '<aside class="sidebar-drawer" aria-label="Pages">',
+    '<aside class="toc-drawer">': '<aside class="toc-drawer" aria-label="Contents of this page">',
+}
+"""Attributes that the theme omits."""
+
 LITERAL = re.compile(r"(``.*?``)")
 
 
 def setup(app):
-    """Escape bars such as |v| in docstrings before other extensions read them."""
+    """Escape bars such as |v| before other extensions read docstrings, write equations, and complete the pages."""
     app.connect("autodoc-process-docstring", escape_bars, priority=100)
+    app.connect("build-finished", complete_for_readers)
     app.add_html_math_renderer("mathml", (mathml, None), (mathml, None))
 
 
@@ -53,6 +64,15 @@ def mathml(translator, node):
     display = "inline" if isinstance(node, docutils.nodes.math) else "block"
     translator.body.append(convert(node.astext(), display=display))
     raise docutils.nodes.SkipNode
+
+
+def complete_for_readers(app, exception):
+    """Add what screen readers and keyboards need: levels of headings, focus on code blocks, names of sidebars."""
+    for page in Path(app.outdir).rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        for before, after in ADDED.items():
+            text = text.replace(before, after)
+        page.write_text(text, encoding="utf-8")
 
 
 def escape_bars(app, what, name, thing, options, lines):
