@@ -30,30 +30,11 @@ RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
 
 @dataclass(frozen=True)
 class Row:
-    """Results for an engine.
-
-    Parameters
-    ----------
-    engine, version : str
-        Name and version of the engine.
-    step : float
-        Step in s at the finest rung; NaN if the engine has a tolerance.
-    law, scales, creep, history, support, repeat, lag, moments
-        Results of the probes; None if not measured.
-    motions : mapping
-        Errors of the simulated motions, by name.
-    gaps : mapping
-        Reason why a part has no result, by name.
-    not_simulated : tuple of str
-        Parts that the engine does not support.
-    seconds : float
-        Total wall-clock time in s.
-
-    """
+    """Results of the probes and motions for an engine; a probe is None if it was not measured."""
 
     engine: str
     version: str = ""
-    step: float = math.nan
+    step: float = math.nan  # in s at the finest rung; NaN if the engine has a tolerance
     law: Friction | None = None
     scales: Scales | None = None
     creep: Creep | None = None
@@ -63,9 +44,9 @@ class Row:
     lag: Lag | None = None
     moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
-    gaps: dict[str, str] = field(default_factory=dict)
+    gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts without a result
     not_simulated: tuple[str, ...] = ()
-    seconds: float = 0.0
+    seconds: float = 0.0  # of wall-clock time
 
     @functools.cached_property
     def remarks(self) -> tuple[Remark, ...]:
@@ -149,7 +130,6 @@ class Row:
 
     @property
     def _least_lag(self) -> float:
-        """Smallest reported lag in s."""
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
 
     @property

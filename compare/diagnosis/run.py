@@ -122,7 +122,6 @@ def _empty(engine: Engine) -> Row:
 
 
 def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
-    """Return ``row`` with the result of a part."""
     row = replace(row, seconds=row.seconds + seconds)
     if isinstance(found, Failure):
         return replace(row, gaps=row.gaps | {part: str(found)})

@@ -123,7 +123,6 @@ def _cause(law: Friction) -> str:
 
 
 def _deviations(law: Friction) -> list[str]:
-    """Return descriptions of the deviations of a force from its own law."""
     found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION, law.misfit)
     if abs(law.strength - 1.0) > least:

@@ -55,7 +55,6 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
 
 
 def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:
-    """Raise ``BadTrajectoryError`` unless the phases are in order and within ``times``."""
     slack = TIME_ROUNDING * np.max(np.abs(times))
     earliest, latest = times[0] - slack, times[-1] + slack
     for i, phase in enumerate(phases):
@@ -75,7 +74,6 @@ def _check_phases(phases: Sequence[object], times: FloatArray, components: int) 
 
 
 def _is_real(value: object, shape: tuple[int, ...]) -> bool:
-    """Return whether ``value`` consists of finite real numbers in this shape."""
     array = np.asarray(value)
     return array.dtype.kind in REAL and array.shape == shape and bool(np.isfinite(array).all())
 

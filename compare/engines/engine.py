@@ -138,7 +138,6 @@ class Engine:
     seed: int | None = None
 
     def __post_init__(self) -> None:
-        """Normalise the fields; raise ``ValueError`` if one is invalid."""
         for name in ("name", "version", "about"):
             object.__setattr__(self, name, one_line(getattr(self, name)))
         object.__setattr__(self, "kinds", tuple(self.kinds))
@@ -219,7 +218,6 @@ class Engine:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
-        """Raise ``UnsupportedSystemError`` for a motion that the engine does not simulate."""
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
         if not Support.of(system).linear:

@@ -69,19 +69,10 @@ FLANK = 16.0
 
 
 class StatesOnly(Trajectory):
-    """A trajectory that computes its stick phases from states on first use.
+    """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
-    Parameters
-    ----------
-    told : Trajectory
-        The trajectory that the engine returned.
-    ask : callable
-        ``ask(times) -> states`` of the same motion, at times from ``told.times[0]`` on.
-    coarseness : float
-        The engine's tolerance as a multiple of 1e-9.
-    precision : float
-        The engine's precision, see ``compare.engines.precision``.
-
+    ``ask`` returns the states of the same motion at any times from ``told.times[0]`` on. ``coarseness`` is the
+    engine's tolerance as a multiple of 1e-9; for ``precision``, see ``compare.engines.precision``.
     """
 
     def __init__(
@@ -300,7 +291,6 @@ class _Samples:
         return float(fitted(0.0)) + nearest, nearest
 
     def _state(self, time: float) -> FloatArray:
-        """Return the state of the nearest sample."""
         return np.asarray(self.states[int(np.argmin(np.abs(self.times - time)))])
 
 

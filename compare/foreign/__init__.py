@@ -26,43 +26,18 @@ Quantity = NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A motion and the quantity that is compared.
-
-    Parameters
-    ----------
-    title : str
-        Description of the motion.
-    sentence : str
-        Claim about the motion.
-    kind : str
-        Source of ``exact``, one of ``compare.claims.claim.KINDS``.
-    system : PinOnDisc or DiscOnDisc
-        The parameters.
-    start : tuple of float
-        State at the first of ``times``.
-    times : array of shape (n,)
-        Times in s.
-    quantity : callable
-        Returns the compared quantity of a trajectory, complex numbers in m.
-    exact : callable
-        Returns the exact quantity.
-    resolution : float
-        A tenth of the change of the quantity due to another friction law or to a release, in m.
-    equation : str
-        Equation of the paper that gives ``exact``, or "".
-
-    """
+    """A motion and the quantity that is compared, complex numbers in m."""
 
     title: str
-    sentence: str
-    kind: Kind
+    sentence: str  # of the claim
+    kind: Kind  # source of ``exact``
     system: System
     start: tuple[float, ...]
     times: FloatArray
     quantity: Callable[[Trajectory], Quantity]
     exact: Callable[[], Quantity]
-    resolution: float
-    equation: str = ""
+    resolution: float  # a tenth of the change due to another friction law or to a release
+    equation: str = ""  # of the paper, for ``exact``
 
 
 def _places(trajectory: Trajectory) -> Quantity:
@@ -75,7 +50,6 @@ def _places(trajectory: Trajectory) -> Quantity:
 
 
 def _radius(trajectory: Trajectory) -> Quantity:
-    """Return the mean distance from the axis over the last fifth of the time."""
     late = trajectory.times >= 0.8 * trajectory.times[-1]
     return np.array([np.mean(np.abs(_places(trajectory)[late]))], dtype=complex)
 
@@ -199,30 +173,17 @@ DIGITS = 4
 class Recording:
     """One setting of an engine.
 
-    Parameters
-    ----------
-    engine, version, recorded, platform : str
-        Name, version, date and platform of the recording.
-    setting : str
-        Name of the setting; "" for one of our own engines.
-    says : str
-        Description of the setting.
-    runs : mapping
-        Arrays of shape (n, len(COLUMNS)) by the names of ``compare.foreign.CASES``, from the largest tolerance to the
-        smallest, for each supported case.
-    probes : mapping
-        Parts ``compare.diagnosis.findings.PROBES`` as JSON, which identify the friction law; empty if not recorded.
-
+    ``runs`` are arrays of shape (n, len(COLUMNS)) for each supported case, the largest tolerance first.
     """
 
     engine: str
     version: str
-    recorded: str
+    recorded: str  # date
     platform: str
-    setting: str
-    says: str
+    setting: str  # name; "" for one of our own engines
+    says: str  # description of the setting
     runs: Mapping[str, FloatArray]
-    probes: Mapping[str, Any]
+    probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
 
     @property
     def name(self) -> str:

@@ -170,7 +170,6 @@ def _opened(group: Group, name: str) -> Any:
 
 
 def _seal(described: Mapping[str, bytes]) -> bytes:
-    """Return the sealed description of a group whose arrays are ``described``."""
     return group_content({CHECKSUM: checksum({name: digest_of(one) for name, one in described.items()})})
 
 

@@ -86,7 +86,6 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
 
 
 def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
-    """Yield the range of each branch, with radius and share at both ends."""
     name, unit = plan.x.name, units(plan.system)[plan.x.name]
     for j, end in enumerate(result["motion_end"].values):
         share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
@@ -100,7 +99,6 @@ def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
-    """Return the line that compares a random sample with the plain reference."""
     velocities = COLUMNS[type(store.plan.system)].index(("vx", "m/s"))
     difference = check["difference"].values
     place = np.hypot(difference[:, 0], difference[:, 1])

@@ -273,7 +273,6 @@ def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequen
 
 
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
-    """Raise ``ValueError`` if an initial state at an end of an axis is invalid."""
     from reference_model.systems import checked_state
 
     for axis in axes:

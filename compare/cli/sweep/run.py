@@ -95,7 +95,6 @@ def _reporting_store_errors() -> Iterator[None]:
 
 
 def _check_writable(folder: Files) -> None:
-    """Raise ``ValueError`` or ``StoreError`` if the folder or URL is not writable."""
     from compare.sweep.files import is_remote
 
     if is_remote(folder.url):
@@ -121,7 +120,6 @@ def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -
 
 
 def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
-    """Raise ``ValueError`` if the store belongs to another plan or cannot be resumed."""
     from compare.run.provenance import stamp
 
     if store.plan != plan:

@@ -63,34 +63,16 @@ class Setting:
 
     Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
     order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``.
-
-    Parameters
-    ----------
-    name, says : str
-        Name and description.
-    model : type
-        Subclass of ``Model``.
-    options : mapping
-        Further arguments of its constructor.
-    finest : float
-        Least step in units of 1/max(k, ω).
-    linear : bool
-        True if the engine has linear springs only.
-    step : float, optional
-        Fixed step in s for a tolerance of 1e-9, as in ``compare.engines.Engine``, short enough for accuracy but
-        faster than real time. None for an integrator that controls its error.
-    precision : float
-        As in ``compare.engines.Engine``.
-
+    fills each interval of ``times``. ``step`` and ``precision`` are as in ``compare.engines.Engine``; the step is
+    short enough for accuracy but faster than real time, and None for an integrator that controls its error.
     """
 
     name: str
-    says: str
+    says: str  # description
     model: type[Model]
-    options: Mapping[str, Any] = field(default_factory=dict)
-    finest: float = 0.0
-    linear: bool = True
+    options: Mapping[str, Any] = field(default_factory=dict)  # of the model
+    finest: float = 0.0  # least step in units of 1/max(k, ω)
+    linear: bool = True  # True if the engine has linear springs only
     step: float | None = 2e-3
     precision: float = 0.0
 

@@ -144,23 +144,7 @@ def end_all() -> None:
 
 
 class Conversation:
-    """One process of a program.
-
-    Parameters
-    ----------
-    command : sequence of str
-        The program and its arguments.
-    folder : str
-        Its working directory.
-
-    Attributes
-    ----------
-    greeting : Greeting
-        The program's first line.
-    over : bool
-        True once the program has ended.
-
-    """
+    """One process of a program in a working directory, its ``greeting``, and whether it is ``over``."""
 
     def __init__(self, command: Sequence[str], folder: str) -> None:
         self._name = own_name(command)

@@ -57,14 +57,7 @@ class FmuError(RuntimeError):
 
 @dataclass(frozen=True)
 class Fmu:
-    """The ``simulate`` of a model.
-
-    Parameters
-    ----------
-    file : str
-        Path of the model.
-
-    """
+    """The ``simulate`` of a model."""
 
     file: str
 
@@ -133,7 +126,6 @@ class _Model:
 
 
 def _fmpy() -> Any:
-    """Return FMPy's simulation module, imported only if a model is used."""
     try:
         return importlib.import_module("fmpy.simulation")
     except ImportError as error:
@@ -142,7 +134,6 @@ def _fmpy() -> Any:
 
 @functools.cache
 def _model(file: str) -> _Model:
-    """Unpack and return the model of a file; raise ``ValueError`` if it cannot be used."""
     _fmpy()
     fmpy, name = importlib.import_module("fmpy"), Path(file).name
     folder = tempfile.TemporaryDirectory(prefix="friction-discs-")
@@ -254,7 +245,6 @@ def fmu_engine(text: str) -> Engine:
 
 
 def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of systems that a model with these variables simulates."""
     disc = "spin" in variables
     system = DiscOnDisc if disc else PinOnDisc
     needed = [*(field.name for field in fields(system)), *(name for name, _ in COLUMNS[system])]

@@ -39,20 +39,9 @@ class RefusedError(RuntimeError):
 
 @dataclass(frozen=True)
 class Greeting:
-    """The first line of a program; every entry is optional.
+    """The first line of a program; every entry is optional."""
 
-    Parameters
-    ----------
-    promises : dict
-        Parameters of ``Engine``.
-    name, version : str
-        The program's own name and version.
-    limit : float
-        Time limit in s for one answer.
-
-    """
-
-    promises: dict[str, Any] = field(default_factory=dict)
+    promises: dict[str, Any] = field(default_factory=dict)  # parameters of ``Engine``
     name: str = ""
     version: str = ""
     limit: float = ANSWER_LIMIT
@@ -149,7 +138,6 @@ def _array(name: str, rows: object) -> Any:
 
 
 def _phases(told: object, system: System, end: float) -> tuple[Phase, ...]:
-    """Return the phases from a list of objects with kind, start and state at the start."""
     begun = []
     for phase in told if isinstance(told, list) else [told]:
         if not isinstance(phase, dict) or phase.get("kind") not in PHASES:

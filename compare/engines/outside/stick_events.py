@@ -43,22 +43,7 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
 
 
 class Events:
-    """The phases of an initialised instance, collected while it takes steps.
-
-    Parameters
-    ----------
-    instance : FMPy instance
-        Instance of FMI 3 if ``newer``, else of FMI 2.
-    variables : mapping
-        Variables of its model by name.
-    system : PinOnDisc or DiscOnDisc
-        The simulated system.
-    time : float
-        Initial time in s.
-    state : array of shape (4,) or (6,)
-        Initial state.
-
-    """
+    """The phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
 
     counts: ClassVar[tuple[str, ...]]
     """Outputs that count events."""
@@ -108,7 +93,6 @@ class Events:
         return phases_of(self._begun, end)
 
     def _of(self, *names: str) -> list[int]:
-        """Return the value references of variables."""
         return [self._variables[name].valueReference for name in names]
 
     def _first(self) -> Kind:

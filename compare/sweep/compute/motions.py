@@ -86,7 +86,6 @@ def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> 
 
 
 def _distance(branch: dict[int, One], i: int, motion: One) -> float:
-    """Return the distance of a motion from the extrapolated branch at index ``i``, relative to the radius."""
     last = branch[i - 1]
     before = branch.get(i - 2, last)
     size = max(last.largest, motion.largest)

@@ -108,7 +108,6 @@ def _about(of: Moments, mean: FloatArray) -> FloatArray:
 
 
 def _indices(of: Moments) -> tuple[FloatArray, FloatArray]:
-    """Return first-order and total indices, shape (results, quantities)."""
     variance = of.squares[:, np.newaxis] / BASES
     with np.errstate(divide="ignore", invalid="ignore"):  # results that do not vary
         return of.product / variance, 0.5 * of.change_squared / variance

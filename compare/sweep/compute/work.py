@@ -154,7 +154,6 @@ def watched_until(system: System, certain: float, duration: float) -> float:
 
 
 def _samples(system: System, first: float, last: float, per_turn: int) -> FloatArray:
-    """Return times in s from ``first`` to ``last``, ``per_turn`` or more in each turn."""
     return np.linspace(first, last, math.ceil((last - first) / _turn(system, last) * per_turn) + 2)
 
 
