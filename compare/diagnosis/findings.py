@@ -22,14 +22,9 @@ from compare.foreign import CASES, Quantity
 from reference_model import simulate
 from reference_model.systems import FloatArray
 
-PER_STEP = 0.2
-"""Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
-
-SAME = 0.8
-"""Least ratio of the creep at any rung to the largest, for creep that is the same at all rungs."""
-
-HELD = 0.05
-"""Mean speed over a Coulomb block's, below which a block is held."""
+PER_STEP = 0.2  # largest deviation from −1 of the order of a force whose impulse per step is bounded
+SAME = 0.8  # least ratio of the creep at any rung to the largest, for creep that is the same at all rungs
+HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
 
 MOST_HELD, BISECTIONS = 32.0, 20
 """Largest load over μN that is tried on blocks at rest, and the number of bisections."""

@@ -24,11 +24,8 @@ Complex = NDArray[np.complex128]
 SIDES = (3, 4, 6, 8, 12, 16)
 """Number of sides of the polygons, each tried with a corner on the x axis and with a side across it."""
 
-FITS = 1e-6
-"""Misfit over μN allowed for any law, because the force is not quite constant during the slide."""
-
-DISTINCT = 3.0
-"""Least ratio of the second-best misfit to the best, and of a reported deviation to its error."""
+FITS = 1e-6  # misfit over μN allowed for any law, because the force is not quite constant during the slide
+DISTINCT = 3.0  # least ratio of the second-best misfit to the best, and of a reported deviation to its error
 
 NEAR, FAR = 1e-3, 100.0
 """Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit to it."""
@@ -196,8 +193,7 @@ SMOOTHINGS = (
 )
 
 
-SMOOTHING_FITS = 0.2
-"""Largest relative misfit of an identified regularisation."""
+SMOOTHING_FITS = 0.2  # largest relative misfit of an identified regularisation
 
 
 def smoothing_of(creep: FloatArray) -> tuple[str, float]:

@@ -24,8 +24,7 @@ from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
-RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
-"""Verdicts over everything that was measured."""
+RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"  # verdicts over everything that was measured
 
 
 @dataclass(frozen=True)
@@ -149,9 +148,7 @@ class Row:
 # another friction law.
 
 MARKERS = "os^Dvx+*"
-
-LEAST = 1e-16
-"""Smallest plotted error in m; smaller errors are drawn there."""
+LEAST = 1e-16  # smallest plotted error in m; smaller errors are drawn there
 
 
 def drawn(rows: Sequence[Row]) -> Figure:

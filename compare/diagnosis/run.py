@@ -20,8 +20,7 @@ from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-IN_SHORT = 20.0
-"""Time limit in s for each part of a short diagnosis."""
+IN_SHORT = 20.0  # time limit in s for each part of a short diagnosis
 
 
 def diagnosed(
@@ -132,8 +131,7 @@ def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     return replace(row, **{part: found})  # the names in PROBES are fields of the row
 
 
-SLACK = 1e-6
-"""Stiffness in N/m of a spring so long that it pulls with a constant force."""
+SLACK = 1e-6  # stiffness in N/m of a spring so long that it pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:

@@ -17,21 +17,11 @@ from reference_model.systems import FloatArray
 LEAST = 1e-6
 """Smallest deviation of the force over μN that counts: friction removes down to 1e-4 of the speed, see ``probes``."""
 
-KEEPS = 0.98
-"""Share of the initial speed below which a block has lost it by something other than friction."""
-
-GROWS = 1.1
-"""Least growth of a force that is too small, from rung to rung, that counts as convergence."""
-
-POWER_FITS = 0.02
-"""Largest relative misfit of a power law."""
-
-CURVE_FITS = 0.03
-"""Largest misfit of a curve over speed, relative to the deviations that it explains."""
-
-FEWEST = 3
-"""Least number of slides beyond a threshold."""
-
+KEEPS = 0.98  # share of the initial speed below which a block has lost it by something other than friction
+GROWS = 1.1  # least growth of a force that is too small, from rung to rung, that counts as convergence
+POWER_FITS = 0.02  # largest relative misfit of a power law
+CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations that it explains
+FEWEST = 3  # least number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
 
 VARIABLES = ("mass", "friction force", "slip speed", "disc speed", "distance from the axis")

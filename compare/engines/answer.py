@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase, Trajectory
 
-PHASES = ("slip", "pivot", "stick")
-"""Kinds of phases."""
+PHASES = ("slip", "pivot", "stick")  # kinds of phases
 
 TIME_ROUNDING = 1e-12
 """Largest relative difference between times of one grid that were summed in different order."""
 
-REAL = "fiu"
-"""NumPy's kinds of real numbers, without strings and Booleans."""
+REAL = "fiu"  # NumPy's kinds of real numbers, without strings and Booleans
 
 
 class BadTrajectoryError(RuntimeError):

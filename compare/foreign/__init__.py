@@ -165,8 +165,7 @@ previous run, whose tolerance is larger by ``compare.claims.error_estimates.COAR
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
 """Indices of ``COLUMNS`` in a recorded run."""
 
-DIGITS = 4
-"""Number of digits in the files."""
+DIGITS = 4  # number of digits in the files
 
 
 @dataclass(frozen=True, eq=False)

@@ -41,8 +41,7 @@ COLOURS = {
 MOST_PIXELS = 2000
 """Largest number of pixels along each axis of an image; for more points, every second or third is shown."""
 
-MOST_DOTS = 20_000
-"""Largest number of random starts in a figure."""
+MOST_DOTS = 20_000  # largest number of random starts in a figure
 
 MOST_DRAWS = 1 << 20
 """Largest number of draws in the distribution of a radius; the first draws are a random sample."""

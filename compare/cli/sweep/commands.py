@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from reference_model.systems import System
 
 
-MOST_POINTS = 100_000_000
-"""Largest number of points of a grid."""
+MOST_POINTS = 100_000_000  # largest number of points of a grid
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -293,8 +292,7 @@ def _check_varied(names: Sequence[str]) -> None:
 
 # --- Smallest shock that leads to the whirl
 
-AGREEMENT = 1e-6
-"""Largest relative difference between the orbit's result and the bisection."""
+AGREEMENT = 1e-6  # largest relative difference between the orbit's result and the bisection
 
 
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:

@@ -27,14 +27,9 @@ if TYPE_CHECKING:
     from compare.sweep.plan import Plan
     from compare.sweep.store import SweepStore
 
-STORE = "sweep.zarr"
-"""File name of the store."""
-
-CHUNK = 32768
-"""Default number of trajectories per chunk."""
-
-MOST_UNDECIDED = 0.5
-"""Largest share of undecided trajectories for exit status 0."""
+STORE = "sweep.zarr"  # file name of the store
+CHUNK = 32768  # default number of trajectories per chunk
+MOST_UNDECIDED = 0.5  # largest share of undecided trajectories for exit status 0
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:

@@ -29,14 +29,9 @@ from compare.engines.live.setting import Model, Setting, inertia_of, mobility, o
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 SOLVER_TOLERANCE = 1e-10
-
-SHARE = 0.01
-"""Share of mass and inertia in the feet."""
-
+SHARE = 0.01  # share of mass and inertia in the feet
 SHIPPED = "as shipped"
-
-PLATE = 1e4
-"""Half the width of the plate in m."""
+PLATE = 1e4  # half the width of the plate in m
 
 
 class _Model(Model):

@@ -47,11 +47,8 @@ from reference_model.trajectory import SimulationError
 DEPTH = 1e3
 """Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
-RADIUS = 1e-3
-"""Radius of the spheres in m."""
-
-PLATE = 1e5
-"""Edge length of the plate in m."""
+RADIUS = 1e-3  # radius of the spheres in m
+PLATE = 1e5  # edge length of the plate in m
 
 
 @dataclass(frozen=True)

@@ -38,8 +38,7 @@ import numpy as np
 from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-LEAST_COEFFICIENT = 1e-5
-"""Smallest μ that MuJoCo accepts."""
+LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 
 @dataclass(frozen=True)

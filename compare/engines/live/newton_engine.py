@@ -20,9 +20,7 @@ from compare.engines.live.setting import Model, Setting, support_force
 from reference_model.systems import DiscOnDisc, FloatArray
 
 warp.config.quiet = True
-
-RADIUS, PLATE = 0.5, 1e3
-"""Radius of the ball and half the edge length of the plate, in m."""
+RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the plate, in m
 
 
 class _Model(Model):

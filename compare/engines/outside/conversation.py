@@ -36,23 +36,12 @@ from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
-GREETING_LIMIT = 60.0
-"""Time limit in s for the first line; a program may have to be compiled when it starts."""
-
+GREETING_LIMIT = 60.0  # time limit in s for the first line; a program may have to be compiled when it starts
 GREETING_BYTES = 100_000
-
-TICK = 0.1
-"""Interval in s between checks of the time limit."""
-
-FAREWELL = 1.0
-"""Time in s for a program to end after its input is closed."""
-
-AT_ONCE = 1 << 18
-"""Bytes read from a pipe at once, at least its capacity."""
-
-LAST_LINES, LAST_BYTES = 3, 4000
-"""Lines shown and bytes kept from the end of a program's standard error."""
-
+TICK = 0.1  # interval in s between checks of the time limit
+FAREWELL = 1.0  # time in s for a program to end after its input is closed
+AT_ONCE = 1 << 18  # bytes read from a pipe at once, at least its capacity
+LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept from the end of a program's standard error
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'

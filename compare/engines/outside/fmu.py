@@ -32,9 +32,7 @@ from reference_model.trajectory import Trajectory
 POINTS = "contact_points"
 
 NONLINEAR = ("hardening", "stop_gap", "stop_stiffness")
-
-OPTIONAL = ("offset", *NONLINEAR)
-"""Parameters that a model may omit; they are then 0."""
+OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are then 0
 
 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
@@ -44,11 +42,8 @@ The speed is that of the motion. Even a model that reports stick, for pins and r
 points. The error of the resulting creep must fall with the tolerance.
 """
 
-LEAST_CREEP = 1e-12
-"""Regularisation speed in m/s for a motion without any speed."""
-
-MOST_BYTES = 2**30
-"""Largest size in bytes of an unpacked archive; models of pins and discs are far smaller."""
+LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without any speed
+MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive; models of pins and discs are far smaller
 
 
 class FmuError(RuntimeError):

@@ -22,10 +22,7 @@ from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PROTOCOL = 1
-
-ANSWER_LIMIT = 60.0
-"""Default time limit in s for one motion."""
-
+ANSWER_LIMIT = 60.0  # default time limit in s for one motion
 _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 

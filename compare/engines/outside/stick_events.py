@@ -19,10 +19,7 @@ from reference_model.trajectory import Phase, phases_of
 COUNTS = ("stick_count", "release_count")
 
 TIMES = ("stick_time", "release_time")
-
-NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")
-"""Required outputs; a disc also needs ``stick_angle``."""
-
+NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")  # required outputs; a disc also needs ``stick_angle``
 STATE_OF_POINTS = tuple(f"rest_{name}" for name, _ in COLUMNS[DiscOnDisc])
 
 NAMES_OF_POINTS = ("rest_count", "rest_time", "resting_points", *STATE_OF_POINTS)

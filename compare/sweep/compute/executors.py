@@ -20,18 +20,10 @@ from urllib.parse import urlsplit
 from compare.output.outside_text import reason_of
 from compare.run.provenance import stamp
 
-WAIT = 3.0
-"""Time limit in s for a scheduler to be reached, to answer, and to have a worker."""
-
-IN_FLIGHT = 3
-"""Submitted tasks per thread of the cluster: enough to keep it busy, and few to lose."""
-
-COUNT_INTERVAL = 1.0
-"""Interval in s between counts of the cluster's threads."""
-
-
-AT_ONCE = 2
-"""Number of simultaneous tasks in this process, each on all cores."""
+WAIT = 3.0  # time limit in s for a scheduler to be reached, to answer, and to have a worker
+IN_FLIGHT = 3  # submitted tasks per thread of the cluster: enough to keep it busy, and few to lose
+COUNT_INTERVAL = 1.0  # interval in s between counts of the cluster's threads
+AT_ONCE = 2  # number of simultaneous tasks in this process, each on all cores
 
 
 class ClusterError(RuntimeError):

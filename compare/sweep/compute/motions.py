@@ -14,8 +14,7 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
 
-JUMP = 0.3
-"""Largest relative difference between the radii of a motion and those extrapolated from its branch."""
+JUMP = 0.3  # largest relative difference between the radii of a motion and those extrapolated from its branch
 
 
 class Motion(NamedTuple):

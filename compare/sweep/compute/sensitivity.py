@@ -13,11 +13,8 @@ from compare.claims.shares import CONFIDENCE
 from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
-GROUPS = 16
-"""Number of groups of rows; the scatter of the indices between groups gives their error."""
-
-LEAST_SAMPLES = 16 * GROUPS
-"""Least number of rows."""
+GROUPS = 16  # number of groups of rows; the scatter of the indices between groups gives their error
+LEAST_SAMPLES = 16 * GROUPS  # least number of rows
 
 
 class Indices(NamedTuple):
