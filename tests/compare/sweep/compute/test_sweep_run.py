@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import zarr
-from long_sweeps import assert_same, content
+from long_sweeps import assert_same, content, silent
 
 from compare.claims.parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
@@ -33,15 +33,6 @@ MAP = Map(
     x=Axis("disc_speed", 1.2, 2.0, 5),
     y=Axis("friction_force", 0.05, 0.15, 4),
 )
-
-
-@pytest.fixture(autouse=True)
-def fewer_checks(monkeypatch):
-    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
-
-
-def silent(what, done, total):
-    pass
 
 
 class Recording(InProcess):
