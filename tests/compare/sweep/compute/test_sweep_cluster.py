@@ -8,11 +8,11 @@ import pytest
 from distributed import LocalCluster
 from local_cluster import cluster
 from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed, silent
-from signalling_sweep import signalling
+from signalling_sweep import signalling_here
 
 from compare.claims.parameters import FIG5
 from compare.cli import app as cli
-from compare.sweep.arrays import DESCRIPTION, Chunks
+from compare.sweep.arrays import DESCRIPTION
 from compare.sweep.compute import executors
 from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 from compare.sweep.compute.run import finished, run
@@ -41,10 +41,7 @@ def test_results_survive_a_killed_driver_a_killed_worker_and_a_lost_scheduler(
         out, err = capsys.readouterr()
         assert (code, err) == (0, ""), out
 
-        with monkeypatch.context() as patch:
-            for owner, name in ((Chunks, "write"), (Cluster, "run")):
-                patch.setattr(owner, name, getattr(owner, name))  # restored after the test
-            signalling("SIGKILL", local.scheduler.pid, 10)
+        with signalling_here("SIGKILL", local.scheduler.pid, 10):
             code = cli.status([*LONG, *CHUNKS, "--output", str(other), *on_cluster])
     assert f"Results: {url}/sweep.zarr; figures: {url}/basin.svg" in out
     assert written <= marks(first)

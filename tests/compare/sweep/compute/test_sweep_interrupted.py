@@ -1,6 +1,11 @@
 """A sweep that is interrupted and runs out of disk space; ``test_sweep_cluster`` kills processes."""
 
-from long_sweeps import assert_same, content, finished_by, long_sweep, marks, resumed
+import signal
+
+from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed
+from signalling_sweep import signalling_here
+
+from compare.cli import app as cli
 
 
 def said(err):
@@ -19,10 +24,14 @@ def times(folder):
 
 
 def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
-    undisturbed, tmp_path, monkeypatch
+    undisturbed, tmp_path, monkeypatch, capsys
 ):
-    code, out, err = finished_by(long_sweep(tmp_path, signalled=("SIGINT", 0, 11)))
-    assert (code, out, said(err)) == (130, "", ["Interrupted. Repeat the command with --resume to continue."])
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes ignore it
+    with signalling_here("SIGINT", 0, 11):
+        assert cli.status([*LONG, *CHUNKS, "--output", str(tmp_path)]) == 130
+    signal.signal(signal.SIGINT, before)
+    assert capsys.readouterr() == ("", "Interrupted. Repeat the command with --resume to continue.\n")
     written = times(tmp_path)
     assert written
 
@@ -33,7 +42,6 @@ def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
     assert line.startswith(f"cannot write to {str(path)!r}: File too large. Results written so far remain")
     assert times(tmp_path) == written
 
-    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     assert resumed(tmp_path) == 0
     now = times(tmp_path)
     assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
