@@ -4,6 +4,7 @@ import functools
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, exudyn, plain, reference
-from compare.run.workers import Workers
+from compare.run.workers import Failure
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -84,10 +85,6 @@ NAMED = {
         engine("heavy", limit=lambda system, *_: system.mass),
         f"{LAW}the friction force over μN is proportional to mass^1.00",
     ),
-    "square of the load": (
-        engine("square", limit=lambda system, *_: system.friction_force),
-        f"{LAW}the friction force over μN is proportional to friction force^1.00",
-    ),
     "rising with speed": (
         engine("rising", limit=lambda system, speed, step: 1.0 + 0.5 * speed),
         f"{LAW}the coefficient μ depends on the slip speed v, as 1 + 0.5·v/(m/s) times its value.",
@@ -112,10 +109,6 @@ NAMED = {
     "absolute velocity": (
         made("absolute", relative=0.0),
         f"{LAW}on turntables only, the friction force ",
-    ),
-    "100 times too much": (
-        engine("strong", limit=lambda *_: 100.0),
-        f"{LAW}the coefficient μ is 100 times the right one",
     ),
     "box 100 times too large": (
         engine("strong box", law=box, limit=lambda *_: 100.0),
@@ -145,10 +138,6 @@ NAMED = {
         ),
         f"{LAW}the coefficient μ is 10 % too large for a mass above 2.9 kg or disc speed above 3.2 rad/s.",
     ),
-    "stronger under load": (
-        engine("loaded", limit=lambda system, *_: 1.1 if system.friction_force > 1.2 else 1.0),
-        f"{LAW}the coefficient μ is 10 % too large for a friction force above 0.76 N.",
-    ),
     "mass": (
         mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}),
         "Wrong mass: the mass is 0.0010 % too large, because all forces act alike.",
@@ -167,9 +156,8 @@ def sentences(engine):
     return row, " ".join(row.sentences)
 
 
-@pytest.mark.parametrize("wrong", NAMED)
-def test_a_wrong_law_is_named(wrong):
-    made, said = NAMED[wrong]
+@pytest.mark.parametrize(("made", "said"), NAMED.values(), ids=NAMED)
+def test_a_wrong_law_is_named(made, said):
     row, found = sentences(made)
     assert found.startswith(said)
     assert row.verdict == WRONG
@@ -306,9 +294,6 @@ def test_an_engine_that_ignores_the_tolerance_is_reported():
 
 def test_an_engine_without_stick_is_not_probed_for_creep():
     assert run.measured(plain, "creep") == "plain does not simulate stick"
-    row = run._with(Row("plain"), "creep", "plain does not simulate stick", 0.1)
-    assert row.not_simulated == ("creep",)
-    assert not row.wrong
 
 
 def raises(system, start, times, *, tolerance):
@@ -318,12 +303,13 @@ def raises(system, start, times, *, tolerance):
 def test_a_failed_probe_is_named_and_the_others_remain():
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
+    nobody = SimpleNamespace(ask=lambda *arguments, owner: Failure("out of order"))
     assert set(row.gaps) == set(PROBES) - {"lag", "moments"}
     assert row.sentences[0].startswith(
         "Undecided: no result for law, scales, creep, history, support, repeat: out of"
     )
     assert row.verdict == UNDECIDED
-    assert set(run._probed(broken, Workers(1)).gaps) == {"law"}
+    assert set(run._probed(broken, nobody).gaps) == {"law"}
 
 
 def test_recorded_engines_have_rows_like_the_others(tmp_path):
@@ -341,5 +327,5 @@ def test_recorded_engines_have_rows_like_the_others(tmp_path):
     content = json.loads((tmp_path / "matrix.json").read_text(encoding="utf-8"))
     assert content[-1]["motions"]["slip"]["errors"] == [1e-2, 5e-3, 2e-3, 1e-3]
     assert content[-1]["sentences"] == ["Errors are of order 1.0 in the tolerance."]
-    write_pictures([*rows, mine], tmp_path)
+    write_pictures([by_name["Bullet, box"], mine], tmp_path)
     assert (tmp_path / "matrix.png").stat().st_size > 10_000

@@ -1,14 +1,11 @@
 """The matrix command."""
 
 import json
-import math
 import re
 
 import pytest
 
 from compare.cli import app as cli
-from compare.diagnosis import findings
-from compare.diagnosis.ladder import falling
 
 BLOCKS = """
 import functools, math
@@ -71,10 +68,3 @@ def test_a_broken_adapter_is_seen_first_and_not_measured(tmp_path, monkeypatch, 
     assert "no result for two blocks: AttributeError: 'PinOnDisc' object has no attribute 'gravity'" in (
         capsys.readouterr().out
     )
-
-
-def test_probes_come_first_among_the_parts():
-    from compare.engines import reference
-
-    assert list(findings.parts_of(reference))[: len(findings.PROBES)] == list(findings.PROBES)
-    assert math.isnan(falling([1.0], 2.0))
