@@ -11,15 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import ROUNDING, TRUTH
+from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
 from compare.diagnosis.ladder import HALVED, RUNGS, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
 from compare.engines import USUAL_TOLERANCE, Engine
-from compare.foreign import CASES, Quantity
-from reference_model import simulate
+from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
 PER_STEP = 0.2  # largest deviation from −1 of the order of a force whose impulse per step is bounded
@@ -33,19 +32,12 @@ MOST_HELD, BISECTIONS = 32.0, 20
 # --- The parts and their results.
 
 
-@functools.cache
-def _exact_ring() -> Quantity:
-    ring = MOTIONS["ring"]
-    return ring.quantity(simulate(ring.system, ring.start, ring.times, tolerance=TRUTH))
-
-
 MOTIONS = CASES | {
     "ring": replace(
         CASES["disc"],
         title="a disc on a ring",
         sentence="A ring follows Coulomb's law",
         system=FIG11,
-        exact=_exact_ring,
     )
 }
 """Motions for every engine that supports them."""

@@ -30,19 +30,10 @@ def diagnosed(
     jobs: int = 1,
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
 ) -> Iterator[Row]:
-    """Yield the row of each engine in order of completion.
+    """Yield the row of each engine in order of completion; an engine that supports no part has an empty row.
 
-    Parameters
-    ----------
-    engines : tuple of Engine
-        The engines; an engine that supports no part has an empty row.
-    limit : float
-        Time limit in s for each part; the row reports parts that exceed it.
-    jobs : int
-        Number of processes.
-    progress : callable
-        Called with the number of finished parts, the total number and the name of the last part.
-
+    A row reports parts that exceed ``limit`` in s. ``jobs`` is the number of processes. ``progress`` is called with
+    the number of finished parts, the total number and the name of the last part.
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}

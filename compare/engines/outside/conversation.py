@@ -62,15 +62,8 @@ def simulate(
 ) -> Trajectory:
     """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
-    Raises
-    ------
-    UnsupportedSystemError
-        If the program replies that it does not simulate the system.
-    ProgramError
-        If it reports an error, ends, hangs, or writes an invalid line.
-    OSError
-        If it cannot be started.
-
+    Raises ``UnsupportedSystemError`` if the program says so, ``OSError`` if it cannot be started, and
+    ``ProgramError`` if it reports an error, ends, hangs, or writes an invalid line.
     """
     conversation = conversation_with(command, folder)
     line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))

@@ -66,13 +66,7 @@ class Fmu:
     ) -> Trajectory:
         """Return the motion, with communication steps up to ``step`` in s if given, else from time to time.
 
-        Raises
-        ------
-        UnsupportedSystemError
-            If the model lacks a parameter of the system.
-        FmuError
-            If a call of the model fails.
-
+        Raises ``UnsupportedSystemError`` if the model lacks a parameter, and ``FmuError`` if a call fails.
         """
         name, model = Path(self.file).name, _model(self.file)
         at, state = np.array(times, dtype=float), np.asarray(initial_state, dtype=float)

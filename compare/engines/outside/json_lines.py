@@ -92,13 +92,7 @@ def most_bytes(system: System, times: ArrayLike) -> int:
 def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
     """Return the motion in ``line`` at the requested times (n,); its shapes and numbers are not yet checked.
 
-    Raises
-    ------
-    UnsupportedSystemError, RefusedError
-        If the line says so.
-    BadLineError
-        If the line is not a valid answer.
-
+    Raises ``UnsupportedSystemError`` or ``RefusedError`` if the line says so, and ``BadLineError`` if it is invalid.
     """
     content = _object(line)
     if "unsupported" in content:
