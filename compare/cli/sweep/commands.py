@@ -141,9 +141,7 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
         common = request.common()
         axes = _axes("parameter", parameters(common["system"]), (x, y), MAPS[request.system])
         _check_given_once({"--set": request.set_names()}, "--x or --y", [axis.name for axis in axes])
-        for axis in axes:
-            for end in (axis.low, axis.high):
-                changed(common["system"], [f"{axis.name}={end!r}"])
+        _check_parameters(common["system"], axes)
         names = components(common["system"])
         states = tuple(_start(request.system, start, names) for start in starts or [""])
     return request.run(Map(**common, starts=states, x=axes[0], y=axes[1]))
@@ -206,8 +204,7 @@ def sweep_continuation(
         common = request.common()
         axis = Axis.parse(x or ALONG[request.system], "parameter", parameters(common["system"]))
         _check_given_once({"--set": request.set_names()}, "--x", [axis.name])
-        for end in (axis.low, axis.high):
-            changed(common["system"], [f"{axis.name}={end!r}"])
+        _check_parameters(common["system"], [axis])
         varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or SCATTERED[request.system])
         names = [one.name for one in varied]
         _check_varied(names)
@@ -269,6 +266,12 @@ def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequen
         for name in of_option:
             if name in names:
                 raise ValueError(f"{option} {name}: {by} already varies {name}; leave one of them out")
+
+
+def _check_parameters(system: System, axes: Sequence[Axis]) -> None:
+    for axis in axes:
+        for end in (axis.low, axis.high):
+            changed(system, [f"{axis.name}={end!r}"])
 
 
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:

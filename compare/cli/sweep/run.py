@@ -176,12 +176,11 @@ def redraw(place: str) -> int:
     with _reporting_store_errors():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
-    try:
-        with _reporting_store_errors():
+        try:
             _check_finished(store)
             return finish(store, folder)
-    finally:
-        store.tidy()
+        finally:
+            store.tidy()
 
 
 def _check_finished(store: SweepStore) -> None:

@@ -12,8 +12,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
-from types import TracebackType
+from contextlib import AbstractContextManager, suppress
 from typing import Any, NamedTuple, TypeAlias
 from urllib.parse import urlsplit
 
@@ -61,7 +60,7 @@ class InProcess:
                 yield key, result.result()
 
 
-class Cluster:
+class Cluster(AbstractContextManager["Cluster"]):
     """The workers of the Dask scheduler at "tcp://host:port", each task on one thread; a context manager.
 
     Raises ``ValueError`` for an invalid address, ``ModuleNotFoundError`` without Dask, and ``ClusterError`` if no
@@ -96,12 +95,7 @@ class Cluster:
                 "install the same version on all machines"
             ) from None
 
-    def __enter__(self) -> Cluster:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(Exception):  # the scheduler may be lost
             self._client.close()
 
