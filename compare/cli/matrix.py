@@ -45,8 +45,7 @@ Benchmark = Annotated[
     typer.Option("--benchmark", help="Run the friction benchmark instead: closed-form cases, with a score."),
 ]
 
-LIMIT = 60.0
-"""Default of ``--limit`` in s."""
+LIMIT = 60.0  # default of ``--limit`` in s
 
 
 def matrix(
@@ -138,7 +137,6 @@ def _first_look(checked: Iterable[tuple[Engine, str | Row]]) -> Iterator[Engine 
 
 
 def _benchmark(engines: Sequence[Engine], broken: bool, limit: float, output: Path) -> int:
-    """Print and write the results of the friction benchmark; return the exit status."""
     from compare.diagnosis.friction_benchmark import NOT_SIMULATED
     from compare.diagnosis.run import benchmarked
     from compare.engines import owner_of

@@ -11,25 +11,19 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims.error_estimates import ROUNDING, TRUTH
+from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
 from compare.diagnosis.ladder import HALVED, RUNGS, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
 from compare.engines import USUAL_TOLERANCE, Engine
-from compare.foreign import CASES, Quantity
-from reference_model import simulate
+from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
-PER_STEP = 0.2
-"""Largest deviation from −1 of the order of a force whose impulse per step is bounded."""
-
-SAME = 0.8
-"""Least ratio of the creep at any rung to the largest, for creep that is the same at all rungs."""
-
-HELD = 0.05
-"""Mean speed over a Coulomb block's, below which a block is held."""
+PER_STEP = 0.2  # largest deviation from −1 of the order of a force whose impulse per step is bounded
+SAME = 0.8  # least ratio of the creep at any rung to the largest, for creep that is the same at all rungs
+HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
 
 MOST_HELD, BISECTIONS = 32.0, 20
 """Largest load over μN that is tried on blocks at rest, and the number of bisections."""
@@ -38,19 +32,12 @@ MOST_HELD, BISECTIONS = 32.0, 20
 # --- The parts and their results.
 
 
-@functools.cache
-def _exact_ring() -> Quantity:
-    ring = MOTIONS["ring"]
-    return ring.quantity(simulate(ring.system, ring.start, ring.times, tolerance=TRUTH))
-
-
 MOTIONS = CASES | {
     "ring": replace(
         CASES["disc"],
         title="a disc on a ring",
         sentence="A ring follows Coulomb's law",
         system=FIG11,
-        exact=_exact_ring,
     )
 }
 """Motions for every engine that supports them."""
@@ -58,58 +45,31 @@ MOTIONS = CASES | {
 
 @dataclass(frozen=True)
 class Creep:
-    """Creep of a block that friction should hold.
+    """Creep in m/s of a block that friction should hold, at the finest rung.
 
-    Parameters
-    ----------
-    speed : float
-        Speed in m/s of a block under a load of μN/2, at the finest rung.
-    order : float
-        Order of the speed in the step, or in the tolerance if the step is not fixed; NaN if undefined.
-    smoothing : str
-        Regularised friction law that explains the creep; "" if none does.
-    epsilon : float
-        Regularisation of that law in m/s, at the finest rung.
-    chatter : float
-        Largest deviation in m/s of the velocity from the creep, at the finest rung.
-    chatter_order : float
-        Order of ``chatter``.
-
+    Orders are those in the step, or in the tolerance if the step is not fixed; NaN if undefined.
     """
 
-    speed: float
+    speed: float  # under a load of μN/2
     order: float
-    smoothing: str
-    epsilon: float
-    chatter: float = 0.0
+    smoothing: str  # regularised friction law that explains the creep; "" if none does
+    epsilon: float  # its regularisation
+    chatter: float = 0.0  # largest deviation of the velocity from the creep
     chatter_order: float = math.nan
 
 
 @dataclass(frozen=True)
 class History:
-    """Dependence of friction on the motion before.
+    """Dependence of friction on the motion before."""
 
-    Parameters
-    ----------
-    static : float
-        Largest load that friction holds from rest, over μN; 1 if it holds no load above μN.
-    second, second_error : float
-        Distance of a second release over the exact one, and its error.
-    delay, delay_error, second_delay, second_delay_error : float
-        Delay in s of the release from rest, and of the motion after two releases.
-    rest : float
-        Creep in m/s of a block close to release, or of one at rest after a slide; 0 if it depends on the rung.
-
-    """
-
-    static: float
-    second: float
+    static: float  # largest load over μN that friction holds from rest; 1 if it holds no load above μN
+    second: float  # distance of a second release over the exact one
     second_error: float
-    delay: float
+    delay: float  # of the release from rest, in s
     delay_error: float
-    second_delay: float
+    second_delay: float  # of the motion after two releases, in s
     second_delay_error: float
-    rest: float
+    rest: float  # creep in m/s close to release, or at rest after a slide; 0 if it depends on the rung
 
 
 @dataclass(frozen=True)
@@ -147,28 +107,13 @@ class Lag:
 
 @dataclass(frozen=True)
 class Motion:
-    """Errors of one case of ``compare.foreign`` against the exact motion.
+    """Errors in m of one case of ``compare.foreign`` against the exact motion."""
 
-    Parameters
-    ----------
-    errors : tuple of float
-        Largest error over time at each rung, in m.
-    estimate : float
-        Estimate of the last error in m from the changes between rungs.
-    order : float
-        Order of the error in the step, or in the tolerance if the step is not fixed; NaN if undefined.
-    resolution : float
-        A tenth of the change due to another friction law, in m, see ``Case``.
-    seconds : float
-        Processor time in s at the finest rung.
-
-    """
-
-    errors: tuple[float, ...]
-    estimate: float
-    order: float
-    resolution: float
-    seconds: float
+    errors: tuple[float, ...]  # largest over time at each rung
+    estimate: float  # of the last error, from the changes between rungs
+    order: float  # as in ``Creep``
+    resolution: float  # a tenth of the change due to another friction law, see ``Case``
+    seconds: float  # of processor time at the finest rung
 
     @property
     def error(self) -> float:

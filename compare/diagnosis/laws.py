@@ -24,11 +24,8 @@ Complex = NDArray[np.complex128]
 SIDES = (3, 4, 6, 8, 12, 16)
 """Number of sides of the polygons, each tried with a corner on the x axis and with a side across it."""
 
-FITS = 1e-6
-"""Misfit over μN allowed for any law, because the force is not quite constant during the slide."""
-
-DISTINCT = 3.0
-"""Least ratio of the second-best misfit to the best, and of a reported deviation to its error."""
+FITS = 1e-6  # misfit over μN allowed for any law, because the force is not quite constant during the slide
+DISTINCT = 3.0  # least ratio of the second-best misfit to the best, and of a reported deviation to its error
 
 NEAR, FAR = 1e-3, 100.0
 """Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit to it."""
@@ -78,41 +75,18 @@ SHAPES = _shapes()
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction law with the best fit.
+    """Friction law with the best fit."""
 
-    Parameters
-    ----------
-    shape : str
-        Name of the law in ``SHAPES``.
-    strength : float
-        Ratio of the fitted to the nominal μ.
-    angle : float
-        Counterclockwise rotation of the force from the law's direction, in rad.
-    error : float
-        Error of the measured force over μN; also the error of ``strength`` and ``angle``.
-    misfit : float
-        Largest difference between the forces, over μN.
-    sure : bool
-        True if this law fits and no other law fits nearly as well.
-    along, across : float
-        μ of the ellipse along its first axis and across it, over the nominal μ; NaN for other laws.
-    axis : float
-        Direction of that axis in rad; NaN for other laws.
-    per_step : float
-        Largest friction impulse in N s of a step if it does not depend on the step, over μN; else NaN.
-
-    """
-
-    shape: str
-    strength: float
-    angle: float
-    error: float
-    misfit: float
-    sure: bool
-    along: float = math.nan
+    shape: str  # name of the law in ``SHAPES``
+    strength: float  # ratio of the fitted to the nominal μ
+    angle: float  # counterclockwise rotation of the force from the law's direction, in rad
+    error: float  # of the measured force over μN; also that of ``strength`` and ``angle``
+    misfit: float  # largest difference between the forces, over μN
+    sure: bool  # True if this law fits and no other law fits nearly as well
+    along: float = math.nan  # μ along the first axis of an ellipse, over the nominal μ
     across: float = math.nan
-    axis: float = math.nan
-    per_step: float = math.nan
+    axis: float = math.nan  # direction of that axis in rad
+    per_step: float = math.nan  # largest impulse of a step in N s over μN, if it does not depend on the step
 
     @property
     def fits(self) -> bool:
@@ -219,8 +193,7 @@ SMOOTHINGS = (
 )
 
 
-SMOOTHING_FITS = 0.2
-"""Largest relative misfit of an identified regularisation."""
+SMOOTHING_FITS = 0.2  # largest relative misfit of an identified regularisation
 
 
 def smoothing_of(creep: FloatArray) -> tuple[str, float]:

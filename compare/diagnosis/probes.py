@@ -24,8 +24,7 @@ PLANE = np.array([1.0, 1j])
 HEADINGS = np.radians(np.arange(4.0, 364.0, 15.0))
 """Directions of slip in rad; no direction is equally close to two axes of a polygon with up to 16 sides."""
 
-FRICTION = 0.2
-"""μN in N for a mass of 1 kg."""
+FRICTION = 0.2  # μN in N for a mass of 1 kg
 
 WEAK = 1e-5
 """Stiffness in N/m for a mass of 1 kg: its force is small, and the momentum balance accounts for it.
@@ -34,9 +33,7 @@ It is not smaller because engines may derive a characteristic speed from μN and
 """
 
 SLIDE = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
-
-SPEED = 1.0
-"""Speed of sliding blocks, in m/s."""
+SPEED = 1.0  # speed of sliding blocks, in m/s
 
 SETTLES_FOR = 0.05
 """Time in s before friction is measured: MuJoCo's soft contact takes 0.04 s to reach its steady force."""
@@ -44,15 +41,9 @@ SETTLES_FOR = 0.05
 SLIDES_FOR = 0.1
 """Duration in s: friction removes 1/50 of the speed, less than the smallest component across an axis."""
 
-PANELS = 32
-"""Number of intervals for the integral of friction with a direction that changes."""
-
-FEWEST_PANELS = 4
-"""The same at the coarsest rung, because longer steps than an interval are not possible."""
-
-
-CHECKED_FOR = 1.0
-"""Duration in s of the first check."""
+PANELS = 32  # number of intervals for the integral of friction with a direction that changes
+FEWEST_PANELS = 4  # the same at the coarsest rung, because longer steps than an interval are not possible
+CHECKED_FOR = 1.0  # duration in s of the first check
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -67,8 +58,7 @@ def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float
 
 # --- Friction force against mass, load, speed, heading and place.
 
-DRAWS, TURNING_DRAWS = 48, 24
-"""Number of combinations on a plane at rest and on a turntable."""
+DRAWS, TURNING_DRAWS = 48, 24  # number of combinations on a plane at rest and on a turntable
 
 MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
 """Ranges in kg, m/s and rad/s. Loads follow, because friction may remove little of the speed."""
@@ -76,8 +66,7 @@ MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
 SPENT = 0.05
 """Largest share of the slip that friction may remove; otherwise the probe is repeated with a smaller load."""
 
-WEAKER, MOST_WEAKER = 10.0, 7
-"""Factor of the load from repetition to repetition, and their largest number."""
+WEAKER, MOST_WEAKER = 10.0, 7  # factor of the load from repetition to repetition, and their largest number
 
 
 @dataclass(frozen=True, eq=False)
@@ -198,14 +187,12 @@ def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> lis
 
 # --- History: blocks pulled from rest, at rest after a slide, and released a second time.
 
-PULLS = (0.25, 0.5, 0.75, 0.9)
-"""Loads on blocks that should stick, as fractions of μN."""
+PULLS = (0.25, 0.5, 0.75, 0.9)  # loads on blocks that should stick, as fractions of μN
 
 NEARLY, BEYOND = 0.99, (1.001, 1.01, 1.05, 1.2)
 """Load that friction can just hold, and loads that it cannot hold."""
 
-PULLED_FOR = 4.0
-"""Duration in s; the creep speed is measured in the second half."""
+PULLED_FOR = 4.0  # duration in s; the creep speed is measured in the second half
 
 LOOKS = 16
 """Number of samples of the velocity in the second half; a block that chatters has other velocities than its mean."""
@@ -231,11 +218,8 @@ def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArr
 SWING = PinOnDisc(mass=1.0, stiffness=4.0, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
 """A block on a spring; μN stretches the spring by 5 cm."""
 
-SECOND_PULL = 1.03
-"""Load over μN at the second release, after a swing that starts at a load larger by 2."""
-
-RATE = 2.0
-"""Natural frequency of ``SWING`` in rad/s."""
+SECOND_PULL = 1.03  # load over μN at the second release, after a swing that starts at a load larger by 2
+RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
@@ -291,8 +275,7 @@ def lag(engine: Engine, tolerance: float) -> float:
 
 # --- The support without friction, and the moment of a disc.
 
-SMOOTH = replace(SLIDE, friction_force=1e-9)
-"""A block with almost no friction; some engines cannot omit it."""
+SMOOTH = replace(SLIDE, friction_force=1e-9)  # a block with almost no friction; some engines cannot omit it
 
 SUPPORTS = {
     "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),

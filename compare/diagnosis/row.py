@@ -24,36 +24,16 @@ from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
-RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
-"""Verdicts over everything that was measured."""
+RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"  # verdicts over everything that was measured
 
 
 @dataclass(frozen=True)
 class Row:
-    """Results for an engine.
-
-    Parameters
-    ----------
-    engine, version : str
-        Name and version of the engine.
-    step : float
-        Step in s at the finest rung; NaN if the engine has a tolerance.
-    law, scales, creep, history, support, repeat, lag, moments
-        Results of the probes; None if not measured.
-    motions : mapping
-        Errors of the simulated motions, by name.
-    gaps : mapping
-        Reason why a part has no result, by name.
-    not_simulated : tuple of str
-        Parts that the engine does not support.
-    seconds : float
-        Total wall-clock time in s.
-
-    """
+    """Results of the probes and motions for an engine; a probe is None if it was not measured."""
 
     engine: str
     version: str = ""
-    step: float = math.nan
+    step: float = math.nan  # in s at the finest rung; NaN if the engine has a tolerance
     law: Friction | None = None
     scales: Scales | None = None
     creep: Creep | None = None
@@ -63,9 +43,9 @@ class Row:
     lag: Lag | None = None
     moments: Shares | None = None
     motions: dict[str, Motion] = field(default_factory=dict)
-    gaps: dict[str, str] = field(default_factory=dict)
+    gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts without a result
     not_simulated: tuple[str, ...] = ()
-    seconds: float = 0.0
+    seconds: float = 0.0  # of wall-clock time
 
     @functools.cached_property
     def remarks(self) -> tuple[Remark, ...]:
@@ -149,7 +129,6 @@ class Row:
 
     @property
     def _least_lag(self) -> float:
-        """Smallest reported lag in s."""
         return max(LEAST_LAG, DISTINCT * self.law.error) if self.law is not None else math.inf
 
     @property
@@ -169,9 +148,7 @@ class Row:
 # another friction law.
 
 MARKERS = "os^Dvx+*"
-
-LEAST = 1e-16
-"""Smallest plotted error in m; smaller errors are drawn there."""
+LEAST = 1e-16  # smallest plotted error in m; smaller errors are drawn there
 
 
 def drawn(rows: Sequence[Row]) -> Figure:

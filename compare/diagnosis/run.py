@@ -20,8 +20,7 @@ from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-IN_SHORT = 20.0
-"""Time limit in s for each part of a short diagnosis."""
+IN_SHORT = 20.0  # time limit in s for each part of a short diagnosis
 
 
 def diagnosed(
@@ -31,19 +30,10 @@ def diagnosed(
     jobs: int = 1,
     progress: Callable[[int, int, str], None] = lambda done, total, name: None,
 ) -> Iterator[Row]:
-    """Yield the row of each engine in order of completion.
+    """Yield the row of each engine in order of completion; an engine that supports no part has an empty row.
 
-    Parameters
-    ----------
-    engines : tuple of Engine
-        The engines; an engine that supports no part has an empty row.
-    limit : float
-        Time limit in s for each part; the row reports parts that exceed it.
-    jobs : int
-        Number of processes.
-    progress : callable
-        Called with the number of finished parts, the total number and the name of the last part.
-
+    A row reports parts that exceed ``limit`` in s. ``jobs`` is the number of processes. ``progress`` is called with
+    the number of finished parts, the total number and the name of the last part.
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}
@@ -122,7 +112,6 @@ def _empty(engine: Engine) -> Row:
 
 
 def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
-    """Return ``row`` with the result of a part."""
     row = replace(row, seconds=row.seconds + seconds)
     if isinstance(found, Failure):
         return replace(row, gaps=row.gaps | {part: str(found)})
@@ -133,8 +122,7 @@ def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
     return replace(row, **{part: found})  # the names in PROBES are fields of the row
 
 
-SLACK = 1e-6
-"""Stiffness in N/m of a spring so long that it pulls with a constant force."""
+SLACK = 1e-6  # stiffness in N/m of a spring so long that it pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:

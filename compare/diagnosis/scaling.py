@@ -17,21 +17,11 @@ from reference_model.systems import FloatArray
 LEAST = 1e-6
 """Smallest deviation of the force over μN that counts: friction removes down to 1e-4 of the speed, see ``probes``."""
 
-KEEPS = 0.98
-"""Share of the initial speed below which a block has lost it by something other than friction."""
-
-GROWS = 1.1
-"""Least growth of a force that is too small, from rung to rung, that counts as convergence."""
-
-POWER_FITS = 0.02
-"""Largest relative misfit of a power law."""
-
-CURVE_FITS = 0.03
-"""Largest misfit of a curve over speed, relative to the deviations that it explains."""
-
-FEWEST = 3
-"""Least number of slides beyond a threshold."""
-
+KEEPS = 0.98  # share of the initial speed below which a block has lost it by something other than friction
+GROWS = 1.1  # least growth of a force that is too small, from rung to rung, that counts as convergence
+POWER_FITS = 0.02  # largest relative misfit of a power law
+CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations that it explains
+FEWEST = 3  # least number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
 
 VARIABLES = ("mass", "friction force", "slip speed", "disc speed", "distance from the axis")
@@ -41,29 +31,15 @@ MASS, LOAD, SPEED, DISC_SPEED, DISTANCE = range(len(VARIABLES))
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """Forces on slides over wide ranges.
+    """Forces on slides over wide ranges."""
 
-    Parameters
-    ----------
-    conditions : array of shape (n, 5)
-        The ``VARIABLES`` in ``UNITS``; the disc speed is 0 on a plane at rest.
-    forces, coarser, slips, radial : array of shape (n, 2)
-        Mean friction force over μN, the same at the rung before, mean direction of slip, and mean direction from the
-        axis to the body.
-    errors : array of shape (n,)
-        Errors of the forces.
-    speeds : array of shape (n, 2)
-        Initial speed in m/s, given and as it follows from speed and force when the measurement begins.
-
-    """
-
-    conditions: FloatArray
-    forces: FloatArray
-    coarser: FloatArray
-    slips: FloatArray
-    radial: FloatArray
-    errors: FloatArray
-    speeds: FloatArray
+    conditions: FloatArray  # (n, 5): the ``VARIABLES`` in ``UNITS``; the disc speed is 0 on a plane at rest
+    forces: FloatArray  # (n, 2): mean friction force over μN
+    coarser: FloatArray  # (n, 2): the same at the rung before
+    slips: FloatArray  # (n, 2): mean direction of slip
+    radial: FloatArray  # (n, 2): mean direction from the axis to the body
+    errors: FloatArray  # (n,): of the forces
+    speeds: FloatArray  # (n, 2): initial speed in m/s, given and as it follows when the measurement begins
 
     def ratios(self, law: Friction) -> NDArray[np.complex128]:
         """Return measured over expected forces, NaN where a law other than the cone has no fixed direction."""

@@ -14,34 +14,22 @@ from compare.diagnosis.probes import SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 
-LEAST_DEVIATION = 1e-7
-"""Smallest reported relative deviation of a force or its direction."""
-
-FALLS = 0.3
-"""Order in the step above which a quantity counts as decreasing with it."""
-
-RESTS = 1e-9
-"""Ratio of speed to sliding speed below which a block is at rest."""
+LEAST_DEVIATION = 1e-7  # smallest reported relative deviation of a force or its direction
+FALLS = 0.3  # order in the step above which a quantity counts as decreasing with it
+RESTS = 1e-9  # ratio of speed to sliding speed below which a block is at rest
 
 LEAST_LAG = 1e-6
 """Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
 
-STEPS = (0.2, 3.0)
-"""Range of lags, in steps, that are reported in steps."""
-
-
-LEAST_SHARE = 1e-6
-"""Smallest reported relative deviation of a distance, or of force and moment on a disc."""
+STEPS = (0.2, 3.0)  # range of lags, in steps, that are reported in steps
+LEAST_SHARE = 1e-6  # smallest reported relative deviation of a distance, or of force and moment on a disc
 
 ALIKE = 0.1
 """Largest spread of the forces of the support that a wrong mass explains, and deviation of a force that another
 explains, relative to the larger deviation."""
 
-SAME_DELAY = 0.2
-"""Largest relative difference of the delays of two late releases."""
-
-CHATTERS = 3.0
-"""Least ratio of the velocity of a block that chatters to its creep."""
+SAME_DELAY = 0.2  # largest relative difference of the delays of two late releases
+CHATTERS = 3.0  # least ratio of the velocity of a block that chatters to its creep
 
 MOTION, MASS = "Wrong motion", "Wrong mass"
 """Beginnings of the verdict of an engine whose friction may be right."""
@@ -123,7 +111,6 @@ def _cause(law: Friction) -> str:
 
 
 def _deviations(law: Friction) -> list[str]:
-    """Return descriptions of the deviations of a force from its own law."""
     found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION, law.misfit)
     if abs(law.strength - 1.0) > least:

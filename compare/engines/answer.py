@@ -11,14 +11,12 @@ from numpy.typing import ArrayLike
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase, Trajectory
 
-PHASES = ("slip", "pivot", "stick")
-"""Kinds of phases."""
+PHASES = ("slip", "pivot", "stick")  # kinds of phases
 
 TIME_ROUNDING = 1e-12
 """Largest relative difference between times of one grid that were summed in different order."""
 
-REAL = "fiu"
-"""NumPy's kinds of real numbers, without strings and Booleans."""
+REAL = "fiu"  # NumPy's kinds of real numbers, without strings and Booleans
 
 
 class BadTrajectoryError(RuntimeError):
@@ -55,7 +53,6 @@ def checked(trajectory: object, system: System, times: ArrayLike) -> Trajectory:
 
 
 def _check_phases(phases: Sequence[object], times: FloatArray, components: int) -> None:
-    """Raise ``BadTrajectoryError`` unless the phases are in order and within ``times``."""
     slack = TIME_ROUNDING * np.max(np.abs(times))
     earliest, latest = times[0] - slack, times[-1] + slack
     for i, phase in enumerate(phases):
@@ -75,7 +72,6 @@ def _check_phases(phases: Sequence[object], times: FloatArray, components: int) 
 
 
 def _is_real(value: object, shape: tuple[int, ...]) -> bool:
-    """Return whether ``value`` consists of finite real numbers in this shape."""
     array = np.asarray(value)
     return array.dtype.kind in REAL and array.shape == shape and bool(np.isfinite(array).all())
 

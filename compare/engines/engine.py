@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -53,20 +53,6 @@ class Simulate(Protocol):
         self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
     ) -> Trajectory:
         """Return the motion of ``system`` from ``initial_state`` (at ``times[0]``) at all ``times``."""
-        ...
-
-
-class SimulateMany(Protocol):
-    """Optional second function of an engine: many motions in one call, at a tolerance as in ``Simulate``."""
-
-    def __call__(
-        self,
-        systems: list[System],
-        initial_states: list[ArrayLike],
-        times: list[ArrayLike],
-        **accuracy: float,
-    ) -> Sequence[Trajectory]:
-        """Return the motion of each system from its initial state at its times; the lists are equally long."""
         ...
 
 
@@ -138,7 +124,6 @@ class Engine:
     seed: int | None = None
 
     def __post_init__(self) -> None:
-        """Normalise the fields; raise ``ValueError`` if one is invalid."""
         for name in ("name", "version", "about"):
             object.__setattr__(self, name, one_line(getattr(self, name)))
         object.__setattr__(self, "kinds", tuple(self.kinds))
@@ -189,7 +174,8 @@ class Engine:
     ) -> list[Trajectory]:
         """Return the motion of each system from its initial state at its times.
 
-        If ``function`` has an attribute ``simulate_many`` (see ``SimulateMany``), one call computes all motions.
+        If ``function`` has an attribute ``simulate_many``, one call computes all motions. It takes equally long lists
+        of systems, initial states and times, and ``tolerance`` or ``step``, and returns a sequence of trajectories.
 
         Raises
         ------
@@ -198,7 +184,7 @@ class Engine:
 
         """
         motions = list(motions)
-        at_once: SimulateMany | None = getattr(self._asked, "simulate_many", None)
+        at_once = getattr(self._asked, "simulate_many", None)
         if at_once is None:
             return [self.simulate(*motion, tolerance=tolerance) for motion in motions]
         for motion in motions:
@@ -219,7 +205,6 @@ class Engine:
         return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
-        """Raise ``UnsupportedSystemError`` for a motion that the engine does not simulate."""
         if not self.simulates(system):
             raise UnsupportedSystemError(self.lacking([system]))
         if not Support.of(system).linear:

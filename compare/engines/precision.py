@@ -17,11 +17,8 @@ import numpy as np
 from reference_model.systems import ANGLE, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-LEAST_PRECISE = 1e-3
-"""Largest precision that an engine may declare; coarser states are hardly comparable."""
-
-OTHER_SIZE = 0.25
-"""Amplitude of the noise at every second tolerance, relative to that at the others."""
+LEAST_PRECISE = 1e-3  # largest precision that an engine may declare; coarser states are hardly comparable
+OTHER_SIZE = 0.25  # amplitude of the noise at every second tolerance, relative to that at the others
 
 
 def blurred_start(system: System, state: FloatArray, precision: float, tolerance: float) -> FloatArray:

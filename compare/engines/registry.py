@@ -35,7 +35,7 @@ class ByName:
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """The function's attribute of this name, or None; see ``compare.engines.engine.SimulateMany``."""
+        """The function's attribute of this name, or None; see ``Engine.simulate_many``."""
         return getattr(self.imported, "simulate_many", None)
 
     @property

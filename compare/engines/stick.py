@@ -19,11 +19,8 @@ from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
-PER_PERIOD = 64
-"""Samples per period of the support or per revolution, whichever is shorter."""
-
-MOST = 20_000
-"""Largest number of samples before refinement."""
+PER_PERIOD = 64  # samples per period of the support or per revolution, whichever is shorter
+MOST = 20_000  # largest number of samples before refinement
 
 REST = 1e-2
 """Slip, relative to the largest speed of the motion, below which a body may stick; refinement lowers it."""
@@ -34,9 +31,7 @@ CREEP = 3e-4
 It is proportional to the tolerance, as the creep of a regularised law should be, up to ``REST``.
 """
 
-CLOSER = 64
-"""Factor between the sample densities, and between the levels of slip, of successive refinements."""
-
+CLOSER = 64  # factor between the sample densities, and between the levels of slip, of successive refinements
 LOOKS = 3
 
 LEAST = 1e-7
@@ -46,14 +41,9 @@ It is proportional to the root of the tolerance. The error of extrapolation ther
 is part of the error estimate.
 """
 
-ABOVE_NOISE = 32.0
-"""Least slip for extrapolation as a multiple of the engine's precision, if that is larger."""
-
-NOISE = 0.1
-"""Relative change of slip from sample to sample above which it is rounding noise instead of creep."""
-
-ABOVE_CREEP = 8.0
-"""Least slip for extrapolation as a multiple of the creep in the stick phase."""
+ABOVE_NOISE = 32.0  # least slip for extrapolation as a multiple of the engine's precision, if that is larger
+NOISE = 0.1  # relative change of slip from sample to sample above which it is rounding noise instead of creep
+ABOVE_CREEP = 8.0  # least slip for extrapolation as a multiple of the creep in the stick phase
 
 QUIET, QUIETER = 0.1, 0.5
 """Share of a slow span that is certainly stick: at first, when the span may contain slow slip, and later."""
@@ -64,24 +54,14 @@ GROWS = 1.2
 BELOW_REST = 16.0
 """``REST`` over the largest growing creep; above that, the end of creep looks like the start of slip."""
 
-FLANK = 16.0
-"""Ratio of the largest to the least slip for extrapolation."""
+FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 
 
 class StatesOnly(Trajectory):
-    """A trajectory that computes its stick phases from states on first use.
+    """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
-    Parameters
-    ----------
-    told : Trajectory
-        The trajectory that the engine returned.
-    ask : callable
-        ``ask(times) -> states`` of the same motion, at times from ``told.times[0]`` on.
-    coarseness : float
-        The engine's tolerance as a multiple of 1e-9.
-    precision : float
-        The engine's precision, see ``compare.engines.precision``.
-
+    ``ask`` returns the states of the same motion at any times from ``told.times[0]`` on. ``coarseness`` is the
+    engine's tolerance as a multiple of 1e-9; for ``precision``, see ``compare.engines.precision``.
     """
 
     def __init__(
@@ -300,7 +280,6 @@ class _Samples:
         return float(fitted(0.0)) + nearest, nearest
 
     def _state(self, time: float) -> FloatArray:
-        """Return the state of the nearest sample."""
         return np.asarray(self.states[int(np.argmin(np.abs(self.times - time)))])
 
 

@@ -103,7 +103,6 @@ def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
 def _asked(
     system: System, state: ArrayLike, times: ArrayLike, units: tuple[int, int, int]
 ) -> tuple[System, FloatArray, FloatArray]:
-    """Return system, state and times in other units."""
     sizes = {
         name: float(np.dot(powers, units)) for name, powers in DIMENSIONS.items() if hasattr(system, name)
     }

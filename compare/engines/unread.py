@@ -16,8 +16,7 @@ NONLINEAR = {"hardening": ("hardening",), "stop_stiffness": ("stop_stiffness", "
 An engine may read the stiffness of a stop only during contact, so reading the gap is sufficient.
 """
 
-SHORT = 1e-3
-"""Duration of the motion in s; engines read all parameters before or in the first step."""
+SHORT = 1e-3  # duration of the motion in s; engines read all parameters before or in the first step
 
 
 def unread(function: Callable[..., Any], system: System, start: object, **accuracy: float) -> tuple[str, ...]:

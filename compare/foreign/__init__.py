@@ -26,43 +26,31 @@ Quantity = NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A motion and the quantity that is compared.
-
-    Parameters
-    ----------
-    title : str
-        Description of the motion.
-    sentence : str
-        Claim about the motion.
-    kind : str
-        Source of ``exact``, one of ``compare.claims.claim.KINDS``.
-    system : PinOnDisc or DiscOnDisc
-        The parameters.
-    start : tuple of float
-        State at the first of ``times``.
-    times : array of shape (n,)
-        Times in s.
-    quantity : callable
-        Returns the compared quantity of a trajectory, complex numbers in m.
-    exact : callable
-        Returns the exact quantity.
-    resolution : float
-        A tenth of the change of the quantity due to another friction law or to a release, in m.
-    equation : str
-        Equation of the paper that gives ``exact``, or "".
-
-    """
+    """A motion and the quantity that is compared, complex numbers in m."""
 
     title: str
-    sentence: str
-    kind: Kind
+    sentence: str  # of the claim
     system: System
     start: tuple[float, ...]
     times: FloatArray
     quantity: Callable[[Trajectory], Quantity]
-    exact: Callable[[], Quantity]
-    resolution: float
-    equation: str = ""
+    resolution: float  # a tenth of the change due to another friction law or to a release
+    formula: Callable[[], Quantity] | None = None  # of the exact quantity; None for that of the reference
+    equation: str = ""  # of the paper, for ``formula``
+
+    @property
+    def kind(self) -> Kind:
+        """Source of the exact quantity."""
+        return "formula" if self.formula else "trajectory"
+
+    def exact(self) -> Quantity:
+        """Return the exact quantity."""
+        return self.formula() if self.formula else _simulated(self)
+
+
+@functools.cache
+def _simulated(case: Case) -> Quantity:
+    return case.quantity(simulate(case.system, case.start, case.times, tolerance=TRUTH))
 
 
 def _places(trajectory: Trajectory) -> Quantity:
@@ -75,15 +63,8 @@ def _places(trajectory: Trajectory) -> Quantity:
 
 
 def _radius(trajectory: Trajectory) -> Quantity:
-    """Return the mean distance from the axis over the last fifth of the time."""
     late = trajectory.times >= 0.8 * trajectory.times[-1]
     return np.array([np.mean(np.abs(_places(trajectory)[late]))], dtype=complex)
-
-
-@functools.cache
-def _exact_places(case: str) -> Quantity:
-    it = CASES[case]
-    return _places(simulate(it.system, it.start, it.times, tolerance=TRUTH))
 
 
 _CENTRED = replace(FIG5, offset=0.0)
@@ -107,69 +88,59 @@ CASES = {
     "slip": Case(
         title="a pin that slides",
         sentence="A pin that slides follows Coulomb's law",
-        kind="trajectory",
         system=FIG5,
         start=_ON_THE_WHIRL,
         times=_PIN_TIMES,
         quantity=_places,
-        exact=functools.partial(_exact_places, "slip"),
         resolution=0.025,
     ),
     "stick-slip": Case(
         title="a pin that sticks nine times on its way to the whirl",
         sentence="A pin that sticks nine times follows Coulomb's law",
-        kind="trajectory",
         system=FIG5,
         start=FIG5_STARTS["whirl"],
         times=_PIN_TIMES,
         quantity=_places,
-        exact=functools.partial(_exact_places, "stick-slip"),
         resolution=0.08,
     ),
     "whirl": Case(
         title="radius of the whirl without offset, (11)",
         sentence="The whirl's radius is that of (11)",
-        kind="formula",
         system=_CENTRED,
         start=_ON_THE_WHIRL,
         times=_PIN_TIMES,
         quantity=_radius,
-        exact=_exact_radius,
+        formula=_exact_radius,
         resolution=9e-3,
         equation="(11)",
     ),
     "stuck": Case(
         title="a pin that sticks all the time",
         sentence="A pin that sticks turns with the disc",
-        kind="formula",
         system=_CENTRED,
         start=_ON_THE_DISC,
         times=_STUCK_TIMES,
         quantity=_places,
-        exact=_exact_stuck,
+        formula=_exact_stuck,
         resolution=5e-3,
         equation="(6)",
     ),
     "release": Case(
         title="a pin that sticks for 1.5 s and is then released",
         sentence="The release of a pin follows Coulomb's law",
-        kind="trajectory",
         system=FIG5,
         start=_UNTIL_RELEASE,
         times=np.linspace(0.0, 4.0, 41),
         quantity=_places,
-        exact=functools.partial(_exact_places, "release"),
         resolution=3.5e-3,
     ),
     "disc": Case(
         title="a disc on six points",
         sentence="A disc on six points follows Coulomb's law",
-        kind="trajectory",
         system=replace(FIG11, contact_points=6),
         start=(0.05, 0.0, 0.0, 0.0, 0.05, 1.3),
         times=np.linspace(0.0, 50.0, 51),
         quantity=_places,
-        exact=functools.partial(_exact_places, "disc"),
         resolution=2.5e-3,
     ),
 }
@@ -191,38 +162,24 @@ previous run, whose tolerance is larger by ``compare.claims.error_estimates.COAR
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
 """Indices of ``COLUMNS`` in a recorded run."""
 
-DIGITS = 4
-"""Number of digits in the files."""
+DIGITS = 4  # number of digits in the files
 
 
 @dataclass(frozen=True, eq=False)
 class Recording:
     """One setting of an engine.
 
-    Parameters
-    ----------
-    engine, version, recorded, platform : str
-        Name, version, date and platform of the recording.
-    setting : str
-        Name of the setting; "" for one of our own engines.
-    says : str
-        Description of the setting.
-    runs : mapping
-        Arrays of shape (n, len(COLUMNS)) by the names of ``compare.foreign.CASES``, from the largest tolerance to the
-        smallest, for each supported case.
-    probes : mapping
-        Parts ``compare.diagnosis.findings.PROBES`` as JSON, which identify the friction law; empty if not recorded.
-
+    ``runs`` are arrays of shape (n, len(COLUMNS)) for each supported case, the largest tolerance first.
     """
 
     engine: str
     version: str
-    recorded: str
+    recorded: str  # date
     platform: str
-    setting: str
-    says: str
+    setting: str  # name; "" for one of our own engines
+    says: str  # description of the setting
     runs: Mapping[str, FloatArray]
-    probes: Mapping[str, Any]
+    probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
 
     @property
     def name(self) -> str:
@@ -233,11 +190,7 @@ class Recording:
 def recordings() -> tuple[Recording, ...]:
     """Return all recordings, our own engines first, and the reference before the others.
 
-    Raises
-    ------
-    ValueError
-        If the columns of a file differ from ``COLUMNS``.
-
+    Raises ``ValueError`` if the columns of a file differ from ``COLUMNS``.
     """
     found: list[Recording] = []
     for path in sorted(FOLDER.glob("*.json")):

@@ -23,8 +23,7 @@ from compare.sweep.files import Files, StoreError, store_errors
 from compare.sweep.plan import Numbers
 from compare.sweep.quantities import RESULTS
 
-DESCRIPTION = "zarr.json"
-"""File name of the description of a group or an array."""
+DESCRIPTION = "zarr.json"  # file name of the description of a group or an array
 
 FORMAT: dict[str, Any] = {"zarr_format": 3, "consolidated": False}
 """Arguments for Zarr; consolidated metadata would become outdated when a group grows."""
@@ -170,7 +169,6 @@ def _opened(group: Group, name: str) -> Any:
 
 
 def _seal(described: Mapping[str, bytes]) -> bytes:
-    """Return the sealed description of a group whose arrays are ``described``."""
     return group_content({CHECKSUM: checksum({name: digest_of(one) for name, one in described.items()})})
 
 

@@ -82,7 +82,6 @@ class Uncertain:
     numbers: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        """Raise ``ValueError`` for an invalid distribution."""
         kind = KINDS[one_of("distribution", self.kind, KINDS)]
         if len(self.numbers) != len(kind.arguments) or not kind.possible(*self.numbers):
             raise ValueError(f"{self}: {self.kind} takes ({', '.join(kind.arguments)}) with {kind.allowed}")

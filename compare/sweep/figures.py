@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -41,8 +42,7 @@ COLOURS = {
 MOST_PIXELS = 2000
 """Largest number of pixels along each axis of an image; for more points, every second or third is shown."""
 
-MOST_DOTS = 20_000
-"""Largest number of random starts in a figure."""
+MOST_DOTS = 20_000  # largest number of random starts in a figure
 
 MOST_DRAWS = 1 << 20
 """Largest number of draws in the distribution of a radius; the first draws are a random sample."""
@@ -71,17 +71,15 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
 
 def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
     """Return the figures of a sweep by name; ``theory`` contains the formulas' results for maps and continuations."""
-    if isinstance(plan, Basin):
-        return {"basin": basin(plan, result)}
-    if isinstance(plan, RandomBasin):
-        return {"basin": random_basin(plan, result)}
-    if isinstance(plan, Uncertainty):
-        return {"uncertainty": uncertainty(plan, result)}
-    assert theory is not None
-    if isinstance(plan, Continuation):
-        return {"continuation": continuation(plan, result, theory)}
-    assert isinstance(plan, Map)
-    return {"map": parameter_map(plan, result, theory)}
+    draw: dict[type[Plan], Callable[..., Figure]] = {
+        Basin: basin,
+        RandomBasin: random_basin,
+        Map: parameter_map,
+        Uncertainty: uncertainty,
+        Continuation: continuation,
+    }
+    drawn = draw[type(plan)](plan, result, *([] if theory is None else [theory]))
+    return {plan.kind.removeprefix("random "): drawn}
 
 
 def basin(plan: Basin, result: xr.Dataset) -> Figure:
@@ -128,17 +126,25 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
     from matplotlib.patches import Patch
 
     handles = []
-    for end in EndState:
-        if result["count"][end] == 0:
-            continue
-        label = end.name.lower().replace("_", " ")
-        if "share" in result and result["share"].ndim == 1:
-            share, low, high = (
-                100.0 * float(result[name].values[end]) for name in ("share", "share_low", "share_high")
-            )
-            label += f": {share:.3g} % ({low:.3g} to {high:.3g})"
+    for end, label, percent in shares_of(result):
+        if percent:
+            label += ": {:.3g} % ({:.3g} to {:.3g})".format(*percent)
         handles.append(Patch(facecolor=COLOURS[end], edgecolor=BLACK, linewidth=0.5, label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9.0)
+
+
+def shares_of(result: xr.Dataset) -> Iterator[tuple[EndState, str, list[float]]]:
+    """Yield the ends that occur, in words, with share and bounds in %; without them if the result has none."""
+    names = ("share", "share_low", "share_high")
+    there = "share" in result and result["share"].ndim == 1
+    for end in EndState:
+        if result["count"][end] > 0:
+            yield end, in_words(end), [100.0 * float(result[name][end]) for name in names] if there else []
+
+
+def in_words(end: int) -> str:
+    """Return the name of an end state."""
+    return EndState(end).name.lower().replace("_", " ")
 
 
 def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:

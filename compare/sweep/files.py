@@ -146,8 +146,7 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
 
 # --- A small finished store as one ZIP archive, which Zarr opens directly
 
-PARTIAL = ".partial"
-"""Suffix of files that Zarr was writing when its process was killed."""
+PARTIAL = ".partial"  # suffix of files that Zarr was writing when its process was killed
 
 
 def pack(folder: Path, archive: Path) -> None:

@@ -20,8 +20,7 @@ from compare.sweep.quantities import Axis, components, parameters
 from compare.sweep.refinement import refined
 from reference_model.systems import FloatArray, System
 
-Numbers: TypeAlias = range | IntArray
-"""Numbers of trajectories."""
+Numbers: TypeAlias = range | IntArray  # numbers of trajectories
 
 Rounds: TypeAlias = Generator[Numbers, Ends, Any]
 """Yields the numbers of a round and receives the ends of these trajectories; a refined basin returns its grid."""
@@ -29,8 +28,7 @@ Rounds: TypeAlias = Generator[Numbers, Ends, Any]
 Trajectories: TypeAlias = tuple[FloatArray, dict[str, FloatArray]]
 """Initial states of shape (n, 4 or 6) and the swept parameters, each of shape (n,)."""
 
-BASES = 2
-"""Number of independent samples for the sensitivities."""
+BASES = 2  # number of independent samples for the sensitivities
 
 
 @dataclass(frozen=True, kw_only=True)

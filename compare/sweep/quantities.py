@@ -94,7 +94,6 @@ class Axis:
     points: int
 
     def __post_init__(self) -> None:
-        """Raise ``ValueError`` for an invalid range or number of points."""
         if not self.low < self.high:
             raise ValueError(
                 f"axis {self.name} from {self.low:g} to {self.high:g}: the lower end must be less than the upper end"

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from compare.sweep.compute.run import CHECK, RESULT
-from compare.sweep.figures import MOST_DRAWS
+from compare.sweep.figures import MOST_DRAWS, in_words, shares_of
 from compare.sweep.plan import Continuation, Uncertainty
 from compare.sweep.quantities import units
 from compare.sweep.store import SweepStore
@@ -26,19 +26,15 @@ def summary(store: SweepStore) -> Iterator[str]:
         yield f"{np.count_nonzero(result['simulated'].values)} of {total} starts simulated"
     else:
         yield f"{total} {'draws' if isinstance(store.plan, Uncertainty) else 'trajectories'}"
-    for end in EndState:
-        count = int(result["count"][end])
-        if count == 0:
-            continue
-        line = f"  {end.name.lower().replace('_', ' '):14}"
-        if "share" in result and result["share"].ndim == 1:
-            share, low, high = (
-                100.0 * float(result[name][end]) for name in ("share", "share_low", "share_high")
-            )
-            yield f"{line} {share:8.4f} %, between {low:.4f} and {high:.4f} %"
-        else:
-            yield f"{line} {count}"
-    if "share" in result and result["share"].ndim == 1:
+    percent: list[float] = []
+    for end, words, percent in shares_of(result):
+        shown = (
+            "{:8.4f} %, between {:.4f} and {:.4f} %".format(*percent)
+            if percent
+            else result["count"].values[end]
+        )
+        yield f"  {words:14} {shown}"
+    if percent:
         yield f"  bounds: {result['share_low'].attrs['long_name']}"
     if isinstance(store.plan, Uncertainty):
         yield from _uncertainty(result)
@@ -86,21 +82,19 @@ def _uncertainty(result: xr.Dataset) -> Iterator[str]:
 
 
 def _continuation(plan: Continuation, result: xr.Dataset) -> Iterator[str]:
-    """Yield the range of each branch, with radius and share at both ends."""
     name, unit = plan.x.name, units(plan.system)[plan.x.name]
     for j, end in enumerate(result["motion_end"].values):
         share, largest = (result[f"motion_{which}"].values[j] for which in ("share", "largest"))
         first, last = np.flatnonzero(np.isfinite(share))[[0, -1]]
         low, high = plan.x.values[[first, last]]
         yield (
-            f"  {EndState(end).name.lower().replace('_', ' '):14} {name} from {low:.4g} to {high:.4g} {unit}: "
+            f"  {in_words(end):14} {name} from {low:.4g} to {high:.4g} {unit}: "
             f"largest radius {largest[first]:.4g} to {largest[last]:.4g} m, "
             f"share {100.0 * share[first]:.2f} to {100.0 * share[last]:.2f} %"
         )
 
 
 def _checked(store: SweepStore, check: xr.Dataset) -> str:
-    """Return the line that compares a random sample with the plain reference."""
     velocities = COLUMNS[type(store.plan.system)].index(("vx", "m/s"))
     difference = check["difference"].values
     place = np.hypot(difference[:, 0], difference[:, 1])

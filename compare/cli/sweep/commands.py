@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from reference_model.systems import System
 
 
-MOST_POINTS = 100_000_000
-"""Largest number of points of a grid."""
+MOST_POINTS = 100_000_000  # largest number of points of a grid
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -142,9 +141,7 @@ def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis =
         common = request.common()
         axes = _axes("parameter", parameters(common["system"]), (x, y), MAPS[request.system])
         _check_given_once({"--set": request.set_names()}, "--x or --y", [axis.name for axis in axes])
-        for axis in axes:
-            for end in (axis.low, axis.high):
-                changed(common["system"], [f"{axis.name}={end!r}"])
+        _check_parameters(common["system"], axes)
         names = components(common["system"])
         states = tuple(_start(request.system, start, names) for start in starts or [""])
     return request.run(Map(**common, starts=states, x=axes[0], y=axes[1]))
@@ -207,8 +204,7 @@ def sweep_continuation(
         common = request.common()
         axis = Axis.parse(x or ALONG[request.system], "parameter", parameters(common["system"]))
         _check_given_once({"--set": request.set_names()}, "--x", [axis.name])
-        for end in (axis.low, axis.high):
-            changed(common["system"], [f"{axis.name}={end!r}"])
+        _check_parameters(common["system"], [axis])
         varied = tuple(Uncertain.parse(text, common["system"]) for text in vary or SCATTERED[request.system])
         names = [one.name for one in varied]
         _check_varied(names)
@@ -272,8 +268,13 @@ def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequen
                 raise ValueError(f"{option} {name}: {by} already varies {name}; leave one of them out")
 
 
+def _check_parameters(system: System, axes: Sequence[Axis]) -> None:
+    for axis in axes:
+        for end in (axis.low, axis.high):
+            changed(system, [f"{axis.name}={end!r}"])
+
+
 def _check_states(system: System, state: Sequence[float], names: Sequence[str], axes: Sequence[Axis]) -> None:
-    """Raise ``ValueError`` if an initial state at an end of an axis is invalid."""
     from reference_model.systems import checked_state
 
     for axis in axes:
@@ -294,8 +295,7 @@ def _check_varied(names: Sequence[str]) -> None:
 
 # --- Smallest shock that leads to the whirl
 
-AGREEMENT = 1e-6
-"""Largest relative difference between the orbit's result and the bisection."""
+AGREEMENT = 1e-6  # largest relative difference between the orbit's result and the bisection
 
 
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:

@@ -27,14 +27,9 @@ if TYPE_CHECKING:
     from compare.sweep.plan import Plan
     from compare.sweep.store import SweepStore
 
-STORE = "sweep.zarr"
-"""File name of the store."""
-
-CHUNK = 32768
-"""Default number of trajectories per chunk."""
-
-MOST_UNDECIDED = 0.5
-"""Largest share of undecided trajectories for exit status 0."""
+STORE = "sweep.zarr"  # file name of the store
+CHUNK = 32768  # default number of trajectories per chunk
+MOST_UNDECIDED = 0.5  # largest share of undecided trajectories for exit status 0
 
 
 def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, resume: bool) -> int:
@@ -95,7 +90,6 @@ def _reporting_store_errors() -> Iterator[None]:
 
 
 def _check_writable(folder: Files) -> None:
-    """Raise ``ValueError`` or ``StoreError`` if the folder or URL is not writable."""
     from compare.sweep.files import is_remote
 
     if is_remote(folder.url):
@@ -121,7 +115,6 @@ def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -
 
 
 def _check_same(store: SweepStore, plan: Plan, chunk: int | None, resume: bool) -> None:
-    """Raise ``ValueError`` if the store belongs to another plan or cannot be resumed."""
     from compare.run.provenance import stamp
 
     if store.plan != plan:
@@ -183,12 +176,11 @@ def redraw(place: str) -> int:
     with _reporting_store_errors():
         folder = Files.at(place)
         store = SweepStore.open(folder.below(STORE))
-    try:
-        with _reporting_store_errors():
+        try:
             _check_finished(store)
             return finish(store, folder)
-    finally:
-        store.tidy()
+        finally:
+            store.tidy()
 
 
 def _check_finished(store: SweepStore) -> None:

@@ -32,8 +32,9 @@ class _World(TopDown):
 
     turns = 0
 
-    def build(self, state: FloatArray) -> None:
-        system, self.world = self.system, Box2D.b2World(gravity=(0.0, 0.0), doSleep=self.shipped)
+    def build(self, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.shipped, system = shipped, self.system
+        self.world = Box2D.b2World(gravity=(0.0, 0.0), doSleep=shipped)
         disc = isinstance(system, DiscOnDisc)
         places, speeds = np.split(state, 2)
         self.body = self.world.CreateDynamicBody(
@@ -75,7 +76,7 @@ class _World(TopDown):
             self.turns += turn
 
 
-simulate_with_friction_joints = Setting(
+friction_joint = Setting(
     "friction joint",
     "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
@@ -83,10 +84,9 @@ simulate_with_friction_joints = Setting(
     finest=2e-3,
     precision=1e-6,
 )
-simulate_as_shipped = replace(
-    simulate_with_friction_joints,
+shipped = replace(
+    friction_joint,
     name="as shipped",
     says="by friction joints in single precision, with the recommended iterations; slow bodies fall asleep.",
     options={"shipped": True},
 )
-SETTINGS = (simulate_with_friction_joints, simulate_as_shipped)

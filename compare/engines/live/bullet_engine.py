@@ -31,33 +31,28 @@ import pybullet
 from compare.engines.live.setting import (
     Model,
     Setting,
-    contact_arms,
     inertia_of,
     mobility,
     our_friction,
     shaft_torque,
     support_force,
 )
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import DiscOnDisc, FloatArray
 
 ITERATIONS = 50
 """Solver iterations, the default. Ten change discs that stick on six points by less than 0.1 % of their error."""
-
-MOST_FEET = 100
-"""Largest number of feet; PyBullet allows 128 links per body."""
 
 
 class _World(Model):
     """A Bullet world with one body, and with a plate unless friction is our force."""
 
     engine = "Bullet"
+    most_points = 100  # PyBullet allows 128 links per body
 
-    def __init__(self, system: System, state: FloatArray, _: float, friction: str) -> None:
-        self.system, self.state = system, state
-        self.arms = contact_arms("Bullet", system, MOST_FEET)
+    def build(self, state: FloatArray, tolerance: float, *, friction: str) -> None:
+        self.state, system = state, self.system
         self.method = f"PyBullet {version('pybullet')}, semi-implicit Euler, {friction}"
-        disc = isinstance(system, DiscOnDisc)
-        self.joints = range(3 if disc else 2)
+        self.joints = range(self.half)
         self.load = system.friction_force / len(self.arms)
         self.native = friction != "our force"
         self.client = pybullet.connect(pybullet.DIRECT)
@@ -73,7 +68,7 @@ class _World(Model):
         # The feet take half of the largest mass that mass and inertia allow.
         feet = self.arms if self.native else []
         mass, inertia = system.mass, inertia_of(system)
-        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if disc else mass) / 2.0 / len(self.arms)
+        foot = min(mass, inertia / abs(self.arms[0]) ** 2 if self.half > 2 else mass) / 2.0 / len(self.arms)
         carriage = mass - foot * len(feet), inertia - foot * sum(abs(arm) ** 2 for arm in feet)
         weightless = [(0.0, 0.0)] * (len(self.joints) - 1)
         sphere = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=1.0, physicsClientId=self.client)
@@ -143,15 +138,12 @@ class _World(Model):
             )
             forces = self._forces(*positions, *speeds)
         self.state = np.array([*positions, *speeds])
-        self.steps += number
-        self.evaluations += number
         return self.state
 
     def _forces(self, *state: float) -> list[float]:
         """Return the generalised forces of support, shaft and, unless contact is native, friction."""
         system = self.system
-        half = len(state) // 2
-        z, v = complex(*state[:2]), complex(*state[half : half + 2])
+        z, v = complex(*state[:2]), complex(*state[self.half : self.half + 2])
         force = support_force(system, z, v)
         forces = [force.real, force.imag]
         if isinstance(system, DiscOnDisc):
@@ -162,24 +154,24 @@ class _World(Model):
         return forces
 
 
-simulate_with_cone = Setting(
+cone = Setting(
     "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, linear=False
 )
-simulate_with_box = Setting(
+box = Setting(
     "box",
     "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
     _World,
     {"friction": "box"},
     linear=False,
 )
-simulate_as_shipped = Setting(
+shipped = Setting(
     "as shipped",
     "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
     _World,
     {"friction": "as shipped"},
     linear=False,
 )
-simulate_with_our_force = Setting(
+our_force = Setting(
     "our force",
     "with the force −μN·v/max(|v|, ε) in place of contact, set before each step, of order 1. ε is the change of slip "
     "by friction in a step.",
@@ -187,4 +179,3 @@ simulate_with_our_force = Setting(
     {"friction": "our force"},
     linear=False,
 )
-SETTINGS = (simulate_with_cone, simulate_with_box, simulate_as_shipped, simulate_with_our_force)

@@ -30,8 +30,9 @@ class _Space(TopDown):
     engine = "Chipmunk"
     method = f"pymunk {pymunk.version}, semi-implicit Euler, pivot joints with a greatest force"
 
-    def build(self, state: FloatArray) -> None:
-        system, self.space = self.system, pymunk.Space()
+    def build(self, state: FloatArray, tolerance: float, *, shipped: bool = False) -> None:
+        self.shipped, system = shipped, self.system
+        self.space = pymunk.Space()
         if not self.shipped:
             self.space.iterations = ITERATIONS
         disc = isinstance(system, DiscOnDisc)
@@ -68,17 +69,16 @@ class _Space(TopDown):
         pymunk.Body.update_velocity(body, gravity, damping, h)
 
 
-simulate_with_pivots = Setting(
+pivot = Setting(
     "pivot joint",
     "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
     linear=False,
 )
-simulate_as_shipped = Setting(
+shipped = Setting(
     "as shipped",
     "by pivot joints with a force limit, with ten iterations, its default, and forces set before each step.",
     _Space,
     {"shipped": True},
     linear=False,
 )
-SETTINGS = (simulate_with_pivots, simulate_as_shipped)

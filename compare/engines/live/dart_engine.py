@@ -25,18 +25,13 @@ from typing import Any
 import dartpy
 import numpy as np
 
-from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, mobility, our_friction
+from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
 SOLVER_TOLERANCE = 1e-10
-
-SHARE = 0.01
-"""Share of mass and inertia in the feet."""
-
+SHARE = 0.01  # share of mass and inertia in the feet
 SHIPPED = "as shipped"
-
-PLATE = 1e4
-"""Half the width of the plate in m."""
+PLATE = 1e4  # half the width of the plate in m
 
 
 class _Model(Model):
@@ -44,9 +39,8 @@ class _Model(Model):
 
     engine = "DART"
 
-    def __init__(self, system: System, state: FloatArray, _: float, solver: str = "") -> None:
-        self.system, self.native, self.half = system, bool(solver), len(state) // 2
-        self.arms = contact_arms("DART", system)
+    def build(self, state: FloatArray, tolerance: float, *, solver: str = "") -> None:
+        self.native, system = bool(solver), self.system
         self.world, self.joint = _world(system, self.arms, solver)
         self.joint.setPositions([*state[: self.half], 0.0][:3])
         self.joint.setVelocities([*state[self.half :], 0.0][:3])
@@ -66,8 +60,6 @@ class _Model(Model):
                 forces[: self.half] = [a + b for a, b in zip(forces, friction, strict=False)]
             joint.setCommands(forces)
             self.world.step(False)
-        self.steps += number
-        self.evaluations += number
         return self._state()
 
     def _state(self) -> FloatArray:
@@ -151,33 +143,19 @@ def _touching(body: Any, shape: Any, height: float) -> None:
     surface.setRestitutionCoeff(0.0)
 
 
-simulate_nsgs = Setting("NSGS", "with the cone, by nonsmooth Gauss–Seidel.", _Model, {"solver": "nsgs"})
-simulate_fbf = Setting(
-    "FBF", "with the cone, by forward-backward-forward splitting.", _Model, {"solver": "fbf"}
-)
-simulate_dantzig = Setting(
-    "Dantzig", "with a box in place of the cone, by pivoting.", _Model, {"solver": "dantzig"}
-)
-simulate_as_shipped = Setting(
+nsgs = Setting("NSGS", "with the cone, by nonsmooth Gauss–Seidel.", _Model, {"solver": "nsgs"})
+fbf = Setting("FBF", "with the cone, by forward-backward-forward splitting.", _Model, {"solver": "fbf"})
+dantzig = Setting("Dantzig", "with a box in place of the cone, by pivoting.", _Model, {"solver": "dantzig"})
+shipped = Setting(
     "as shipped",
     "with all its defaults: Dantzig's solver, a box, another solver if it fails, and slow bodies fall asleep.",
     _Model,
     {"solver": SHIPPED},
 )
-simulate_pgs = Setting(
-    "PGS", "with a box in place of the cone, by projected Gauss–Seidel.", _Model, {"solver": "pgs"}
-)
-simulate_with_our_force = Setting(
+pgs = Setting("PGS", "with a box in place of the cone, by projected Gauss–Seidel.", _Model, {"solver": "pgs"})
+our_force = Setting(
     "our force",
     "with the force −μN·v/max(|v|, ε) in place of contact, set at the start of each step. ε is the change of slip by "
     "friction in a step; steps would be unstable with half of it.",
     _Model,
-)
-SETTINGS = (
-    simulate_nsgs,
-    simulate_fbf,
-    simulate_dantzig,
-    simulate_pgs,
-    simulate_as_shipped,
-    simulate_with_our_force,
 )

@@ -47,11 +47,8 @@ from reference_model.trajectory import SimulationError
 DEPTH = 1e3
 """Depth of the spheres in the plate in m. SAP lets sliding bodies rise by μ·h times the slip (μ = 1): far less."""
 
-RADIUS = 1e-3
-"""Radius of the spheres in m."""
-
-PLATE = 1e5
-"""Edge length of the plate in m."""
+RADIUS = 1e-3  # radius of the spheres in m
+PLATE = 1e5  # edge length of the plate in m
 
 
 @dataclass(frozen=True)
@@ -182,9 +179,8 @@ class _Motion(Model):
 
     engine = "Drake"
 
-    def __init__(self, system: System, state: FloatArray, tolerance: float, scheme: _Scheme) -> None:
-        contact_arms("Drake", system)  # raises for a ring
-        self.scheme, self.system, self.state, self.tolerance = scheme, system, state, tolerance
+    def build(self, state: FloatArray, tolerance: float, *, scheme: _Scheme) -> None:
+        self.scheme, self.state, self.tolerance = scheme, state, tolerance
         self.plants: dict[float, _Plant] = {}
         self.plant: Any = None
         force = ", our force" if scheme.our_force else ""
@@ -202,28 +198,30 @@ class _Motion(Model):
             self.state = self.plant.advance(h * number, number)
         except RuntimeError as error:
             raise SimulationError(f"Drake failed: {error}") from error
-        self.steps, self.evaluations = self.steps + number, self.evaluations + number
-        if self.scheme.integrator:
-            integrator = self.plant.simulator.get_integrator()
-            self.steps = integrator.get_num_steps_taken()
-            self.evaluations = integrator.get_num_derivative_evaluations() or self.steps
         return self.state
 
+    def work(self, steps: int) -> tuple[int, int]:
+        if self.scheme.integrator and self.plant:
+            integrator = self.plant.simulator.get_integrator()
+            steps = integrator.get_num_steps_taken()
+            return integrator.get_num_derivative_evaluations() or steps, steps
+        return steps, steps
 
-simulate_tamsi = Setting(
+
+tamsi = Setting(
     "TAMSI",
     "with TAMSI and steps of order 1. Drake plans to remove it.",
     _Motion,
     {"scheme": _Scheme("tamsi")},
 )
-simulate_sap = Setting(
+sap = Setting(
     "SAP",
     "with SAP and steps of order 1. It does not improve below a tolerance of 1e-5.",
     _Motion,
     {"scheme": _Scheme("sap", driven=True)},
     finest=2e-3,
 )
-simulate_lagged = Setting(
+lagged = Setting(
     "lagged",
     "with Drake's default, as shipped, and steps of order 1. It does not improve below a tolerance of 1e-5. "
     '"similar" differs from it only if normal forces change, so its results are the same here.',
@@ -231,32 +229,24 @@ simulate_lagged = Setting(
     {"scheme": _Scheme("lagged", driven=True)},
     finest=2e-3,
 )
-simulate_cenic = Setting(
+cenic = Setting(
     "cenic",
     "with the convex solver under error control. Its error falls unevenly, roughly like √tolerance.",
     _Motion,
     {"scheme": _Scheme(integrator="cenic", driven=True)},
     step=None,
 )
-simulate_runge_kutta = Setting(
+runge_kutta = Setting(
     "Runge–Kutta 5",
     "with contact as a force and explicit steps of order 5, which shorten to ε·m/μN in stick.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5")},
     step=None,
 )
-simulate_with_our_force = Setting(
+our_force = Setting(
     "our force",
     "with the force −μN·v/max(|v|, ε) in place of contact, by the same steps of order 5.",
     _Motion,
     {"scheme": _Scheme(integrator="runge_kutta5", our_force=True)},
     step=None,
-)
-SETTINGS = (
-    simulate_tamsi,
-    simulate_sap,
-    simulate_lagged,
-    simulate_cenic,
-    simulate_runge_kutta,
-    simulate_with_our_force,
 )

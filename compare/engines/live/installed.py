@@ -4,39 +4,26 @@ from __future__ import annotations
 
 import functools
 import importlib
-from collections.abc import Mapping
-from dataclasses import dataclass
 from importlib.metadata import version
+from typing import NamedTuple
 
 from compare.engines.engine import Engine
 from compare.engines.registry import ByName, Scheme, register_scheme
 from compare.output.outside_text import one_of
 
-KINDS = ("pin", "points")
-"""Systems that these engines simulate, as in ``compare.engines.KINDS``."""
+KINDS = ("pin", "points")  # systems that these engines simulate, as in ``compare.engines.KINDS``
 
 
-@dataclass(frozen=True)
-class Installed:
-    """An engine provided by a Python package.
+class Installed(NamedTuple):
+    """An engine provided by a Python package, with its official name and the platforms that have wheels.
 
-    Parameters
-    ----------
-    title : str
-        The engine's official name.
-    package : str
-        The package for pip.
-    wheels : str
-        Platforms with wheels.
-    settings : mapping
-        The adapter's function for each setting, by its short name; the first is the default.
-
+    The first of the ``settings`` is the default. The adapter's function has its name, with "_" for "-".
     """
 
     title: str
     package: str
     wheels: str
-    settings: Mapping[str, str]
+    settings: tuple[str, ...]
 
 
 INSTALLED = {
@@ -44,68 +31,43 @@ INSTALLED = {
         "MuJoCo",
         "mujoco",
         "Linux, macOS and Windows",
-        {
-            "ellipse": "simulate_elliptic",
-            "ellipse-rk4": "simulate_elliptic_rk4",
-            "pyramid": "simulate_pyramidal",
-            "shipped": "simulate_as_shipped",
-            "our-force": "simulate_with_our_force",
-        },
+        ("ellipse", "ellipse-rk4", "pyramid", "shipped", "our-force"),
     ),
     "bullet": Installed(
         "Bullet",
         "pybullet",
         "Linux; elsewhere pip compiles it",
-        {
-            "cone": "simulate_with_cone",
-            "box": "simulate_with_box",
-            "shipped": "simulate_as_shipped",
-            "our-force": "simulate_with_our_force",
-        },
+        ("cone", "box", "shipped", "our-force"),
     ),
     "drake": Installed(
         "Drake",
         "drake",
         "Linux, and macOS with newer Pythons; none for Windows",
-        {
-            "tamsi": "simulate_tamsi",
-            "sap": "simulate_sap",
-            "lagged": "simulate_lagged",
-            "cenic": "simulate_cenic",
-            "runge-kutta": "simulate_runge_kutta",
-            "our-force": "simulate_with_our_force",
-        },
+        ("tamsi", "sap", "lagged", "cenic", "runge-kutta", "our-force"),
     ),
     "dart": Installed(
         "DART",
         "dartpy",
         "Linux, and from Python 3.12 on macOS and Windows",
-        {
-            "nsgs": "simulate_nsgs",
-            "fbf": "simulate_fbf",
-            "dantzig": "simulate_dantzig",
-            "pgs": "simulate_pgs",
-            "shipped": "simulate_as_shipped",
-            "our-force": "simulate_with_our_force",
-        },
+        ("nsgs", "fbf", "dantzig", "pgs", "shipped", "our-force"),
     ),
     "chipmunk": Installed(
         "Chipmunk",
         "pymunk",
         "Linux, macOS and Windows",
-        {"pivot": "simulate_with_pivots", "shipped": "simulate_as_shipped"},
+        ("pivot", "shipped"),
     ),
     "box2d": Installed(
         "Box2D",
         "box2d",
         "Linux, macOS and Windows",
-        {"friction-joint": "simulate_with_friction_joints", "shipped": "simulate_as_shipped"},
+        ("friction-joint", "shipped"),
     ),
     "newton": Installed(
         "Newton",
         "newton",
         "Linux, macOS and Windows",
-        {"xpbd": "simulate_xpbd", "semi-implicit": "simulate_semi_implicit"},
+        ("xpbd", "semi-implicit"),
     ),
 }
 """Engines by their names on the command line; the adapter's module is ``<name>_engine``."""
@@ -113,9 +75,8 @@ INSTALLED = {
 
 def installed_engine(name: str, setting: str) -> Engine:
     """Return the engine ``name`` with this setting, "" for the default; raise ``ValueError`` if not installed."""
-    known = INSTALLED[name]
-    setting = _known_setting(name, setting)
-    module = f"{__package__}.{name}_engine"
+    known, setting = INSTALLED[name], _known_setting(name, setting)
+    module, function = f"{__package__}.{name}_engine", setting.replace("-", "_")
     try:
         adapter = importlib.import_module(module)
     except ImportError as error:
@@ -123,10 +84,10 @@ def installed_engine(name: str, setting: str) -> Engine:
             f"engine {name!r}: {known.title} is not installed ({error}): pip install {known.package}; "
             f"wheels exist for {known.wheels}"
         ) from None
-    simulate = getattr(adapter, known.settings[setting])
+    simulate = getattr(adapter, function)
     return Engine(
-        f"{name}:{setting}" if setting != next(iter(known.settings)) else name,
-        ByName(module, known.settings[setting]),
+        f"{name}:{setting}" if setting != known.settings[0] else name,
+        ByName(module, function),
         kinds=KINDS,
         nonlinear=not simulate.linear,
         phases=False,
@@ -139,7 +100,7 @@ def installed_engine(name: str, setting: str) -> Engine:
 
 def _known_setting(name: str, setting: str) -> str:
     settings = INSTALLED[name].settings
-    return one_of(f"setting of {name}", setting, settings) if setting else next(iter(settings))
+    return one_of(f"setting of {name}", setting, settings) if setting else settings[0]
 
 
 for _name in INSTALLED:

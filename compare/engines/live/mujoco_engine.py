@@ -35,11 +35,10 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from compare.engines.live.setting import Model, Setting, contact_arms, inertia_of, mobility, our_friction
+from compare.engines.live.setting import Model, Setting, inertia_of, mobility, our_friction
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-LEAST_COEFFICIENT = 1e-5
-"""Smallest μ that MuJoCo accepts."""
+LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 
 @dataclass(frozen=True)
@@ -72,18 +71,16 @@ class _Model(Model):
 
     engine = "MuJoCo"
 
-    def __init__(
+    def build(
         self,
-        system: System,
         state: FloatArray,
-        _: float,
+        tolerance: float,
         *,
         integrator: str = "Euler",
         contact: _Contact | None = None,
         friction: str = "our force",
     ) -> None:
-        self.system, self.contact, self.half = system, contact, len(state) // 2
-        self.arms = contact_arms("MuJoCo", system)
+        system, self.contact = self.system, contact
         self.stages = 4 if integrator == "RK4" else 1
         self.method = f"MuJoCo {mujoco.__version__}, {integrator}, {friction}"
         self.turns = contact is not None and (contact.friction_rate > 0.0 or system.disc_speed != 0.0)
@@ -113,11 +110,12 @@ class _Model(Model):
             self.epsilon = 0.5 * h * self.system.friction_force * mobility(self.system)
             with _passive_force(self._add_friction):
                 mujoco.mj_step(model, data, nstep=number)
-        self.steps += number
-        self.evaluations += self.stages * number
         state = np.concatenate((data.qpos[: self.half], data.qvel[: self.half]))
         # If the motion diverges, MuJoCo warns and restarts from the initial state.
         return np.full_like(state, np.nan) if any(warning.number for warning in data.warning) else state
+
+    def work(self, steps: int) -> tuple[int, int]:
+        return self.stages * steps, steps
 
     def _add_friction(self, _: Any, data: Any) -> None:
         state = [*data.qpos.tolist(), *data.qvel.tolist()]
@@ -179,42 +177,35 @@ def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
         mujoco.set_mjcb_passive(before)
 
 
-simulate_elliptic = Setting(
+ellipse = Setting(
     "elliptic cone",
     "with the elliptic cone and semi-implicit Euler steps, of order 1 in slip and of order 2 in stick.",
     _Model,
     {"contact": _Contact.rigid("elliptic", 2.0, 10), "friction": "elliptic cone"},
 )
-simulate_elliptic_rk4 = Setting(
+ellipse_rk4 = Setting(
     "elliptic cone, RK4",
     "with the elliptic cone and Runge–Kutta steps with b = 1e4/h, which is Coulomb's law except in stick. In stick, "
     "the friction force alternates between steps, and the error is of order 1.",
     _Model,
     {"integrator": "RK4", "contact": _Contact.rigid("elliptic", 1e4, 10), "friction": "elliptic cone"},
 )
-simulate_pyramidal = Setting(
+pyramid = Setting(
     "pyramidal cone",
     "with MuJoCo's default pyramid in rigid contact. It converges to the motion with friction along an axis.",
     _Model,
     {"contact": _Contact.rigid("pyramidal", 1.0, 100), "friction": "pyramidal cone"},
 )
-simulate_as_shipped = Setting(
+shipped = Setting(
     "as shipped",
     "with all its defaults: the pyramid, and soft contact that creeps under any load at any step.",
     _Model,
     {"contact": _Contact(), "friction": "as shipped"},
 )
-simulate_with_our_force = Setting(
+our_force = Setting(
     "our force",
     "with the force −μN·v/max(|v|, ε) in place of contact, by Runge–Kutta steps. ε is half the change of slip by "
     "friction in a step; steps would be unstable in stick with 0.7 times this ε.",
     _Model,
     {"integrator": "RK4"},
-)
-SETTINGS = (
-    simulate_elliptic,
-    simulate_elliptic_rk4,
-    simulate_pyramidal,
-    simulate_as_shipped,
-    simulate_with_our_force,
 )

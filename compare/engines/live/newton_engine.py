@@ -17,12 +17,10 @@ import warp
 
 from compare.engines.engine import UnsupportedSystemError
 from compare.engines.live.setting import Model, Setting, support_force
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import DiscOnDisc, FloatArray
 
 warp.config.quiet = True
-
-RADIUS, PLATE = 0.5, 1e3
-"""Radius of the ball and half the edge length of the plate, in m."""
+RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the plate, in m
 
 
 class _Model(Model):
@@ -30,12 +28,11 @@ class _Model(Model):
 
     engine = "Newton"
 
-    def __init__(
-        self, system: System, state: FloatArray, _: float, *, solver: str, options: Any = None
-    ) -> None:
+    def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:
+        system = self.system
         if isinstance(system, DiscOnDisc):
             raise UnsupportedSystemError("this adapter of Newton does not simulate discs")
-        self.system, self.method = system, f"Newton {version('newton')}, {solver}"
+        self.method = f"Newton {version('newton')}, {solver}"
         builder = newton.ModelBuilder(gravity=(0.0, 0.0, -system.friction_force / system.mass))
         touch = newton.ModelBuilder.ShapeConfig(mu=1.0, density=0.0)
         plate = builder.add_body(xform=_pose(0.0, 0.0, -1.0), is_kinematic=True)
@@ -67,8 +64,6 @@ class _Model(Model):
             self.model.collide(self.now, self.contacts)
             self.solver.step(self.now, self.next, self.control, self.contacts, h)
             self.now, self.next = self.next, self.now
-        self.steps += number
-        self.evaluations += number
         return self._state()
 
 
@@ -76,7 +71,7 @@ def _pose(x: float, y: float, z: float) -> Any:
     return warp.transform((x, y, z), warp.quat_identity())
 
 
-simulate_xpbd = Setting(
+xpbd = Setting(
     "XPBD, as shipped",
     "with its position-based solver and two iterations, its default, in single precision: steps of order 1.",
     _Model,
@@ -85,10 +80,9 @@ simulate_xpbd = Setting(
     finest=2e-3,
     precision=1e-6,
 )
-simulate_semi_implicit = replace(
-    simulate_xpbd,
+semi_implicit = replace(
+    xpbd,
     name="semi-implicit, as shipped",
     says="with contact by stiff springs and regularised friction, its defaults, in single precision.",
     options={"solver": "SemiImplicit"},
 )
-SETTINGS = (simulate_xpbd, simulate_semi_implicit)

@@ -25,25 +25,33 @@ from reference_model.trajectory import Phase, SimulationError, Solution, Traject
 
 
 class Model:
-    """The bodies in an ``engine`` and their current state, made from a system, an initial state and a tolerance.
+    """The bodies in an ``engine`` and their current state.
 
-    ``method`` names integrator and contact, ``epsilon`` is the slip speed in m/s that regularises the friction law,
-    and ``steps`` and ``evaluations`` count the work so far.
+    ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
+    and ``epsilon`` is the slip speed in m/s that regularises the friction law.
     """
 
     engine = ""
     method = ""
+    most_points = math.inf
     epsilon = 0.0
-    steps = 0
-    evaluations = 0
 
-    def __init__(self, system: System, state: FloatArray, tolerance: float) -> None:
-        """Build the bodies."""
+    def __init__(self, system: System, state: FloatArray, tolerance: float, **options: Any) -> None:
+        self.system, self.half = system, len(state) // 2
+        self.arms = contact_arms(self.engine, system, self.most_points)
+        self.build(state, tolerance, **options)
+
+    def build(self, state: FloatArray, tolerance: float, *_: Any, **options: Any) -> None:
+        """Create the bodies."""
         raise NotImplementedError
 
     def advance(self, h: float, number: int) -> FloatArray:
         """Take ``number`` steps of ``h`` s, and return the state."""
         raise NotImplementedError
+
+    def work(self, steps: int) -> tuple[int, int]:
+        """Return the numbers of evaluations and steps, if this number of ``steps`` was requested."""
+        return steps, steps
 
     def close(self) -> None:
         """Release the engine's resources."""
@@ -55,34 +63,16 @@ class Setting:
 
     Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
     order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``.
-
-    Parameters
-    ----------
-    name, says : str
-        Name and description.
-    model : type
-        Subclass of ``Model``.
-    options : mapping
-        Further arguments of its constructor.
-    finest : float
-        Least step in units of 1/max(k, ω).
-    linear : bool
-        True if the engine has linear springs only.
-    step : float, optional
-        Fixed step in s for a tolerance of 1e-9, as in ``compare.engines.Engine``, short enough for accuracy but
-        faster than real time. None for an integrator that controls its error.
-    precision : float
-        As in ``compare.engines.Engine``.
-
+    fills each interval of ``times``. ``step`` and ``precision`` are as in ``compare.engines.Engine``; the step is
+    short enough for accuracy but faster than real time, and None for an integrator that controls its error.
     """
 
     name: str
-    says: str
+    says: str  # description
     model: type[Model]
-    options: Mapping[str, Any] = field(default_factory=dict)
-    finest: float = 0.0
-    linear: bool = True
+    options: Mapping[str, Any] = field(default_factory=dict)  # of the model
+    finest: float = 0.0  # least step in units of 1/max(k, ω)
+    linear: bool = True  # True if the engine has linear springs only
     step: float | None = 2e-3
     precision: float = 0.0
 
@@ -101,13 +91,14 @@ class Setting:
         if self.linear and not system.linear_support:
             raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
         longest = step or max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
-        states = [state]
+        states, steps = [state], 0
         began = time.perf_counter()
         model = self.model(system, state, tolerance, **self.options)
         try:
             for i, interval in enumerate(np.diff(grid).tolist(), 1):
                 number = math.ceil(interval / longest * (1.0 - 1e-9))
                 states.append(model.advance(interval / number, number))
+                steps += number
                 if not np.all(np.isfinite(states[-1])):
                     raise SimulationError(
                         f"{engine} diverged before t = {grid[i]:g} s: try a smaller tolerance"
@@ -115,7 +106,7 @@ class Setting:
         finally:
             model.close()
         wall = time.perf_counter() - began
-        solution = Solution(model.method, tolerance, model.evaluations, model.steps, wall, model.epsilon)
+        solution = Solution(model.method, tolerance, *model.work(steps), wall, model.epsilon)
         phases = (Phase("slip", float(grid[0]), float(grid[-1]), state),)
         return Trajectory(system, grid, np.array(states), phases, solution)
 
@@ -189,19 +180,9 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 
 
 class TopDown(Model):
-    """A body with a kinematic partner at each contact point; subclasses implement it in an engine.
+    """A body with a kinematic partner at each contact point; if it is ``shipped``, the engine keeps its defaults."""
 
-    If it is ``shipped``, the engine keeps its default settings.
-    """
-
-    def __init__(self, system: System, state: FloatArray, _: float, *, shipped: bool = False) -> None:
-        self.system, self.arms = system, contact_arms(self.engine, system)
-        self.half, self.shipped = len(state) // 2, shipped
-        self.build(state)
-
-    def build(self, state: FloatArray) -> None:
-        """Create body, partners and joints."""
-        raise NotImplementedError
+    shipped = False
 
     def state(self) -> tuple[float, ...]:
         """Return x, y, angle, vx, vy and spin."""
@@ -227,7 +208,5 @@ class TopDown(Model):
         """Take ``number`` steps of ``h`` s, and return the state."""
         for _ in range(number):
             self.step(h)
-        self.steps += number
-        self.evaluations += number
         places, speeds = np.split(np.array(self.state()), 2)
         return np.concatenate((places[: self.half], speeds[: self.half]))

@@ -36,23 +36,12 @@ from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
-GREETING_LIMIT = 60.0
-"""Time limit in s for the first line; a program may have to be compiled when it starts."""
-
+GREETING_LIMIT = 60.0  # time limit in s for the first line; a program may have to be compiled when it starts
 GREETING_BYTES = 100_000
-
-TICK = 0.1
-"""Interval in s between checks of the time limit."""
-
-FAREWELL = 1.0
-"""Time in s for a program to end after its input is closed."""
-
-AT_ONCE = 1 << 18
-"""Bytes read from a pipe at once, at least its capacity."""
-
-LAST_LINES, LAST_BYTES = 3, 4000
-"""Lines shown and bytes kept from the end of a program's standard error."""
-
+TICK = 0.1  # interval in s between checks of the time limit
+FAREWELL = 1.0  # time in s for a program to end after its input is closed
+AT_ONCE = 1 << 18  # bytes read from a pipe at once, at least its capacity
+LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept from the end of a program's standard error
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
@@ -73,15 +62,8 @@ def simulate(
 ) -> Trajectory:
     """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
-    Raises
-    ------
-    UnsupportedSystemError
-        If the program replies that it does not simulate the system.
-    ProgramError
-        If it reports an error, ends, hangs, or writes an invalid line.
-    OSError
-        If it cannot be started.
-
+    Raises ``UnsupportedSystemError`` if the program says so, ``OSError`` if it cannot be started, and
+    ``ProgramError`` if it reports an error, ends, hangs, or writes an invalid line.
     """
     conversation = conversation_with(command, folder)
     line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))
@@ -144,23 +126,7 @@ def end_all() -> None:
 
 
 class Conversation:
-    """One process of a program.
-
-    Parameters
-    ----------
-    command : sequence of str
-        The program and its arguments.
-    folder : str
-        Its working directory.
-
-    Attributes
-    ----------
-    greeting : Greeting
-        The program's first line.
-    over : bool
-        True once the program has ended.
-
-    """
+    """One process of a program in a working directory, its ``greeting``, and whether it is ``over``."""
 
     def __init__(self, command: Sequence[str], folder: str) -> None:
         self._name = own_name(command)

@@ -32,9 +32,7 @@ from reference_model.trajectory import Trajectory
 POINTS = "contact_points"
 
 NONLINEAR = ("hardening", "stop_gap", "stop_stiffness")
-
-OPTIONAL = ("offset", *NONLINEAR)
-"""Parameters that a model may omit; they are then 0."""
+OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are then 0
 
 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
@@ -44,11 +42,8 @@ The speed is that of the motion. Even a model that reports stick, for pins and r
 points. The error of the resulting creep must fall with the tolerance.
 """
 
-LEAST_CREEP = 1e-12
-"""Regularisation speed in m/s for a motion without any speed."""
-
-MOST_BYTES = 2**30
-"""Largest size in bytes of an unpacked archive; models of pins and discs are far smaller."""
+LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without any speed
+MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive; models of pins and discs are far smaller
 
 
 class FmuError(RuntimeError):
@@ -57,14 +52,7 @@ class FmuError(RuntimeError):
 
 @dataclass(frozen=True)
 class Fmu:
-    """The ``simulate`` of a model.
-
-    Parameters
-    ----------
-    file : str
-        Path of the model.
-
-    """
+    """The ``simulate`` of a model."""
 
     file: str
 
@@ -78,13 +66,7 @@ class Fmu:
     ) -> Trajectory:
         """Return the motion, with communication steps up to ``step`` in s if given, else from time to time.
 
-        Raises
-        ------
-        UnsupportedSystemError
-            If the model lacks a parameter of the system.
-        FmuError
-            If a call of the model fails.
-
+        Raises ``UnsupportedSystemError`` if the model lacks a parameter, and ``FmuError`` if a call fails.
         """
         name, model = Path(self.file).name, _model(self.file)
         at, state = np.array(times, dtype=float), np.asarray(initial_state, dtype=float)
@@ -133,7 +115,6 @@ class _Model:
 
 
 def _fmpy() -> Any:
-    """Return FMPy's simulation module, imported only if a model is used."""
     try:
         return importlib.import_module("fmpy.simulation")
     except ImportError as error:
@@ -142,7 +123,6 @@ def _fmpy() -> Any:
 
 @functools.cache
 def _model(file: str) -> _Model:
-    """Unpack and return the model of a file; raise ``ValueError`` if it cannot be used."""
     _fmpy()
     fmpy, name = importlib.import_module("fmpy"), Path(file).name
     folder = tempfile.TemporaryDirectory(prefix="friction-discs-")
@@ -254,7 +234,6 @@ def fmu_engine(text: str) -> Engine:
 
 
 def _kinds(name: str, variables: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the kinds of systems that a model with these variables simulates."""
     disc = "spin" in variables
     system = DiscOnDisc if disc else PinOnDisc
     needed = [*(field.name for field in fields(system)), *(name for name, _ in COLUMNS[system])]

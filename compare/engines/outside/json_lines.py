@@ -22,10 +22,7 @@ from reference_model.systems import PinOnDisc, System, finite_number
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
 PROTOCOL = 1
-
-ANSWER_LIMIT = 60.0
-"""Default time limit in s for one motion."""
-
+ANSWER_LIMIT = 60.0  # default time limit in s for one motion
 _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 
@@ -39,20 +36,9 @@ class RefusedError(RuntimeError):
 
 @dataclass(frozen=True)
 class Greeting:
-    """The first line of a program; every entry is optional.
+    """The first line of a program; every entry is optional."""
 
-    Parameters
-    ----------
-    promises : dict
-        Parameters of ``Engine``.
-    name, version : str
-        The program's own name and version.
-    limit : float
-        Time limit in s for one answer.
-
-    """
-
-    promises: dict[str, Any] = field(default_factory=dict)
+    promises: dict[str, Any] = field(default_factory=dict)  # parameters of ``Engine``
     name: str = ""
     version: str = ""
     limit: float = ANSWER_LIMIT
@@ -106,13 +92,7 @@ def most_bytes(system: System, times: ArrayLike) -> int:
 def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
     """Return the motion in ``line`` at the requested times (n,); its shapes and numbers are not yet checked.
 
-    Raises
-    ------
-    UnsupportedSystemError, RefusedError
-        If the line says so.
-    BadLineError
-        If the line is not a valid answer.
-
+    Raises ``UnsupportedSystemError`` or ``RefusedError`` if the line says so, and ``BadLineError`` if it is invalid.
     """
     content = _object(line)
     if "unsupported" in content:
@@ -149,7 +129,6 @@ def _array(name: str, rows: object) -> Any:
 
 
 def _phases(told: object, system: System, end: float) -> tuple[Phase, ...]:
-    """Return the phases from a list of objects with kind, start and state at the start."""
     begun = []
     for phase in told if isinstance(told, list) else [told]:
         if not isinstance(phase, dict) or phase.get("kind") not in PHASES:

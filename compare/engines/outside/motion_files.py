@@ -48,13 +48,8 @@ class MotionFiles:
     ) -> Trajectory:
         """Return this motion from its file.
 
-        Raises
-        ------
-        UnsupportedSystemError
-            If the motion is not in the plan, or its file is missing or ends too early.
-        BadFileError
-            If the file is otherwise invalid.
-
+        Raises ``UnsupportedSystemError`` if the motion is not in the plan, or its file is missing or ends too early,
+        and ``BadFileError`` if the file is otherwise invalid.
         """
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):

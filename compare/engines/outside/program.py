@@ -28,25 +28,15 @@ INTERPRETERS = re.compile(
 
 
 def _conversation() -> Any:
-    """Return the module that starts programs, imported only if a program is used."""
     return importlib.import_module("compare.engines.outside.conversation")
 
 
 @dataclass(frozen=True)
 class Program:
-    """The ``simulate`` of a program; each calling process has its own process of the program.
-
-    Parameters
-    ----------
-    command : tuple of str
-        The program and its arguments.
-    folder : str
-        Its working directory.
-
-    """
+    """The ``simulate`` of a program; each calling process has its own process of the program."""
 
     command: tuple[str, ...]
-    folder: str
+    folder: str  # working directory
 
     @property
     def files(self) -> set[Path]:
@@ -116,7 +106,6 @@ def own_name(command: Sequence[str]) -> str:
 
 
 def _run(command: Sequence[str]) -> Sequence[str]:
-    """Return the command without an interpreter and its options."""
     if not _is_interpreter(command[0]):
         return command
     own = next((i for i, word in enumerate(command) if i > 0 and not word.startswith("-")), 0)

@@ -19,10 +19,7 @@ from reference_model.trajectory import Phase, phases_of
 COUNTS = ("stick_count", "release_count")
 
 TIMES = ("stick_time", "release_time")
-
-NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")
-"""Required outputs; a disc also needs ``stick_angle``."""
-
+NAMES = (*COUNTS, *TIMES, "stick_x", "stick_y")  # required outputs; a disc also needs ``stick_angle``
 STATE_OF_POINTS = tuple(f"rest_{name}" for name, _ in COLUMNS[DiscOnDisc])
 
 NAMES_OF_POINTS = ("rest_count", "rest_time", "resting_points", *STATE_OF_POINTS)
@@ -43,22 +40,7 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
 
 
 class Events:
-    """The phases of an initialised instance, collected while it takes steps.
-
-    Parameters
-    ----------
-    instance : FMPy instance
-        Instance of FMI 3 if ``newer``, else of FMI 2.
-    variables : mapping
-        Variables of its model by name.
-    system : PinOnDisc or DiscOnDisc
-        The simulated system.
-    time : float
-        Initial time in s.
-    state : array of shape (4,) or (6,)
-        Initial state.
-
-    """
+    """The phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
 
     counts: ClassVar[tuple[str, ...]]
     """Outputs that count events."""
@@ -108,7 +90,6 @@ class Events:
         return phases_of(self._begun, end)
 
     def _of(self, *names: str) -> list[int]:
-        """Return the value references of variables."""
         return [self._variables[name].valueReference for name in names]
 
     def _first(self) -> Kind:

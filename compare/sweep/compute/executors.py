@@ -12,26 +12,17 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import suppress
-from types import TracebackType
+from contextlib import AbstractContextManager, suppress
 from typing import Any, NamedTuple, TypeAlias
 from urllib.parse import urlsplit
 
 from compare.output.outside_text import reason_of
 from compare.run.provenance import stamp
 
-WAIT = 3.0
-"""Time limit in s for a scheduler to be reached, to answer, and to have a worker."""
-
-IN_FLIGHT = 3
-"""Submitted tasks per thread of the cluster: enough to keep it busy, and few to lose."""
-
-COUNT_INTERVAL = 1.0
-"""Interval in s between counts of the cluster's threads."""
-
-
-AT_ONCE = 2
-"""Number of simultaneous tasks in this process, each on all cores."""
+WAIT = 3.0  # time limit in s for a scheduler to be reached, to answer, and to have a worker
+IN_FLIGHT = 3  # submitted tasks per thread of the cluster: enough to keep it busy, and few to lose
+COUNT_INTERVAL = 1.0  # interval in s between counts of the cluster's threads
+AT_ONCE = 2  # number of simultaneous tasks in this process, each on all cores
 
 
 class ClusterError(RuntimeError):
@@ -69,7 +60,7 @@ class InProcess:
                 yield key, result.result()
 
 
-class Cluster:
+class Cluster(AbstractContextManager["Cluster"]):
     """The workers of the Dask scheduler at "tcp://host:port", each task on one thread; a context manager.
 
     Raises ``ValueError`` for an invalid address, ``ModuleNotFoundError`` without Dask, and ``ClusterError`` if no
@@ -104,12 +95,7 @@ class Cluster:
                 "install the same version on all machines"
             ) from None
 
-    def __enter__(self) -> Cluster:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         with suppress(Exception):  # the scheduler may be lost
             self._client.close()
 

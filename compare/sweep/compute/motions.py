@@ -14,8 +14,7 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
 
-JUMP = 0.3
-"""Largest relative difference between the radii of a motion and those extrapolated from its branch."""
+JUMP = 0.3  # largest relative difference between the radii of a motion and those extrapolated from its branch
 
 
 class Motion(NamedTuple):
@@ -86,7 +85,6 @@ def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> 
 
 
 def _distance(branch: dict[int, One], i: int, motion: One) -> float:
-    """Return the distance of a motion from the extrapolated branch at index ``i``, relative to the radius."""
     last = branch[i - 1]
     before = branch.get(i - 2, last)
     size = max(last.largest, motion.largest)

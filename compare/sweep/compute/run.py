@@ -27,14 +27,12 @@ from compare.sweep.quantities import components
 from compare.sweep.refinement import Grid
 from compare.sweep.store import SweepStore, flags
 
-CHECKED = 20
-"""Number of trajectories that the plain reference repeats."""
+CHECKED = 20  # number of trajectories that the plain reference repeats
 
 CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
 """Groups of a store in addition to its rounds."""
 
-Progress = Callable[[str, int, int], None]
-"""Takes the name of the work, the amount done and the total."""
+Progress = Callable[[str, int, int], None]  # takes the name of the work, the amount done and the total
 
 
 def run(store: SweepStore, executor: Executor, progress: Progress) -> None:

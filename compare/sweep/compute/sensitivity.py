@@ -13,11 +13,8 @@ from compare.claims.shares import CONFIDENCE
 from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
-GROUPS = 16
-"""Number of groups of rows; the scatter of the indices between groups gives their error."""
-
-LEAST_SAMPLES = 16 * GROUPS
-"""Least number of rows."""
+GROUPS = 16  # number of groups of rows; the scatter of the indices between groups gives their error
+LEAST_SAMPLES = 16 * GROUPS  # least number of rows
 
 
 class Indices(NamedTuple):
@@ -108,7 +105,6 @@ def _about(of: Moments, mean: FloatArray) -> FloatArray:
 
 
 def _indices(of: Moments) -> tuple[FloatArray, FloatArray]:
-    """Return first-order and total indices, shape (results, quantities)."""
     variance = of.squares[:, np.newaxis] / BASES
     with np.errstate(divide="ignore", invalid="ignore"):  # results that do not vary
         return of.product / variance, 0.5 * of.change_squared / variance

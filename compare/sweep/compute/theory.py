@@ -68,8 +68,7 @@ def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
 #
 # All except (5) hold without offset; a disc is treated as a continuous ring.
 
-NODES = 101
-"""Number of values of each parameter; the zeros of a margin are interpolated between them."""
+NODES = 101  # number of values of each parameter; the zeros of a margin are interpolated between them
 
 
 class Curve(NamedTuple):

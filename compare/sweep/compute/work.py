@@ -19,8 +19,7 @@ from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import SimulationError, Trajectory
 
-DOUBLINGS = 3
-"""Largest number of times that the plain reference doubles its duration to find an end."""
+DOUBLINGS = 3  # largest number of times that the plain reference doubles its duration to find an end
 
 
 class OtherCodeError(RuntimeError):
@@ -94,28 +93,23 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
 
 # --- Ends of trajectories of the plain reference, for the check of a sweep's random sample
 
-WATCHED = 0.5
-"""Share of a trajectory, at its end, that decides the end state."""
+WATCHED = 0.5  # share of a trajectory, at its end, that decides the end state
 
 SAMPLES_PER_TURN = 64
 """Samples per turn in the last part; earlier ones, ``SAMPLES_BEFORE``, only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
-
-AT_REST = 0.02
-"""Largest distance from the last position, relative to the whole motion, of a centre at rest."""
+AT_REST = 0.02  # largest distance from the last position, relative to the whole motion, of a centre at rest
 
 STEADY = 0.01
 """Largest spread (largest − smallest)/(largest + smallest) of the radii at successive turns of a steady motion."""
 
-SAME = 1.4
-"""Largest ratio of the spreads in both halves of the last part for a modulation of constant size."""
+SAME = 1.4  # largest ratio of the spreads in both halves of the last part for a modulation of constant size
 
 DYING = 0.1
 """Ratio of the slip speeds in both halves of the last part below which slip dies out; for a whirl it stays near 1."""
 
-LEAST_TURNS = 24
-"""Least number of turns before the last part of a motion."""
+LEAST_TURNS = 24  # least number of turns before the last part of a motion
 
 
 def plain_trajectory(
@@ -154,7 +148,6 @@ def watched_until(system: System, certain: float, duration: float) -> float:
 
 
 def _samples(system: System, first: float, last: float, per_turn: int) -> FloatArray:
-    """Return times in s from ``first`` to ``last``, ``per_turn`` or more in each turn."""
     return np.linspace(first, last, math.ceil((last - first) / _turn(system, last) * per_turn) + 2)
 
 

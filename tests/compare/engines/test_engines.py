@@ -92,7 +92,6 @@ def module(tmp_path, monkeypatch):
     [
         ("", ("pin",)),
         ("simulate.kinds = ('pin', 'ring')", ("pin", "ring")),
-        ("simulate.kinds = ['points']", ("points",)),
         ("simulate.kinds = ()", ()),
     ],
 )
@@ -108,11 +107,8 @@ def test_a_users_engine_is_named_module_function_and_declares_its_kinds(code, ki
         ("1 / 0", " cannot be imported: ZeroDivisionError: division by zero"),
         ("def (", " cannot be imported: SyntaxError: "),
         ("simulate.kinds = ('rings',)", ", attribute kinds = … did you mean 'ring'"),
-        ("simulate.kinds = 'ring'", ", attribute kinds = …'r'"),
         ("simulate.kinds = 7", ", attribute kinds = …not iterable"),
         ("simulate.sticks = 'no'", ", attribute …sticks = 'no': it must be True or False"),
-        ("simulate.nonlinear = 1", ", attribute …nonlinear = 1: it must be True or False"),
-        ("simulate.step = 0.0", ", attribute …step = 0 s: it must be at least 1e-09 s"),
         ("simulate.step = 1e-300", ", attribute …step = 1e-300 s: it must be at least 1e-09 s"),
         ("simulate.step = 'small'", ", attribute …step = 'small': it must be a number"),
     ],
@@ -137,7 +133,6 @@ BLOCK = replace(FIG5, disc_speed=0.0)
     ("kinds", "lacking"),
     [
         (("pin", "block"), "mine does not simulate a disc on a continuous ring or a disc on single points"),
-        (("pin", "block", "points"), "mine does not simulate a disc on a continuous ring"),
         (("points", "ring"), "mine does not simulate a pin or a block on a plane at rest"),
         (("block", "points", "ring"), "mine does not simulate a pin"),
         (EVERY_KIND, ""),
@@ -157,15 +152,16 @@ def test_an_engine_simulates_the_kinds_that_it_declares(kinds, lacking):
                 engine.simulate(system, state, [0.0, 1.0])
 
 
-def test_an_engine_for_pins_also_simulates_blocks_on_a_plane_at_rest():
-    pins, blocks = (
-        Engine("mine", fake_studies.straight, (kind,), nonlinear=False) for kind in ("pin", "block")
+@pytest.mark.parametrize("kind", ["pin", "block"])
+def test_an_engine_for_pins_also_simulates_blocks_on_a_plane_at_rest(kind):
+    engine, hard = (
+        Engine("mine", fake_studies.straight, (kind,), nonlinear=False),
+        replace(BLOCK, hardening=2.0),
     )
-    hard = replace(BLOCK, hardening=2.0)
-    assert [pins.simulates(one) for one in (FIG5, BLOCK, hard)] == [True, True, False]
-    assert [blocks.simulates(one) for one in (FIG5, BLOCK, hard)] == [False, True, False]
-    sentence = "mine does not simulate a block on a plane at rest on a nonlinear support"
-    assert pins.lacking([hard]) == blocks.lacking([hard]) == sentence
+    assert [engine.simulates(one) for one in (FIG5, BLOCK, hard)] == [kind == "pin", True, False]
+    assert (
+        engine.lacking([hard]) == "mine does not simulate a block on a plane at rest on a nonlinear support"
+    )
 
 
 def test_an_installed_package_registers_its_engine_by_an_entry_point(tmp_path, monkeypatch):
@@ -301,25 +297,14 @@ def test_studies_are_returned_in_report_order():
     assert studies([], among) == among
 
 
-PIN = (FIG5, (0.1, 0.0, 0.03, 0.0))
-TURNING_RING = (RING, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
-TURNING_POINTS = (POINTS, (0.1, 0.0, 0.0, 0.0, 0.1, 1.0))
-
-
-@pytest.mark.parametrize(
-    ("name", "system", "start"),
-    [
-        *(
-            (name, *motion)
-            for name in ("reference", "exudyn")
-            for motion in (PIN, TURNING_RING, TURNING_POINTS)
-        ),
-        *(("exudyn-native", *motion) for motion in (PIN, TURNING_POINTS)),
-    ],
-)
-def test_repeated_runs_are_equal_to_the_last_bit(name, system, start):
+@pytest.mark.parametrize("name", ["reference", "exudyn", "exudyn-native"])
+@pytest.mark.parametrize("system", [FIG5, RING, POINTS], ids=["pin", "ring", "points"])
+def test_repeated_runs_are_equal_to_the_last_bit(name, system):
     """Tests of studies rely on this, because they cache trajectories of the reference."""
     (engine,) = engines([name])
+    if not engine.simulates(system):
+        return
+    start = (0.1, 0.0, 0.03, 0.0) if system is FIG5 else (0.1, 0.0, 0.0, 0.0, 0.1, 1.0)
     one, other = (engine.simulate(system, start, (0.0, 5.0, 10.0), tolerance=1e-7) for _ in range(2))
     np.testing.assert_array_equal(one.states, other.states)
     assert one.stick_times.tolist() == other.stick_times.tolist()

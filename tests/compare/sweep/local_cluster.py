@@ -48,9 +48,8 @@ def cluster(folder, workers, signalled=""):
         options = ("--nthreads", "1", "--no-nanny", "--preload", str(SIGNALLING))
         for i in range(workers):
             processes.append(started("worker", address, *options, signalled="" if i else signalled))
-        if workers:
-            with Client(address, set_as_default=False) as client:
-                client.wait_for_workers(workers, timeout=PATIENCE)
+        with Client(address, set_as_default=False) as client:
+            client.wait_for_workers(workers, timeout=PATIENCE)
         yield LocalCluster(address, processes[0], processes[1:])
     finally:
         for process in processes:

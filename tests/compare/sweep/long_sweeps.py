@@ -14,7 +14,7 @@ from zarr.storage import ZipStore
 from compare.cli import app as cli
 from compare.sweep.quantities import RESULTS
 
-LONG = ["sweep", "basin", "pin", "--random", "1200", "--seed", "3", "--tolerance", "1e-6"]
+LONG = ["sweep", "basin", "pin", "--random", "600", "--seed", "3", "--tolerance", "1e-6"]
 SIGNALLING = Path(__file__).with_name("signalling_sweep.py")
 CHUNKS = ["--chunk", "20"]
 """Arguments with many small chunks, to allow interference."""
@@ -37,6 +37,10 @@ def long_sweep(folder, *more, limit=None, signalled=None):
         encoding="utf-8",
         preexec_fn=restrict,
     )
+
+
+def silent(what, done, total):
+    """Show no progress."""
 
 
 def marks(folder: Path) -> set[str]:

@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import threading
+from contextlib import contextmanager
 
 from compare.sweep.arrays import Chunks
 from compare.sweep.compute.executors import Cluster
@@ -36,6 +37,17 @@ def signalling(name, process, chunk):
             yield found
 
     Chunks.write, Cluster.run = counted, told
+
+
+@contextmanager
+def signalling_here(name, process, chunk):
+    """Do the same only within this context."""
+    before = Chunks.write, Cluster.run
+    signalling(name, process, chunk)
+    try:
+        yield
+    finally:
+        Chunks.write, Cluster.run = before
 
 
 def dask_setup(worker):

@@ -260,7 +260,6 @@ def euler():
                     force[2] += system.shaft_damping * (system.shaft_speed - v[2])
                 v = v + h * force / inertia
                 self.state = np.concatenate((q + h * v, v))
-            self.steps += number
             return self.state
 
     return setting.Setting("our force", "by Euler steps", Euler)

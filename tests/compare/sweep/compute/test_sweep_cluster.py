@@ -5,13 +5,14 @@ import socket
 import time
 
 import pytest
+from distributed import LocalCluster
 from local_cluster import cluster
-from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed
-from signalling_sweep import signalling
+from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed, silent
+from signalling_sweep import signalling_here
 
 from compare.claims.parameters import FIG5
 from compare.cli import app as cli
-from compare.sweep.arrays import DESCRIPTION, Chunks
+from compare.sweep.arrays import DESCRIPTION
 from compare.sweep.compute import executors
 from compare.sweep.compute.executors import Cluster, ClusterError, InProcess
 from compare.sweep.compute.run import finished, run
@@ -40,10 +41,7 @@ def test_results_survive_a_killed_driver_a_killed_worker_and_a_lost_scheduler(
         out, err = capsys.readouterr()
         assert (code, err) == (0, ""), out
 
-        with monkeypatch.context() as patch:
-            for owner, name in ((Chunks, "write"), (Cluster, "run")):
-                patch.setattr(owner, name, getattr(owner, name))  # restored after the test
-            signalling("SIGKILL", local.scheduler.pid, 10)
+        with signalling_here("SIGKILL", local.scheduler.pid, 10):
             code = cli.status([*LONG, *CHUNKS, "--output", str(other), *on_cluster])
     assert f"Results: {url}/sweep.zarr; figures: {url}/basin.svg" in out
     assert written <= marks(first)
@@ -52,7 +50,7 @@ def test_results_survive_a_killed_driver_a_killed_worker_and_a_lost_scheduler(
     assert finished(store)
     store.files.write({"round-0/end/c/3": store.files.read("round-0/end/c/4") + b"more"})
     assert not finished(store)
-    assert store.broken == ["round-0: chunk 3 (of 60)"]
+    assert store.broken == ["round-0: chunk 3 (of 30)"]
 
     out, err = capsys.readouterr()
     assert (code, out, err.count("\n")) == (1, "", 1)
@@ -61,7 +59,8 @@ def test_results_survive_a_killed_driver_a_killed_worker_and_a_lost_scheduler(
     assert_same(content(other / "sweep.zarr"), undisturbed)
 
 
-def test_a_missing_scheduler_is_reported_in_time(tmp_path, capsys):
+def test_a_missing_scheduler_is_reported_in_time(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(executors, "WAIT", 0.5)
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))  # reserves the port without listening
         address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
@@ -87,13 +86,13 @@ def test_a_silent_server_is_not_a_scheduler(monkeypatch):
     assert time.monotonic() - clock < 5.0
 
 
-def test_a_scheduler_without_workers_is_reported(tmp_path, monkeypatch):
-    monkeypatch.setattr(executors, "WAIT", 2.0)
+def test_a_scheduler_without_workers_is_reported(monkeypatch):
+    monkeypatch.setattr(executors, "WAIT", 1.0)
     with (
-        cluster(tmp_path, workers=0) as local,
+        LocalCluster(n_workers=0, processes=False, protocol="tcp", dashboard_address=None) as local,
         pytest.raises(ClusterError, match="has no workers; start one"),
     ):
-        Cluster(local.address)
+        Cluster(local.scheduler_address)
 
 
 @pytest.fixture
@@ -117,12 +116,12 @@ class Elsewhere(InProcess):
 def test_a_worker_with_different_code_is_rejected_and_writes_nothing(store, tmp_path, monkeypatch):
     other = Elsewhere(lambda: monkeypatch.setattr("compare.sweep.compute.work.stamp", lambda: "other"))
     with pytest.raises(OtherCodeError, match="a different version of the code or libraries"):
-        run(store, other, lambda what, done, total: None)
+        run(store, other, silent)
     assert marks(tmp_path) == set()
 
 
 def test_a_worker_with_a_different_store_at_that_path_is_rejected(store, tmp_path):
     other = Elsewhere(lambda: (tmp_path / "sweep.zarr" / DESCRIPTION).write_text("{}"))
     with pytest.raises(StoreError, match="--output must be a shared folder or an object store"):
-        run(store, other, lambda what, done, total: None)
+        run(store, other, silent)
     assert marks(tmp_path) == set()

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from long_sweeps import silent
 
 from compare.claims.parameters import FIG5
 from compare.claims.shares import of_counts
@@ -79,10 +80,8 @@ def test_starts_are_the_same_at_each_value_and_in_any_chunk():
 
 @pytest.fixture(scope="module")
 def store(tmp_path_factory):
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("compare.sweep.compute.run.CHECKED", 2)
-        store = SweepStore.create(tmp_path_factory.mktemp("continuation") / "s", PLAN, 70)
-        run(store, InProcess(), lambda what, done, total: None)
+    store = SweepStore.create(tmp_path_factory.mktemp("continuation") / "s", PLAN, 70)
+    run(store, InProcess(), silent)
     return store
 
 

@@ -1,8 +1,11 @@
-"""A sweep that is interrupted, runs out of disk space and is killed."""
+"""A sweep that is interrupted and runs out of disk space; ``test_sweep_cluster`` kills processes."""
 
 import signal
 
-from long_sweeps import assert_same, content, finished_by, long_sweep, marks, resumed
+from long_sweeps import CHUNKS, LONG, assert_same, content, finished_by, long_sweep, marks, resumed
+from signalling_sweep import signalling_here
+
+from compare.cli import app as cli
 
 
 def said(err):
@@ -20,9 +23,15 @@ def times(folder):
     }
 
 
-def test_a_sweep_gives_the_same_results_after_an_interrupt_a_full_disk_and_a_kill(undisturbed, tmp_path):
-    code, out, err = finished_by(long_sweep(tmp_path, signalled=("SIGINT", 0, 11)))
-    assert (code, out, said(err)) == (130, "", ["Interrupted. Repeat the command with --resume to continue."])
+def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
+    undisturbed, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes ignore it
+    with signalling_here("SIGINT", 0, 11):
+        assert cli.status([*LONG, *CHUNKS, "--output", str(tmp_path)]) == 130
+    signal.signal(signal.SIGINT, before)
+    assert capsys.readouterr() == ("", "Interrupted. Repeat the command with --resume to continue.\n")
     written = times(tmp_path)
     assert written
 
@@ -33,10 +42,7 @@ def test_a_sweep_gives_the_same_results_after_an_interrupt_a_full_disk_and_a_kil
     assert line.startswith(f"cannot write to {str(path)!r}: File too large. Results written so far remain")
     assert times(tmp_path) == written
 
-    code, _, _ = finished_by(long_sweep(tmp_path, "--resume", signalled=("SIGKILL", 0, 11)))
-    assert code == -signal.SIGKILL
-    now = times(tmp_path)
-    assert len(now) == len(written) + 10
-    assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
     assert resumed(tmp_path) == 0
+    now = times(tmp_path)
+    assert {mark: now[mark] for mark in written} == written  # nothing was rewritten
     assert_same(content(path), undisturbed)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import zarr
-from long_sweeps import assert_same, content
+from long_sweeps import assert_same, content, silent
 
 from compare.claims.parameters import FIG5
 from compare.sweep.compute.executors import AT_ONCE, InProcess, Task
@@ -33,15 +33,6 @@ MAP = Map(
     x=Axis("disc_speed", 1.2, 2.0, 5),
     y=Axis("friction_force", 0.05, 0.15, 4),
 )
-
-
-@pytest.fixture(autouse=True)
-def fewer_checks(monkeypatch):
-    monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
-
-
-def silent(what, done, total):
-    pass
 
 
 class Recording(InProcess):
@@ -71,15 +62,20 @@ def swept(path, plan, chunk, executor=None):
     return store
 
 
-@pytest.mark.parametrize("plan", [BASIN, RANDOM, MAP], ids=lambda plan: plan.kind)
+@pytest.fixture(scope="module")
+def basin(tmp_path_factory):
+    return swept(tmp_path_factory.mktemp("basin") / "s", BASIN, 50).get("result")
+
+
+@pytest.mark.parametrize("plan", [BASIN, MAP], ids=lambda plan: plan.kind)
 def test_chunks_of_any_size_give_the_same_store_to_the_last_bit(plan, tmp_path):
     for chunk in (7, 1000):
         swept(tmp_path / str(chunk), plan, chunk)
     assert_same(content(tmp_path / "7"), content(tmp_path / "1000"))
 
 
-def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(tmp_path):
-    result = swept(tmp_path / "s", BASIN, 50).get("result")
+def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(basin):
+    result = basin
     assert dict(result.sizes) == {"vx": 9, "x": 17, "end_state": len(EndState)}
     assert (result["x"].attrs["units"], result["vx"].attrs["units"]) == ("m", "m/s")
     assert (result["largest_radius"].attrs["units"], result["slip_power"].attrs["units"]) == ("m", "W")
@@ -92,8 +88,8 @@ def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(tmp
         assert int(point["end"]) == (EndState.WHIRL if circles else EndState.SELF_CENTRED)
 
 
-def test_results_of_a_basin_are_at_their_simulated_points_only(tmp_path):
-    result = swept(tmp_path / "s", BASIN, 50).get("result")
+def test_results_of_a_basin_are_at_their_simulated_points_only(basin):
+    result = basin
     simulated = result["simulated"].values.astype(bool)
     assert 0 < np.count_nonzero(simulated) < simulated.size
     for name in ("time", "least_radius", "largest_radius", "slip_power"):
