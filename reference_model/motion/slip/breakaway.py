@@ -1,15 +1,15 @@
 """The beginning of slip from rest, for any law.
 
-If the pull is well above friction, slip grows like time and an explicit method can follow it from nearly zero. Slip
-that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
-Differential Equations II, IV.5) needs only a few steps until slip is fast enough.
+If the pull is well above friction, an explicit method can follow slip from nearly zero. Slip that begins at the
+friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the motion is smooth, and
+implicit collocation needs only a few steps until slip is fast enough.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -138,7 +138,7 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
                 )
             continue
         stop = min(t + step, run.end)
-        run.record(stop, _Sample(motion, piece, t))
+        run.record(stop, partial(_sample, motion, piece, t))
         start, t = piece.at(np.array([stop - t]))[0], stop
         if piece.falling or step * piece.stiffness < STIFF or leave(start.tolist()):
             break
@@ -164,10 +164,7 @@ class _Piece:
 
     @property
     def error(self) -> float:
-        """Contribution of the last terms of the series of values or rates, whichever contains less noise.
-
-        It is relative where the unknowns are large.
-        """
+        """Contribution of the last terms of the series of values or rates, whichever contains less noise."""
         sizes = 1.0 + abs(self.values.coefficients[0])
         by_values = abs(self.values.coefficients[-2:]) / sizes
         by_rates = self.values.t * abs(TO_SERIES[-2:] @ self.rates) / sizes
@@ -186,14 +183,8 @@ class _Piece:
         return self.at(self.values.t + delays)
 
 
-@dataclass(frozen=True, eq=False)
-class _Sample:
-    motion: Coordinates
-    piece: _Piece
-    t: float
-
-    def __call__(self, times: FloatArray) -> FloatArray:
-        return self.motion.standard(self.piece.at(times - self.t).T)
+def _sample(motion: Coordinates, piece: _Piece, t: float, times: FloatArray) -> FloatArray:
+    return motion.standard(piece.at(times - t).T)
 
 
 @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
