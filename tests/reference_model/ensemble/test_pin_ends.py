@@ -21,9 +21,12 @@ from reference_model import (
 )
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
-from reference_model.ensemble.core.recurrence import ACCURACY, converged
+from reference_model.ensemble.core.recurrence import converged
 from reference_model.ensemble.pin.end_states import depth, equilibrium_region
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
+
+ACCURACY = 1e-4
+"""Relative distance from a periodic motion that may remain."""
 
 STICKS = replace(FIG5, friction_force=0.3, disc_speed=0.6)
 STICK_SLIP = replace(FIG5, damping=1.173, friction_force=0.658, disc_speed=1.8, offset=-0.42)
