@@ -11,8 +11,6 @@ from reference_model import plain
 from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
-TIGHTEST = 3e-14
-
 
 def slip_velocity(pin, state):
     x, y, vx, vy = state
@@ -65,17 +63,12 @@ def release_after(pin, state, longest):
     return brentq(excess, grid[first - 1], grid[first], xtol=1e-15) if first else 0.0
 
 
-def as_trajectory(pin, times, states, regularisation=0.0):
-    states = np.array(states)
-    phase = Phase("slip", float(times[0]), float(times[-1]), states[0].copy())
-    solution = Solution("plain", TIGHTEST, 0, 0, 0.0, regularisation)
-    return Trajectory(pin, np.array(times), states, (phase,), solution)
-
-
 def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", tolerance=1e-12):
     """Return the trajectory of ``pin`` under any friction law."""
     run = slide(pin, state, times, of_vector(friction), method=method, rtol=tolerance, atol=tolerance * 1e-2)
-    return as_trajectory(pin, times, run.y.T, regularisation)
+    phase = Phase("slip", float(times[0]), float(times[-1]), run.y[:, 0].copy())
+    solution = Solution("plain", tolerance, 0, 0, 0.0, regularisation)
+    return Trajectory(pin, np.array(times), run.y.T.copy(), (phase,), solution)
 
 
 # Powers of mass, length and time.

@@ -1,11 +1,12 @@
 """Criteria for a pin's end state during its motion, and their justification.
 
-Permanent stick In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning
-part of size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside slips
-once per turn. If k > |ω| and it moves inward in a turn by less than the remaining distance, it creeps forever and
-counts as stuck (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping prevents
-it from overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while slip is along
-the pull (``slip.creeps_slaved``).
+Permanent stick
+    In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside slips once
+    per turn. If k > |ω| and it moves inward in a turn by less than the remaining distance, it creeps forever and
+    counts as stuck (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping
+    prevents it from overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while
+    slip is along the pull (``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all

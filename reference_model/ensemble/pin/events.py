@@ -252,7 +252,7 @@ def rest(
     settings: Settings,
     creeps: bool,
 ) -> bool:
-    """Follow a pin from rest at ``z``, which ``creeps`` or slips later; return whether its trajectory ends before."""
+    """Follow a pin from rest at ``z`` until it slips, or forever if it ``creeps``; return whether that ends it."""
     end = memory.duration
     w = 0j
     forget_turns(lanes, memory, lane)
