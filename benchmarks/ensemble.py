@@ -44,8 +44,8 @@ from rich.table import Table
 
 from compare.claims.parameters import FIG5
 from reference_model.ensemble import simulate_ensemble
-from reference_model.ensemble.chunks import CHUNK
 from reference_model.ensemble.core.stepping.runge_kutta import LOCAL
+from reference_model.ensemble.task import CHUNK
 from reference_model.systems import FloatArray
 
 STARTS = 20_000

@@ -1,7 +1,6 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-There is one change. Where the paper divides by the slip speed, this file divides by max(slip speed, ε), so that
-friction has a value at rest too and a sticking body creeps slower than ε. The rest of the package needs no ε.
+There is one change: slip speeds below ε are replaced by ε where they divide, so a sticking body creeps slower than ε.
 """
 
 from __future__ import annotations

@@ -35,13 +35,11 @@ def simulate(
     times : array-like of shape (n,)
         Increasing times in s.
     tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2, at the ends of steps and between them. It applies to
-        positions relative to a length L, to velocities and to the spin times the radius of gyration relative to
-        L/T, and to the angle in rad; L and T are those of :class:`motion.nondimensional.Units`. The error of one
-        step is at most a twentieth of the tolerance. With damping or rest errors stay within a small multiple of
-        the tolerance: at most 13 in random motions, 68 in compiled ones, and 45 for a pin on a disc that turns 45
-        times as fast as the pin swings. Otherwise they accumulate, to some 40 times the tolerance after 10,000
-        steps. In unstable motions they grow with the instability.
+        Relative accuracy to aim at, from 1e-14 to 1e-2. It applies to positions relative to a length L, to
+        velocities and to the spin times the radius of gyration relative to L/T, and to the angle in rad; L and T are
+        those of :class:`motion.nondimensional.Units`. With damping or rest errors stay within a small multiple of
+        the tolerance: at most 13 in random motions, 68 in compiled ones. Otherwise they accumulate, to some 40 times
+        the tolerance after 10,000 steps. In unstable motions they grow with the instability.
     contact : Contact or None
         Friction law of a disc; None for the law of the parameters.
     compiled : bool or None

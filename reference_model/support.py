@@ -3,8 +3,6 @@
 It pulls the mass towards (X0, 0) with a force that depends only on the deflection d = |z − X0|::
 
     C·d + C₃·d³ + C_s·max(0, d − gap)
-
-The paper uses C alone, and notes that nonlinear radial forces limit the amplitude in practice.
 """
 
 from __future__ import annotations
@@ -42,10 +40,7 @@ class Support:
         return cls(system.stiffness, system.offset, system.hardening, system.stop_gap, system.stop_stiffness)
 
     def scaled(self, factor: float, length: float = 1.0) -> Support:
-        """Return the support with all forces multiplied by ``factor``, in units of ``length``.
-
-        The unit of force scales with the unit of length, so C changes by the factor only.
-        """
+        """Return the support with all forces multiplied by ``factor``, in units of ``length``."""
         return Support(
             self.stiffness * factor,
             self.offset / length,

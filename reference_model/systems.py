@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 MOST_POINTS = 1000
-"""Largest number of contact points. For more, a continuous ring is a better model and cheaper."""
+"""Largest number of contact points; a continuous ring is better and cheaper than more."""
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest size of a parameter that must be > 0, and largest size of any: products of several stay finite."""
+"""Smallest size of a positive parameter, and largest size of any: products of several stay finite."""
 
 MOST_RATIO = 1e25
 """Largest rate in 1/s, and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
@@ -122,8 +122,8 @@ class _SupportedMass:
 class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
 
-    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not a finite number, is out of
-    range, or is so large or small that products would overflow.
+    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not a finite number or is out of
+    range.
 
     Parameters
     ----------
@@ -288,7 +288,7 @@ SHARES = 1e-12
 def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place, ...]:
     """Return x, y and share of contact points; raise ``ValueError`` if invalid.
 
-    There are at least two points, at different places. Their shares are positive and sum to 1, to rounding error.
+    There are at least two, at different places. Their shares are positive and sum to 1.
     """
     try:
         given = [tuple(place) for place in places]

@@ -30,10 +30,9 @@ SLOPE_ORDER = 2 * CLUSTERING
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    Force and moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by
-    Gauss's rule with n rings. At r₀ = U/|S|, where a point is at rest, they have a kink (r − r₀)·ln|r − r₀|, so the
-    rule is split and clustered there. Its error falls like n^(−12); with 16 rings it is about 1e-12. The slopes of
-    a ring are infinite like ln|r − r₀|, so the error of their average falls like n^(−6) and is about 1e-7.
+    Force and moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's
+    rule with n rings. The rule is split and clustered at the kink r₀ = U/|S|, where a point is at rest. Its error
+    falls like n^(−12); with 16 rings it is about 1e-12. The error of the slopes falls like n^(−6) and is about 1e-7.
 
     Parameters
     ----------
@@ -75,7 +74,6 @@ class Annulus(IsotropicContact):
         self._loads(inner)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Like :meth:`IsotropicContact.shares`."""
         resistance = moment = 0.0
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             along_slip, along_rim = mean_directions(slip_speed, radius * abs(relative_spin))

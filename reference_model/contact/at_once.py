@@ -41,20 +41,17 @@ class PointsAtOnce:
         return self.law.shares
 
     def arm(self, point: int, angle: FloatArray) -> ComplexArray:
-        """Like :meth:`Points.arm`."""
         return np.asarray(self.law.arm(point, 0.0) * np.exp(1j * angle))
 
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`Points.force_and_moment`."""
         arms = self._arms(angle)
         return self._friction(arms, slip - 1j * relative_spin * arms)
 
     def friction_of_others(
         self, point: int, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`Points.friction_of_others`."""
         arms = self._arms(angle)
         velocities = slip - 1j * relative_spin * (arms - arms[point])
         velocities[point] = 0.0
@@ -79,7 +76,6 @@ class RingAtOnce:
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`Ring.force_and_moment`."""
         speed, rim = np.asarray(abs(slip), dtype=np.float64), self.law.radius * relative_spin
         along_slip, along_rim = mean_directions_at(speed, abs(rim))
         return -along_slip * slip / (speed + NONE), self.law.radius * along_rim * np.sign(rim)
@@ -94,7 +90,6 @@ class OneByOne:
     def force_and_moment(
         self, slip: ComplexArray, relative_spin: FloatArray, angle: FloatArray
     ) -> tuple[ComplexArray, FloatArray]:
-        """Like :meth:`Contact.force_and_moment`."""
         states = zip(slip.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
         forces, moments = zip(*(self.law.force_and_moment(*state) for state in states), strict=True)
         return np.array(forces), np.array(moments)

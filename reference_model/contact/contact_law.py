@@ -98,7 +98,6 @@ class IsotropicContact(ABC):
         """Like :meth:`Contact.jacobian`.
 
         Slip across its direction turns the force, which acts like a damper F/U; along its direction the slope counts.
-        At U = 0 the two are the same.
         """
         speed = abs(slip)
         slopes = self.slopes(speed, relative_spin)
@@ -124,7 +123,6 @@ class Pin(IsotropicContact):
     """Contact in one point, the centre (1): full friction against slip, no moment."""
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Like :meth:`IsotropicContact.shares`."""
         return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
@@ -152,11 +150,9 @@ class Ring(_OnCircle, IsotropicContact):
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """Like :attr:`IsotropicContact.resting_radii`."""
         return (self.radius,)
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Like :meth:`IsotropicContact.shares`."""
         rim = self.radius * relative_spin
         along_slip, along_rim = mean_directions(slip_speed, abs(rim))
         return Shares(along_slip, math.copysign(self.radius * along_rim, rim))
@@ -185,13 +181,11 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Like :meth:`IsotropicContact.shares`."""
         _, c, s = self._polar(slip_speed, relative_spin)
         both = 0.75 * (c * s) ** 2
         return Shares(c * (1.0 - 0.5 * s**2 + both), self.radius * s * (1.0 - 0.5 * c**2 + both))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Like :meth:`IsotropicContact.slopes`."""
         speed, c, s = self._polar(slip_speed, relative_spin)
         curvature = (0.5 + 3.75 * (c * s) ** 2) / speed  # (P + d²P/dα²)/ν̄
         mixed = -self.radius * c * s * curvature

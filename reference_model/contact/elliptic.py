@@ -21,10 +21,7 @@ from scipy.special import ellipe, ellipkm1
 from reference_model.systems import FloatArray
 
 SMALL = 0.05
-"""Parameter m below which B and D come from their series, because the differences would lose digits.
-
-Just above it, two integrals of 1.57 with an error of 2e-16 each leave 0.04, so the relative error is about 1e-14.
-"""
+"""Parameter m below which B and D come from their series, because the differences would lose digits."""
 
 TERMS = 13
 """Number of terms of the series: the first omitted term is below SMALL^13 = 1e-17."""

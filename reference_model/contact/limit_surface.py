@@ -7,9 +7,8 @@ centre of the load P is at least |u|, so h is not negative for |F| <= 1 and only
 a convex Fermat-Weber problem with a pull F. Its solution may be a vertex, u = −i·a_j: then the disc begins to turn
 about point j, which stays at rest, and the limit surface has a flat face.
 
-Two published experiments disagree with Coulomb's law at every point of an extended contact. Dahmen et al. measured
-a limit that depends on microscopic details. Weidman and Malhotra confirmed only partially how two-tier discs come
-to rest.
+Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra confirmed only partially how
+two-tier discs come to rest.
 
 S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.
 P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb friction,
@@ -21,7 +20,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,10 +64,7 @@ def largest_wrench(
 
 
 def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -> float:
-    """Return the factor of :func:`largest_wrench` for an isotropic contact.
-
-    While U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
-    """
+    """Return the factor of an isotropic contact; as U = cos α falls and S ~ sin α grows, the force falls."""
     lever = contact.shares(0.0, 1.0).moment
     if lever == 0.0:  # a pin
         return 0.0 if moment > 0.0 else 1.0 / force
@@ -85,17 +80,6 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
         return lever / moment if force == 0.0 else 1.0 / force
     alpha = float(brentq(excess, 0.0, math.pi / 2.0, xtol=1e-16, rtol=1e-15))
     return math.hypot(load(alpha)[0], load(alpha)[1] / lever) / math.hypot(force, moment / lever)
-
-
-class Limit(NamedTuple):
-    """Squares of the largest moments that can be held together with given forces, and the slips for w = 1 there.
-
-    Where the force alone is too large the squares continue as (1 − |F|)·R², their leading term for |F| < 1, and so
-    pass through zero with a finite slope.
-    """
-
-    squares: FloatArray
-    slips: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,13 +118,13 @@ class PointsLimit:
     def margins(self, forces: ComplexArray, moment: FloatArray | float) -> FloatArray:
         """Return (h² − M²)/R² for ``forces`` (t,); negative where friction cannot hold them."""
         about_centre = self._about_centre(forces, moment)
-        squares = self.greatest(np.copysign(1.0, about_centre) * forces).squares
+        squares, _ = self.greatest(np.copysign(1.0, about_centre) * forces)
         return np.asarray((squares - about_centre**2) / self.radius**2)
 
     def direction(self, force: complex, moment: float) -> tuple[complex, float]:
         """Return the slip (u, w) normal to the limit surface near ``force`` and ``moment``."""
         sense = math.copysign(1.0, float(self._about_centre(force, moment)))
-        slip = complex(self.greatest(np.array([sense * force])).slips[0])
+        slip = complex(self.greatest(np.array([sense * force]))[1][0])
         return sense * (slip - 1j * self.centre), sense
 
     def factor(self, force: complex, moment: float) -> float:
@@ -153,8 +137,12 @@ class PointsLimit:
 
         return most if margin(most) >= 0.0 else float(brentq(margin, 0.0, most, xtol=1e-300, rtol=1e-15))
 
-    def greatest(self, forces: ComplexArray) -> Limit:
-        """Return the limit for ``forces`` (t,), with moments about the centre of the load and its slip."""
+    def greatest(self, forces: ComplexArray) -> tuple[FloatArray, ComplexArray]:
+        """Return the squares of the largest moments that can be held with ``forces`` (t,), and the slips for w = 1.
+
+        Moments and slips are those about the centre of the load. Where the force alone is too large the squares
+        continue as (1 − |F|)·R², their leading term for |F| < 1, and so pass through zero with a finite slope.
+        """
         # A point is the pivot if it can supply the force that friction of the other points leaves over.
         at_vertex = abs(forces[:, np.newaxis] - self._pulls) <= self.shares
         pivots = at_vertex.any(axis=1)
@@ -166,7 +154,7 @@ class PointsLimit:
         squares = np.where(
             too_much, (1.0 - abs(forces)) * self.radius**2, self._objective(forces, slips) ** 2
         )
-        return Limit(squares, slips)
+        return squares, slips
 
     def _about_centre(self, forces: ComplexArray | complex, moment: FloatArray | float) -> FloatArray:
         return np.asarray(moment - (self.centre.conjugate() * forces).imag)
@@ -178,8 +166,8 @@ class PointsLimit:
     def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
         """Minimise the mean distance minus F·u, which is convex, where the minimum is not at a vertex.
 
-        Armijo's rule halves a step of Newton's method until it descends by a share of its slope's prediction. A
-        step of Weiszfeld's method, which always descends, replaces a halved one that descends less.
+        Armijo's rule halves Newton's steps. A step of Weiszfeld's method, which always descends, replaces a halved
+        one that descends less.
         """
         # This is exact in the limit of large |u| for points with the same spread in all directions.
         u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))

@@ -96,7 +96,6 @@ class Points:
         return _friction_of(self._seen_from[point], slip, relative_spin, angle)
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """Like :meth:`Contact.jacobian`."""
         result = np.zeros((3, 4))
         for arm, share in zip(self.arms(angle), self.shares, strict=True):
             velocity = slip - 1j * relative_spin * arm

@@ -4,10 +4,7 @@
 - ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
 - ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and
   ``kernel`` with ``driver``, which combine them;
-- ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``, from ``checkpoints`` of
-  kernels.
-
-The plain :func:`reference_model.simulate` is the yardstick and uses this package only on request.
+- ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``.
 """
 
 from reference_model.ensemble.end_states import EndState, Ensemble

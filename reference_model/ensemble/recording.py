@@ -1,8 +1,7 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the checkpoint before it, with the pace of the
-whole: the same step, cut short. These trajectories run side by side in lanes. So the motion does not depend on the
-requested times, and its error is the same at all of them.
+The state at a requested time is the end of a short trajectory from the checkpoint before it, with the same step, cut
+short. So the motion does not depend on the requested times.
 """
 
 from __future__ import annotations
@@ -12,24 +11,21 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import (
+from reference_model.ensemble.core.checkpoints import (
     NONE,
     ON_THE_WAY,
     SLIPS,
     Checkpoints,
     empty_checkpoints,
-    from_the_start,
 )
 from reference_model.ensemble.end_states import HANDED_OVER, Results
+from reference_model.ensemble.task import Task
 from reference_model.motion.stepper import Kind
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
-Runs = Callable[[FloatArray, FloatArray, FloatArray, Checkpoints], Results]
-"""Takes starts (n, 4 or 6), paces (n, 5), durations in s (n,) and room for checkpoints of one trajectory.
-
-Runs them.
-"""
+Runs = Callable[[Task, Checkpoints], Results]
+"""Runs the trajectories of a task; takes room for the checkpoints of one of them."""
 
 ROOM_TO_SPARE = 64
 """Initial room for checkpoints where phases begin, in addition to those for all times."""
@@ -45,7 +41,7 @@ STAGES = 12
 class Recording:
     """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
 
-    ``states``, shape (n, 4) or (n, 6), is filled as far as computed; ``duration`` and ``unit`` of time are in s.
+    ``states``, shape (n, 4) or (n, 6), is filled as far as computed; ``duration`` and ``rounding`` of times are in s.
     ``phases`` are (kind, start, state) so far. ``steps`` and ``evaluations`` are those of ``Solution`` so far,
     including rejected steps and stick phases.
     """
@@ -53,42 +49,41 @@ class Recording:
     times: FloatArray
     states: FloatArray
     duration: float
-    unit: float
+    rounding: float
     phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)
     steps: int = 0
     evaluations: int = 0
 
-    @property
-    def _rounding(self) -> float:
-        return ROUNDED * max(self.duration, self.unit)
-
-    def follow(self, one: Runs, many: Runs, state: FloatArray, since: float) -> Results:
+    def follow(
+        self, parameters: FloatArray, one: Runs, many: Runs, state: FloatArray, since: float
+    ) -> Results:
         """Follow the motion from ``state`` at ``since`` as far as ``one`` goes; return its result.
 
         ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
         """
         # The kernel is compiled for writable arrays only.
-        start, left = state.copy()[np.newaxis], np.array([self.duration - since])
+        task = Task(parameters, state.copy()[np.newaxis], np.array([self.duration - since]))
         requested = self.times[self.times >= since] - since
         room = len(requested) + ROOM_TO_SPARE
         while True:
             checkpoints = empty_checkpoints(room, len(state), requested)
-            end = one(start, from_the_start(), left, checkpoints)
+            end = one(task, checkpoints)
             taken = int(np.count_nonzero(checkpoints["kind"] != NONE))
             if taken < room:
                 break
             room *= 2  # again from the start: the motion does not depend on the room
         until = since + float(end.times[0])
         if end.ends[0] != HANDED_OVER:
-            self._require_end(end, left, since)
+            self._require_end(end, task.durations, since)
             until = self.duration
         checkpoints = checkpoints[:taken]
         checkpoints["time"] += since
-        self._sample(many, checkpoints, until)
+        self._sample(parameters, many, checkpoints, until)
         for checkpoint in checkpoints[checkpoints["kind"] != ON_THE_WAY]:
             kind: Kind = "slip" if checkpoint["kind"] == SLIPS else "stick"
             self._enter(kind, float(checkpoint["time"]), checkpoint["state"])
-        self._count(end)
+        self.steps += int(end.steps[0])
+        self.evaluations += STAGES * int(end.steps[0])
         return end
 
     def take(self, motion: Trajectory) -> None:
@@ -100,20 +95,20 @@ class Recording:
         self.steps += motion.solution.steps
         self.evaluations += motion.solution.evaluations
 
-    def _sample(self, many: Runs, checkpoints: Checkpoints, until: float) -> None:
+    def _sample(self, parameters: FloatArray, many: Runs, checkpoints: Checkpoints, until: float) -> None:
         requested = (self.times >= checkpoints["time"][0]) & (self.times <= until)
         if not np.any(requested):
             return
         before = checkpoints[np.searchsorted(checkpoints["time"], self.times[requested], side="right") - 1]
         durations = self.times[requested] - before["time"]
         starts, paces = np.ascontiguousarray(before["state"]), np.ascontiguousarray(before["pace"])
-        ends = many(starts, paces, durations, checkpoints[:0])
+        ends = many(Task(parameters, starts, durations, paces), checkpoints[:0])
         self._require_end(ends, durations, until)
         self.states[requested] = ends.states
         self.evaluations += STAGES * int(np.sum(ends.steps))
 
     def _require_end(self, results: Results, durations: FloatArray, since: float) -> None:
-        short = results.times < durations - self._rounding
+        short = results.times < durations - self.rounding
         if np.any(short):
             raise SimulationError(
                 f"the compiled run failed {since + float(np.min(results.times[short])):g} s after its start: too "
@@ -121,15 +116,8 @@ class Recording:
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
-        """Begin a phase of this kind, unless it is the current one; drop a phase that lasts no longer than rounding.
-
-        The reference begins with such a slip phase if it continues a disc that already pivots about a point.
-        """
-        if self.phases and t - self.phases[-1][1] <= self._rounding:
+        """Begin a phase, unless it is of the current kind; drop a phase that lasts no longer than rounding."""
+        if self.phases and t - self.phases[-1][1] <= self.rounding:
             t = self.phases.pop()[1]
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, state))
-
-    def _count(self, results: Results) -> None:
-        self.steps += int(results.steps[0])
-        self.evaluations += STAGES * int(results.steps[0])

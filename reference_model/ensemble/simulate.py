@@ -18,6 +18,7 @@ from reference_model.systems import (
     checked_tolerance,
     positive_number,
     require_system,
+    require_whole,
 )
 
 UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
@@ -69,50 +70,43 @@ def simulate_ensemble(
     n = _number_of(len(starts), varied)
     duration = positive_number("duration", duration, "s")
     tolerance = checked_tolerance(tolerance)
-    threads = _checked_threads(threads)
+    if threads is None:
+        threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    require_whole("threads", threads, least=1)
 
     # Each driver loads its own compiled code.
     if isinstance(system, PinOnDisc):
         from reference_model.ensemble.pin.driver import simulate_pins
 
-        return simulate_pins(system, starts, duration, tolerance, varied, early_end, n, threads)
-    from reference_model.ensemble.disc.driver import simulate_discs
+        results = simulate_pins(system, starts, duration, tolerance, varied, early_end, n, threads)
+    else:
+        from reference_model.ensemble.disc.driver import simulate_discs
 
-    return simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
+        results = simulate_discs(system, starts, duration, tolerance, varied, early_end, n, threads)
+    return results.ensemble(varied.get("friction_force", system.friction_force))
 
 
 def require_supported(system: System) -> None:
     """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
-    unknown = _unsupported(system)
-    if unknown:
-        raise ValueError(unknown)
+    if not system.linear_support:
+        name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
+        raise ValueError(
+            f"{name} = {getattr(system, name):g}: compiled runs need a linear support, because they compute release "
+            "and the surroundings of an equilibrium in closed form; set it to 0 or use reference_model.simulate"
+        )
+    if not is_supported(system):
+        raise ValueError(
+            f"contact_points = {getattr(system, 'contact_points', None)}: compiled runs support up to {MOST_POINTS}; "
+            "for more use the continuous ring, contact_points = None"
+        )
 
 
 def is_supported(system: System) -> bool:
     """Return whether compiled code supports a system."""
-    return not _unsupported(system)
-
-
-def _unsupported(system: System) -> str:
-    """Return the reason why compiled code cannot simulate ``system``, or ""."""
-    for name in UNSUPPORTED:
-        value = getattr(system, name)
-        if value != 0.0 and name != "stop_gap":
-            return (
-                f"{name} = {value:g}: compiled runs need a linear support, because they compute release and "
-                "the surroundings of an equilibrium in closed form; set it to 0 or use reference_model.simulate"
-            )
-    points = getattr(system, "contact_points", None) or 0
-    if points > MOST_POINTS:
-        return (
-            f"contact_points = {points}: compiled runs support up to {MOST_POINTS}; for more use the "
-            "continuous ring, contact_points = None"
-        )
-    return ""
+    return system.linear_support and (getattr(system, "contact_points", None) or 0) <= MOST_POINTS
 
 
 def _checked_starts(system: System, initial_states: ArrayLike) -> FloatArray:
-    """Return the initial states, shape (1 or n, state_size)."""
     starts = np.atleast_2d(_numbers("initial_states", initial_states))
     if starts.ndim != 2 or starts.shape[1] != system.state_size or len(starts) == 0:
         raise ValueError(
@@ -150,18 +144,10 @@ def _numbers(name: str, values: Any) -> FloatArray:
 
 
 def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
-    """Return the number of trajectories; all parameters must have it, and the starts unless there is one for all."""
+    """Return the number of trajectories; the starts may be one for all."""
     sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
     n = max(sizes.values())
     for name, size in sizes.items():
         if size != n and (name, size) != ("initial_states", 1):
             raise ValueError(f"{name} is for {size} trajectories, but there are {n}")
     return n
-
-
-def _checked_threads(threads: int | None) -> int:
-    if threads is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise ValueError(f"threads = {threads!r}: it must be a whole number >= 1")
-    return threads

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference_model.contact.contact_law import Contact, contact_of
-from reference_model.ensemble.recording import Recording
+from reference_model.ensemble.recording import ROUNDED, Recording
 from reference_model.ensemble.simulate import require_supported
 from reference_model.motion.nondimensional import Units
 from reference_model.systems import PinOnDisc, System, checked_state, checked_times, checked_tolerance
@@ -39,7 +39,8 @@ def simulate_compiled(
     delays, unit = times - times[0], Units.of(system, state).time
     # For a single time only the phase that begins is needed.
     duration = float(delays[-1]) if len(times) > 1 else unit
-    recording = Recording(delays, np.full((len(times), system.state_size), np.nan), duration, unit)
+    states = np.full((len(times), system.state_size), np.nan)
+    recording = Recording(delays, states, duration, ROUNDED * max(duration, unit))
     if isinstance(system, PinOnDisc):
         from reference_model.ensemble.pin.driver import follow_pin
 

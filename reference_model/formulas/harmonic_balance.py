@@ -8,10 +8,9 @@ With z = z_m + ρ·exp(iψ), ψ̇ = κ, the deflection of the support is q + ρ�
 
 with the mean P of |U + V·exp(iψ)| over ψ, U = (ω − κ)ρ and V = ω|z_m|, which is the mean slip speed of a ring.
 
-*Order of the error.* The balance omits the second harmonic, which is proportional to X0 like the mean and coupled
-to it by friction and hardening. So the absolute error of the mean is of order X0, like that of (18), which is this
-balance for C₃ = 0 to first order. ρ and κ do not depend on the sign of X0, because the orbit for −X0 is turned by
-half a turn, so their errors are of order X0².
+*Order of the error.* The balance omits the second harmonic, which is proportional to X0 like the mean and coupled to
+it. So the error of the mean is of order X0, like that of (18), which is this balance for C₃ = 0 to first order. ρ and
+κ do not depend on the sign of X0, so their errors are of order X0².
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ class Body(ABC):
         return self.begin_to_slip(t, y)
 
     def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow fast or slow slip as long as its description is valid."""
+        """Follow slip as long as its description is valid."""
         slowly = self.sticky and self.coordinates.speed(y) < self.coordinates.slow(y)
         end = (slide_slowly if slowly else slide)(self.run, self.coordinates, t, y, self.leave)
         return end.t, end.y
@@ -212,13 +212,11 @@ class PinBody(Body):
         return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """Like :meth:`Body.turned`."""
         z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, none, none))
 
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """Like :meth:`Body.crept`."""
         turn = np.exp(1j * self.motion.disc_speed * delays)
         w = complex(y[2], y[3])
         z = (complex(y[0], y[1]) + way * w) * turn
@@ -266,14 +264,12 @@ class DiscBody(Body):
         super().__init__(run, coordinates, motion.centre)
 
     def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """Like :meth:`Body.turned`."""
         turn = self.motion.centre.disc_speed * delays
         z = complex(y[0], y[1]) * np.exp(1j * turn)
         none = np.zeros_like(delays)
         return np.array((z.real, z.imag, y[2] + turn, none, none, none))
 
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """Like :meth:`Body.crept`."""
         turn = self.motion.centre.disc_speed * delays
         u = complex(y[3], y[4])
         z = (complex(y[0], y[1]) + way * u) * np.exp(1j * turn)
@@ -282,7 +278,6 @@ class DiscBody(Body):
         return np.array((z.real, z.imag, angle, u.real, u.imag, slip * y[5]))
 
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`Body.begin_to_slip`."""
         return self.begin_slip(t, y[:3], self.coordinates, self.drift(y), self.direction(y))
 
     def begin_slip(
@@ -331,5 +326,4 @@ class RingBody(DiscBody):
         return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Like :meth:`DiscBody.direction`."""
         return slip_direction(self.motion, self.contact, complex(y[0], y[1]))

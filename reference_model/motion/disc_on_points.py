@@ -1,11 +1,8 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
 A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
-exceed its share. This pivot phase has one degree of freedom, and begins and ends like the stick phase of a pin
-(:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
-
-Nothing is smoothed. Motions with friction regularised at ε differ by an amount proportional to ε up to the first
-release, and like ε^0.8 after it, as for a pin.
+exceed its share. In this pivot phase it has one degree of freedom (:mod:`reference_model.motion.pivot`). If two
+points rest, the whole disc sticks.
 """
 
 from __future__ import annotations
@@ -29,7 +26,7 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
 SAMPLES_PER_TURN = 360
-"""Samples per turn of the margin of a stuck disc; minima between them are searched."""
+"""Samples per turn of the margin of a stuck disc."""
 
 
 class PointsBody(DiscBody):
@@ -47,7 +44,6 @@ class PointsBody(DiscBody):
         self._least_speed = max(run.thresholds.common_rest, run.local_tolerance * leverage)
 
     def begin(self, y: list[float]) -> None:
-        """Like :meth:`DiscBody.begin`."""
         resting = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None
         if resting is not None and self._at_rest(resting, y):
             self._rest_on(resting, 0.0, y)
@@ -55,7 +51,6 @@ class PointsBody(DiscBody):
             super().begin(y)
 
     def advance(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`DiscBody.advance`."""
         if self.pivot is not None:
             return self._turn_about(self.pivot, t, y)
         slow = self._slow_point(y) if self.sticky and self.coordinates.speed(y) > 0.0 else None

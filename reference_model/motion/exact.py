@@ -8,8 +8,6 @@
 - The slip of a pin begins with a series (:func:`.stick.slip_from_rest`), that of a disc by collocation
   (:mod:`.slip.breakaway`).
 - A disc on single points may also pivot about a resting point (:mod:`.disc_on_points`).
-
-Internal times and lengths are scaled to order one. Velocities are relative to the master disc.
 """
 
 from __future__ import annotations
@@ -57,8 +55,7 @@ def simulate_with(
 ) -> Trajectory:
     """Simulate like :func:`reference_model.simulate`, with explicit thresholds.
 
-    Results do not depend on the thresholds; tests check that. If a slip phase has lasted ``slipping`` s the motion
-    ends, possibly before the end of ``times``.
+    If a slip phase has lasted ``slipping`` s the motion ends, possibly before the end of ``times``.
     """
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
@@ -117,9 +114,8 @@ def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Un
 class _Frame:
     """Conversion between states in SI units and scaled unknowns relative to the turning master disc.
 
-    ``lengths`` are the units of the positions, shape (2,) or (3,): m for x and y, rad for the angle of a disc,
-    which is not scaled. ``speeds`` are those of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in
-    rad/s.
+    ``lengths`` are the units of the positions, shape (2,) or (3,): m, and rad for the angle. ``speeds`` are those of
+    the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
     """
 
     disc_speed: float

@@ -59,9 +59,9 @@ def simulate_polar_form(
 ) -> FloatArray:
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
-    This independent formulation checks the main one. It cannot stick, and it is singular at the centre.
-    ``initial_state`` is x, y, vx, vy at ``times[0]``, away from the centre; ``tolerance`` is at least SciPy's
-    smallest. Raises ``ValueError`` if the support is not linear, and ``RuntimeError`` if the integrator fails.
+    It cannot stick, and it is singular at the centre. ``initial_state`` is x, y, vx, vy at ``times[0]``, away from
+    the centre; ``tolerance`` is at least SciPy's smallest. Raises ``ValueError`` if the support is not linear, and
+    ``RuntimeError`` if the integrator fails.
     """
     require_linear_support(pin)
     x, y, vx, vy = initial_state

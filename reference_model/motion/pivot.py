@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from scipy.optimize import brentq
@@ -104,18 +104,14 @@ class OnePoint:
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
-        """Return the slip speed that the point would gain until the disc rests, for lack of friction.
-
-        Returns inf if the disc does not come to rest. The missing friction is the larger of its values now and at
-        rest, with an error of second order in time.
-        """
+        """Return the slip speed that the point would gain, for lack of friction, until the disc rests, or inf."""
         r = unknowns[3]
         falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
         if falling <= 0.0:
             return math.inf
         left = abs(r) / falling
         at_rest = [*unknowns[:3], math.copysign(LEAST_SLIP, r)]
-        lacking = max(-self.grip(unknowns), -self.grip(at_rest), 0.0) + (self._pace * left) ** 2
+        lacking = max(-self.grip(unknowns), -self.grip(at_rest), 0.0) + (self.motion.pace * left) ** 2
         leverage = abs(self.arm(0.0)) / self.motion.gyration
         return lacking * self.most * left * math.hypot(1.0, leverage)
 
@@ -127,39 +123,26 @@ class OnePoint:
         def slow_slip(y: Sequence[float]) -> float:
             return min(slow, passing * abs(y[3]))
 
-        surfaces = stop_surfaces(self.motion.centre.support)
-        return Coordinates(
-            self.slipping_rates,
-            self.at_once.slipping_rates,
-            2,
-            slow_slip,
-            self._pace,
-            self._standard,
-            angle=2,
-            turning=3,
-            surfaces=surfaces,
-        )
+        many = self.at_once.slipping_rates
+        return Coordinates(self.slipping_rates, many, 2, slow_slip, turning=3, **self._common)
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
         """Return the coordinates of the disc that turns about the resting point, with the slip r."""
-        slow = thresholds.slow_slip * self.motion.centre.friction
-        surfaces = stop_surfaces(self.motion.centre.support)
+        slow, many = thresholds.slow_slip * self.motion.centre.friction, self.at_once.pivoting_rates
         return Coordinates(
             self.pivoting_rates,
-            self.at_once.pivoting_rates,
+            many,
             1,
             lambda _: slow,
-            self._pace,
-            self._standard,
-            angle=2,
             leverage=self.leverage,
             grip=self.grip,
-            surfaces=surfaces,
+            **self._common,
         )
 
     @property
-    def _pace(self) -> float:
-        return self.motion.pace
+    def _common(self) -> dict[str, Any]:
+        surfaces = stop_surfaces(self.motion.centre.support)
+        return {"pace": self.motion.pace, "standard": self._standard, "angle": 2, "surfaces": surfaces}
 
     def _standard(self, unknowns: FloatArray) -> FloatArray:
         """Return the standard unknowns of the disc, shape (6, n), for these, shape (4 or 6, n)."""

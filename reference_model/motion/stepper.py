@@ -30,7 +30,7 @@ SHORT = 0.02
 """Change of slip (relative) plus time (in T) of the longest short step."""
 
 PATIENCE = 15
-"""Number of stiff explicit steps before an implicit method is tried; doubled each time that it does not pay."""
+"""Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
 
 SLOW_SPRINGS = 0.1
 """Natural frequency in 1/T below which steps are more accurate: position errors are velocity errors over it."""
@@ -178,8 +178,8 @@ class SwitchingSurface(NamedTuple):
 class Stepper:
     """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
-    The method is SciPy's explicit one of eighth order, or implicit collocation. Across such a surface an error
-    estimate is unreliable, so a step that has crossed one is repeated up to the surface.
+    Across such a surface an error estimate is unreliable, so a step that has crossed one is repeated up to it. The
+    method is explicit, or implicit collocation.
 
     ``rates`` takes one state if explicit, and is vectorised if implicit. ``y`` are the initial unknowns, and
     ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the

@@ -23,8 +23,7 @@ from reference_model.systems import FloatArray
 GRAZING = 1e-8
 """Relative excess of the pull over friction that does not count as a release.
 
-An excess δ at the peak of the pull lasts for √(8δ)/ω and moves the pin by about g·δ²/ω², far less than the rounding
-of the position.
+An excess δ moves the pin by about g·δ²/ω², far less than the rounding of the position.
 """
 
 NARROW = 1e-5
@@ -46,9 +45,8 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position: a single harmonic, whose first upward crossing has a closed form. Unlike
-    ``pin_formulas.release_time``, eq. 7 as printed, it follows from the equations of motion. On a nonlinear support
-    see :func:`_first_release`.
+    of the position: a single harmonic, whose first upward crossing has a closed form. On a nonlinear support see
+    :func:`_first_release`.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -143,8 +141,7 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
     """Return the unit vector (u_x, u_y, r) of the slip that begins from rest at ``z`` when friction is exceeded.
 
     With the mean slip speed P(n) = F·U + M·S the slip s·n begins with ṡ = a·n − g·P(n), and n maximises this rate:
-    there a − g∇P is along n. At a release, where the rate is zero, n is normal to the limit surface. The centre
-    begins to slip along its pull, which leaves one unknown angle.
+    there a − g∇P is along n. The centre begins to slip along its pull, which leaves one unknown angle.
     """
     pull, turning = motion.centre.pull(z, 0j), motion.turning_pull(0.0)
     strength, g = abs(pull), motion.centre.friction
@@ -191,9 +188,9 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
     With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. At rest θ is the direction of the
     pull. If the pull exceeds friction, slip grows linearly and the series converges. If they are equal (release from
-    stick), slip grows quadratically with its direction slaved to the pull. Then the point is an irregular singular
-    point and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. Both cases obey the same
-    recurrence, at order t^k: (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
+    stick), slip grows quadratically with its direction slaved to the pull. Then the series is asymptotic, with an
+    error like exp(−2g/(κt)), κ = d|a|/dt. Both cases obey the same recurrence, at order t^k: (|a₀| + k·s₁)·θ_k =
+    known, (k+1)·s_{k+1} = (Re b)_k.
 
     Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
     """

@@ -1,9 +1,8 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
-the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Fast decaying components are damped
-out, and the polynomial is as accurate between the nodes as at its end. SciPy's ``Radau`` has three nodes and order
-5; tolerances down to 1e-14 need the eight nodes and order 15 of this module.
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). The polynomial is as accurate between
+the nodes as at its end. SciPy's ``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
 """
 
 from __future__ import annotations

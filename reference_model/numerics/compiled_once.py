@@ -64,10 +64,7 @@ class CompiledOnce:
 def compiled_for(
     kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
 ) -> Any:
-    """Return numba's dispatcher of a function for these argument types, compiled or loaded from disk.
-
-    Threads and processes that need it at the same time wait for the first one.
-    """
+    """Return numba's dispatcher of a function for these types; other threads and processes wait for it."""
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
         if folder:
@@ -92,10 +89,7 @@ def _cached_in(folder: str) -> Iterator[None]:
 
 @cache
 def digest_of(package: Path) -> str:
-    """Return a digest of all sources of a package.
-
-    Call it first when the package is imported: compiled functions belong to the sources of that moment.
-    """
+    """Return a digest of all sources of a package; call it at import, because compiled functions belong to these."""
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):
         digest.update(

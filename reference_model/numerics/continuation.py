@@ -1,8 +1,7 @@
 """Solution curves of d − 1 equations in d unknowns, by pseudo-arclength continuation.
 
 Each point is predicted along the tangent and corrected across it by Newton's method, so a curve may turn back in
-every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems). SciPy has no
-continuation, and packages for it need their own problem descriptions.
+every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems).
 """
 
 from __future__ import annotations

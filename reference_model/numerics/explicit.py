@@ -1,8 +1,7 @@
 """Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
-With four or six unknowns SciPy spends more time on a step than on its twelve evaluations. Here each stage is one
-matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control and interpolant
-are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
+Each stage is one matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control
+and interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations
@@ -80,10 +79,7 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
 
     @property
     def stiffness(self) -> float:
-        """Length of the last step times the largest decay rate, estimated from the last two stages, both at the end.
-
-        Hairer and Wanner, Solving Ordinary Differential Equations II, IV.2.
-        """
+        """Length of the last step times the decay rate by its last two stages (Hairer and Wanner II, IV.2)."""
         unknowns, rates = self._last_two
         apart = math.dist(self.y.tolist(), unknowns)
         return float(self.h_previous * math.dist(self.f.tolist(), rates) / apart) if apart > 0.0 else 0.0

@@ -1,8 +1,4 @@
-"""All zeros of a function of one variable on an interval.
-
-SciPy finds one zero in a bracket. This module searches for the brackets of all zeros, including those next to the
-ends of the interval and pairs in a dip, and leaves the rest to ``brentq``.
-"""
+"""All zeros of a function of one variable on an interval."""
 
 from __future__ import annotations
 
@@ -21,10 +17,7 @@ FLAT = 1e-13
 
 
 def nodes_between(left: float, right: float) -> FloatArray:
-    """Return at most NODES + 2 points of [left, right], both ends included, doubly exponentially dense towards them.
-
-    They are the nodes of tanh-sinh quadrature, which resolve any scale next to an end.
-    """
+    """Return the nodes of tanh-sinh quadrature in [left, right], at most NODES + 2, dense towards both ends."""
     part = 1.0 / (1.0 + np.exp(np.pi * np.sinh(np.linspace(REACH, -REACH, NODES))))
     # Measured from the nearer end, so that the distance to it keeps all its digits.
     inner = np.where(part < 0.5, left + (right - left) * part, right - (right - left) * part[::-1])

@@ -27,8 +27,7 @@ COMPONENTS = ("x", "y", "vx", "vy")
 NEAR = 0.3
 """Angle in rad within which a release counts as near that of the orbit.
 
-A root lies on the boundary whatever this value. It decides how close two starts must come for a root to be searched;
-all other starts are followed to their ends, which takes ten times as long.
+A root lies on the boundary whatever this value.
 """
 
 SPARE = 0.1
@@ -194,7 +193,7 @@ def _checked_places(components: tuple[str, str]) -> list[int]:
 def _checked_ranges(
     components: tuple[str, str], ranges: Sequence[tuple[float, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the lower and the upper limits, each of shape (2,); raise ``ValueError`` if they are invalid."""
+    """Return the lower and the upper limits, each of shape (2,)."""
     if len(ranges) != 2 or any(len(limits) != 2 for limits in ranges):
         raise ValueError(f"ranges = {ranges!r}: they must be two pairs of numbers")
     for name, limits in zip(components, ranges, strict=True):

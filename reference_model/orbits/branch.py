@@ -9,9 +9,8 @@ from dataclasses import replace
 
 from scipy.optimize import minimize_scalar
 
-from reference_model.orbits.modulated import modulated_cycle
 from reference_model.orbits.shooting import REFERENCE, Orbit, Simulate
-from reference_model.orbits.whirl import whirl_orbit
+from reference_model.orbits.whirl import modulated_cycle, whirl_orbit
 from reference_model.systems import System
 
 BRANCH_STEP = 0.08

@@ -1,9 +1,8 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of
-the pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the
-orbits, and its slope there is their multiplier. Of the other three multipliers one belongs to a shift in time, and
-two are zero, because stick forgets the time and the velocity of the stop.
+At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of the
+pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the orbits,
+and its slope there is their multiplier.
 
 The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
 vanishes and a later one takes its place.
@@ -32,7 +31,7 @@ from reference_model.trajectory import Trajectory
 SEARCH_TIMES = (1.5, 16.0)
 """Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
 
-Most pins stick again within the first time. One that does not within the second is taken never to stick again.
+A pin that does not stick again within the second is taken never to do so.
 """
 
 NODES = 48
@@ -54,10 +53,7 @@ JUMP = 1e-4
 """Smallest residual in rad of a sign change that is a jump and not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
-"""Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used.
-
-At a tolerance of 1e-12 the map's noise of about 1e-13 and the fourth power of the first step each leave 1e-10.
-"""
+"""Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used."""
 
 
 class Release(NamedTuple):

@@ -1,8 +1,7 @@
 """The smallest shock that throws a pin from its self-centred equilibrium into the whirl.
 
 A shock changes only the velocity. The smallest one is the nearest point of the basin boundary in the plane of
-velocities through the equilibrium. End states of many starts show its approximate direction. The point itself lies
-on the stable set of a saddle orbit, and bisection of end states checks it.
+velocities through the equilibrium. End states of many starts show its approximate direction.
 """
 
 from __future__ import annotations
@@ -26,10 +25,7 @@ DIRECTIONS = 64
 """Number of directions that are tried first, about a tenth of a radian apart."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset.
-
-They grow by a tenth, so the search may miss a thinner region of whirls.
-"""
+"""Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset."""
 
 PERIODS = 500.0
 """Longest time to an end state, in periods of the free oscillation, unless the start lies on the boundary."""

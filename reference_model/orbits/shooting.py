@@ -3,9 +3,8 @@
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
 offset the system is isotropic, and a motion may recur up to a rotation about the axis.
 
-Newton's method is written out here because ``scipy.optimize.root`` (hybr) cannot know that an orbit is far from the
-guess or has collapsed onto the axis. It finds the same whirls, but needs 51 to 63 return maps, each a simulation,
-to fail without an orbit near the guess, compared with 10 to 16 here.
+Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 return maps, each a simulation, to fail
+without an orbit near the guess, compared with 10 to 16 here.
 """
 
 from __future__ import annotations
@@ -47,9 +46,7 @@ PERIOD, LOAD, TURN = -3, -2, -1
 CENTRAL = 3e-4
 """Relative step of the fourth-order central differences for multipliers.
 
-For the whirl of Fig. 11 with an offset, the worst case, the noise of the flow over the step equals the step's
-fourth power. The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with
-an offset; 1e-5 by engines with more noise at a tolerance of 1e-12.
+The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with an offset.
 """
 
 MOST_ITERATIONS = 25

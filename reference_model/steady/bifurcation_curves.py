@@ -1,9 +1,8 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-The paper suggests this analysis but does not carry it out. It is for X0 = 0 and any isotropic friction law. The
-ratio of the slip speeds of centre and rim determines a whirl up to its torsional balance, see
-:func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this makes three unknowns, and a
-boundary has two equations, the balance and one of
+This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
+up to its torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this
+makes three unknowns, and a boundary has two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -14,22 +13,21 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache, partial
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from scipy.optimize import brentq
 
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of
 from reference_model.formulas.characteristic_polynomial import Coefficients, characteristic_coefficients
-from reference_model.formulas.disc import whirl_arm
+from reference_model.formulas.disc import pin_of, whirl_arm
+from reference_model.formulas.pin import whirl_radius
 from reference_model.numerics.continuation import follow
-from reference_model.steady.parameter_plane import ParameterPlane
+from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray
-
-__all__ = ["Boundary", "Kind", "ParameterPlane", "boundaries", "crossings"]
 
 Kind = Literal["Hopf", "fold", "onset"]
 
@@ -59,6 +57,61 @@ NODES = 41
 SAME = 3e-3
 """Largest distance of a start from a known curve, in units of the scales, to lie on it."""
 
+LINES = 9
+"""Number of starting lines in each direction of the plane."""
+
+INSET = 1e-6
+"""Distance of the outermost lines from the borders of a plane, so that all starts lie inside."""
+
+
+@dataclass(frozen=True)
+class ParameterPlane:
+    """A rectangle in two parameters of a disc; all others are those of ``disc``.
+
+    ``names`` are those of two parameters in ``DiscOnDisc``, except contact, offset and nonlinear support; ``lower``
+    and ``upper`` are the limits of their ranges. Raises ``ValueError`` if a name is not allowed, a range is empty
+    or includes parameters without a whirl at any load, or there is an offset or a nonlinear support.
+    """
+
+    disc: DiscOnDisc
+    names: tuple[str, str]
+    lower: tuple[float, float]
+    upper: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        if self.disc.offset != 0.0:
+            raise ValueError(
+                f"offset = {self.disc.offset:g} m: boundaries are defined for whirls without offset; set it to 0"
+            )
+        require_linear_support(self.disc)
+        # A contact passed as an argument has its own radius.
+        fixed = ("offset", "hardening", "stop_gap", "stop_stiffness", "contact_radius", "contact_points")
+        allowed = [field.name for field in fields(self.disc) if field.name not in fixed]
+        if len(set(self.names)) != 2 or not set(self.names) <= set(allowed):
+            raise ValueError(f"names = {self.names}: they must be two of {', '.join(allowed)}")
+        for name, low, high in zip(self.names, self.lower, self.upper, strict=True):
+            if not low < high:
+                raise ValueError(f"{name} from {low:g} to {high:g}: the range must not be empty")
+            if name == "disc_speed" and low < 0.0 < high:
+                raise ValueError(f"disc_speed from {low:g} to {high:g} rad/s: there is no whirl at rest")
+        for corner in itertools.product(*zip(self.lower, self.upper, strict=True)):
+            whirl_radius(pin_of(self.at(corner)))
+
+    def at(self, values: Iterable[float]) -> DiscOnDisc:
+        """Return the disc with these values of the two parameters."""
+        changes: dict[str, Any] = dict(zip(self.names, map(float, values), strict=True))
+        return DiscOnDisc(**vars(self.disc) | changes)  # twice as fast as replace()
+
+    def lines(self, which: int) -> FloatArray:
+        """Return the values of one parameter on the starting lines, shape (LINES,)."""
+        inset = INSET * self.size[which]
+        return np.linspace(self.lower[which] + inset, self.upper[which] - inset, LINES)
+
+    @property
+    def size(self) -> FloatArray:
+        """Length of both ranges, shape (2,)."""
+        return np.subtract(self.upper, self.lower)
+
 
 @dataclass(frozen=True, eq=False)
 class Boundary:
@@ -80,7 +133,7 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
-    The search starts from ``parameter_plane.LINES`` lines in each direction, including the borders. It misses only
+    The search starts from ``LINES`` lines in each direction, including the borders. It misses only
     closed curves between neighbouring lines. ``step`` is the largest distance of neighbouring points, in units of
     the ranges; ``contact`` None means the law of the parameters.
 
@@ -129,8 +182,7 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 class _Condition:
     """The equations of a boundary, for the unknowns (two parameters, ln(U/|U − W|)).
 
-    They hold on one side of U = W and for one sign of ω − Ω, because |ω − Ω| has a kink. At the onset only the two
-    parameters are unknown.
+    They hold on one side of U = W and for one sign of ω − Ω. At the onset only the two parameters are unknown.
     """
 
     plane: ParameterPlane

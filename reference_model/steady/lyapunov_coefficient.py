@@ -21,7 +21,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 STEP = 8e-3
 """Step of the differences, in units of the distance to infinite derivatives of friction.
 
-Truncation and rounding errors of the third difference balance if STEP⁵ is about rounding; both are far below 1 %.
+Truncation and rounding errors of the third difference are far below 1 %.
 """
 
 SIZE = 4

@@ -20,7 +20,7 @@ class SimulationError(RuntimeError):
 
 
 MOST_STEPS = 5_000_000
-"""Largest number of steps, some minutes of work. A longer motion is almost certainly a mistake."""
+"""Largest number of steps, some minutes of work."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 """Number of steps for a measurement of the pace, and largest number of remaining steps at that pace."""

@@ -11,8 +11,6 @@ from reference_model import plain
 from reference_model.systems import DiscOnDisc
 from reference_model.trajectory import Phase, Solution, Trajectory
 
-TIGHTEST = 3e-14
-
 
 def slip_velocity(pin, state):
     x, y, vx, vy = state
@@ -54,28 +52,6 @@ def of_vector(friction):
     return lambda slip_x, slip_y, *_: (*friction(np.array([slip_x, slip_y])), 0.0)
 
 
-def coulomb(pin):
-    return lambda slip: -pin.friction_force * slip / math.hypot(*slip)
-
-
-def stick_time_bounds(pin, state, start, longest, slip=2e-10):
-    """Return bounds of the time when slip from ``start`` ends, and the time and state shortly before.
-
-    The integration stops at the slip speed ``slip``. The slip speed then falls at a rate between (μN − pull)/m and
-    (μN + pull)/m for any direction, so the remaining time has bounds.
-    """
-
-    def slow(_, s):
-        return math.hypot(*slip_velocity(pin, s)) - slip
-
-    slow.terminal, slow.direction = True, -1.0
-    run = slide(pin, state, [start, start + longest], events=slow, t_eval=None)
-    state = run.y[:, -1]
-    pull = math.hypot(*pull_on_stuck_pin(pin, state))
-    left = [pin.mass * slip / (pin.friction_force + sign * pull) for sign in (1.0, -1.0)]
-    return run.t[-1] + left[0], run.t[-1] + left[1], run.t[-1], state
-
-
 def release_after(pin, state, longest):
     """Return the time until the release of a stuck pin by a fine grid and a bracketed root; 0 without a root."""
 
@@ -87,30 +63,12 @@ def release_after(pin, state, longest):
     return brentq(excess, grid[first - 1], grid[first], xtol=1e-15) if first else 0.0
 
 
-def just_released(pin, state, delay):
-    """Return the state ``delay`` after a release at ``state``, with slip ½κt² along the pull."""
-
-    def strength(time):
-        return math.hypot(*pull_on_stuck_pin(pin, turned_with_disc(pin, state, time)))
-
-    growth = (strength(1e-4) - strength(-1e-4)) / 2e-4 / pin.mass
-    later = turned_with_disc(pin, state, delay)
-    pull = pull_on_stuck_pin(pin, later)
-    later[2:] += 0.5 * growth * delay**2 * pull / math.hypot(*pull)
-    return later
-
-
-def as_trajectory(pin, times, states, regularisation=0.0):
-    states = np.array(states)
-    phase = Phase("slip", float(times[0]), float(times[-1]), states[0].copy())
-    solution = Solution("plain", TIGHTEST, 0, 0, 0.0, regularisation)
-    return Trajectory(pin, np.array(times), states, (phase,), solution)
-
-
 def integrate(pin, state, times, friction, regularisation=0.0, method="DOP853", tolerance=1e-12):
     """Return the trajectory of ``pin`` under any friction law."""
     run = slide(pin, state, times, of_vector(friction), method=method, rtol=tolerance, atol=tolerance * 1e-2)
-    return as_trajectory(pin, times, run.y.T, regularisation)
+    phase = Phase("slip", float(times[0]), float(times[-1]), run.y[:, 0].copy())
+    solution = Solution("plain", tolerance, 0, 0, 0.0, regularisation)
+    return Trajectory(pin, np.array(times), run.y.T.copy(), (phase,), solution)
 
 
 # Powers of mass, length and time.

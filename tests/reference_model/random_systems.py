@@ -14,7 +14,7 @@ from reference_model import DiscOnDisc, PinOnDisc, Points, simulate
 CONTACTS = ("pin", "ring", "points")
 SUPPORTS = ("linear", "hardening", "stop", "both")
 COURSES = ("dragged", "fast", "to and fro", "creeping", "thrown")
-SYSTEMS = 2 * len(CONTACTS) * len(SUPPORTS) * len(COURSES)
+SYSTEMS = len(CONTACTS) * len(SUPPORTS) * len(COURSES)
 TIMES = np.linspace(0.0, 40.0, 81)
 
 

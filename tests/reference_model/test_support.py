@@ -18,7 +18,7 @@ from reference_model.formulas import disc as disc_formulas
 from reference_model.formulas import pin as pin_formulas
 from reference_model.formulas import torque_balance as disc_balance
 from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
-from reference_model.formulas.pin.conditions import speed_ratio
+from reference_model.formulas.pin.whirl import speed_ratio
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.steady import bifurcation_curves as boundaries
 from reference_model.steady import lyapunov_coefficient as modulation
@@ -106,7 +106,7 @@ def test_scaled_support_has_the_scaled_force_at_the_scaled_position(pin, x, y, f
 
 
 OF_A_PIN = {
-    "stick-slip orbits": lambda pin: stick_slip_orbits(replace(pin, friction_force=0.09)),
+    "stick-slip orbits": lambda pin: stick_slip_orbits(replace(pin, offset=0.0)),
     "7": lambda pin: pin_formulas.squared_holding_force(pin, 0.1, 0.2),
     "turn until release": lambda pin: pin_formulas.turn_until_release(pin, 0.1, 0.2),
     "release time": lambda pin: pin_formulas.release_time(pin, 0.1, 0.2),

@@ -23,20 +23,13 @@ def trajectory():
     return Trajectory(FIG_5, np.array([0.0, 1.0, 2.0]), STATES.copy(), phases, solution)
 
 
-def test_radius_is_the_distance_from_the_axis(trajectory):
+def test_radius_slip_and_stick_phases_follow_from_states_and_phases(trajectory):
     assert trajectory.radius == pytest.approx([5.0, 1.0, 0.0], rel=1e-15)
-
-
-def test_slip_velocity_is_relative_to_the_master_disc(trajectory):
     # (ẋ + ωy, ẏ − ωx) with ω = 1.5; a point that turns with the disc does not slip.
     assert trajectory.slip_velocity == pytest.approx(np.array([[6.5, -4.75], [0.0, 0.0], [-3.0, 4.0]]))
     assert trajectory.slip_speed == pytest.approx([np.hypot(6.5, 4.75), 0.0, 5.0])
-
-
-def test_last_state_and_stick_phases(trajectory):
     assert trajectory.at_end.tolist() == STATES[-1].tolist()
     assert trajectory.stick_phases == (trajectory.phases[1],)
-    assert trajectory.solution.regularisation == 0.0
 
 
 def test_trajectory_is_immutable():

@@ -1,10 +1,10 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
-Both are shares of μN for the slip u of the centre and the velocity W·t of the rim, W = R·(φ̇ − ω): a resistance to
-slip of the centre and one to slip of the rim (the moment over R). Times the speeds they give the mean slip speed P.
+Both are resistances, as shares of μN, to slip of the centre and of the rim (the moment over R). Times the speeds they
+give the mean slip speed P.
 
-The ring's are complete elliptic integrals by the arithmetic-geometric mean. With k the smaller over the larger of U =
-|u| and |W|, a₀ = 1, g₀ = √(1 − k²), and c the halved differences of a and g::
+The ring's are complete elliptic integrals by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the
+smaller over the larger of U = |u| and the rim's |W|, and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
@@ -101,10 +101,7 @@ def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any
 
 @inlined
 def turned(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle of up to about 1e6 rad, to rounding, without a branch.
-
-    Quarter turns are subtracted in three parts (Cody and Waite). Taylor series give the rest, below π/4.
-    """
+    """Return cosine and sine of an angle of up to 1e6 rad without a branch, by quarter turns (Cody and Waite)."""
     quarters = np.rint(angle * (2.0 / math.pi))
     x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]
     m = x * x

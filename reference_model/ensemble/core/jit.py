@@ -1,7 +1,7 @@
-"""Decorators for compiled functions: inlined, called from compiled code, or called from Python.
+"""Decorators for compiled functions.
 
 Results must be the same bit by bit in any lane, on any number of threads, and on machines with and without FMA, so
-nothing may be reordered or contracted. ``fastmath`` would make steps a tenth faster and stays off.
+nothing may be reordered or contracted.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ PART: Any = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapp
 """Options of functions that only compiled code calls; wrappers for Python would take time to compile."""
 
 INLINED: Any = {**PART, "forceinline": True}
-"""Options of overloads that are compiled like ``scalar`` or ``inlined`` functions."""
+"""Options of overloads."""
 
 SOURCES = Path(__file__).parents[2]
 """Folder of all sources of a kernel; some of its constants are defined outside ``ensemble``."""
@@ -66,8 +66,7 @@ def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
 def wide_vectors(typing: Any) -> Any:
     """Let the calling function use the widest vectors of the processor, without effect on results.
 
-    LLVM uses 256 bits on many processors that have 512, because wide vectors once reduced their clock rate. Here they
-    gain more than that (figures: ``benchmarks/ensemble.py``).
+    LLVM uses 256 bits on many processors that have 512 (figures: ``benchmarks/ensemble.py``).
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

@@ -1,8 +1,8 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-A processor takes a step in eight lanes in the time of one. Each number has its own row (:mod:`records`), so a loop
-over the lanes becomes vector instructions. For this it needs its own function, and may call only inlined functions
-of numbers and tuples. The step is also compiled for one lane, because a single trajectory would pay for all.
+Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
+inlined functions of numbers and tuples. The step is also compiled for one lane, because a single trajectory would pay
+for all.
 
 A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
 release, the end), which scalar code handles. Results are the same bit by bit in every lane and next to any others.
@@ -10,6 +10,7 @@ release, the end), which scalar code handles. Results are the same bit by bit in
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
 from reference_model.ensemble.core.records import LANES
+from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
 from reference_model.systems import FloatArray
 
 
@@ -33,7 +35,6 @@ Lanes = TypeVar("Lanes", bound=_Lanes)
 Memory = TypeVar("Memory")
 Task = TypeVar("Task")
 Settings = TypeVar("Settings")
-Results = TypeVar("Results")
 Kind = TypeVar("Kind")
 
 
@@ -55,7 +56,7 @@ def run(
     advance: Advance[Lanes, Kind],
     advance_alone: Advance[Lanes, Kind],
     handle_flag: HandleFlag[Lanes, Memory, Settings],
-    store: Store[Lanes, Memory, Results],
+    store: Store[Lanes, Memory],
     idle: Idle[Lanes],
     record: NDArray[Any],
     memory: NDArray[Any],
@@ -68,9 +69,9 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    Compiled code has no methods, so the functions of a kind of system are arguments. ``record``, shape (1,),
-    contains all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both are zeros. ``kind``
-    contains properties for the compiler. ``settings`` is passed often and should contain few arrays.
+    ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both
+    are zeros. ``kind`` contains properties for the compiler. ``settings`` is passed often and should contain few
+    arrays.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
@@ -111,6 +112,19 @@ def row_of(values: FloatArray, number: int) -> FloatArray:
     """Return the row of a trajectory in an array with a row for each, or a single one for all."""
     row: FloatArray = values[number if values.shape[0] > 1 else 0]
     return row
+
+
+@scalar
+def store_end(lanes: Any, memory: Any, lane: int, results: Results) -> None:
+    """Write the end of a lane in SI units, except for its state."""
+    number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
+    results.times[number] = lanes.trial.state.time[lane] / rate
+    results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])
+    least = largest = slip = math.nan
+    if memory.end != UNDECIDED and memory.end != HANDED_OVER:
+        least, largest, slip = found.least * length, found.largest * length, found.slip * length * rate
+    measures = results.measures[number]
+    measures[0], measures[1], measures[2] = least, largest, slip
 
 
 @scalar

@@ -1,4 +1,4 @@
-"""Constants of pins and discs, the forces on them, and the duration of rest."""
+"""Constants of pins and discs in units that make a motion of order one, forces, and the duration of rest."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from typing import NamedTuple
 from reference_model.ensemble.core.contact_shares import LEAST, points_shares, ring_shares, turned
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
+
+ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
+"""Relative slip that counts as none: a body that moves with the disc to rounding error sticks."""
 
 CREEP = 0.1
 """Largest excess of the pull for creeping slip, as a fraction of the pull's change in a turn or of g."""
@@ -55,6 +58,20 @@ Law = PinLaw | DiscLaw
 
 Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, float, float]]
 """Takes the slip u_x, u_y, r and the angle; returns friction and mean slip speed, as :func:`ring_friction`."""
+
+
+@scalar
+def units(
+    k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float
+) -> tuple[float, float]:
+    """Return the unit of length in m and the inverse unit of time in 1/s, as ``units.Units.of`` for a pin."""
+    rate = max(k, abs(omega))
+    if rate == 0.0:
+        rate = c
+    if rate == 0.0:
+        rate = g / speed if g > 0.0 and speed > 0.0 else 1.0
+    length = max(max(place, abs(offset)), max(speed / rate, g / rate**2))
+    return (length if length > 0.0 else 1.0), rate
 
 
 @inlined
@@ -124,7 +141,7 @@ def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     Its pull has a constant part p = k²|X0| and a part q, proportional to the radius, that turns with the pin. Once
     per turn they add up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the
     resulting slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >=
-    4K, however far the slip goes: see ``pin.slip.creeps_steadily``.
+    4K: see ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)

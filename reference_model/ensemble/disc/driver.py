@@ -14,15 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import Checkpoints, empty_checkpoints, from_the_start
-from reference_model.ensemble.chunks import in_chunks
+from reference_model.ensemble.core.checkpoints import Checkpoints, empty_checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import PARAMETERS, run_points, run_rings
 from reference_model.ensemble.disc.memory import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
-from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Ensemble, Results
-from reference_model.ensemble.parameters import Task, parameter_table
+from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
 from reference_model.ensemble.recording import ROUNDED, Recording
+from reference_model.ensemble.task import Task, in_chunks, parameter_table
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -41,16 +40,11 @@ def simulate_discs(
     early_end: bool,
     n: int,
     threads: int,
-) -> Ensemble:
+) -> Results:
     """Simulate ``n`` discs like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
-    table = parameter_table(disc, PARAMETERS, varied)
     settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
-    results = Results.empty(n, disc.state_size)
-    _run_through(
-        disc, Task(table, starts, from_the_start(), np.full(1, duration)), settings, results, varied,
-        tolerance, threads,
-    )  # fmt: skip
-    return results.ensemble(varied.get("friction_force", disc.friction_force))
+    task = Task(parameter_table(disc, PARAMETERS, varied), starts, np.full(1, duration))
+    return _run_through(disc, task, n, settings, varied, tolerance, threads)
 
 
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
@@ -58,23 +52,15 @@ def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording
     table = parameter_table(disc, PARAMETERS)
     settings = _settings(disc, tolerance, False, no_regions())
 
-    def one(
-        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
-    ) -> Results:
-        results = Results.empty(1, disc.state_size)
-        _run(Task(table, starts, paces, durations), settings._replace(checkpoints=checkpoints), results)
-        return results
+    def one(task: Task, checkpoints: Checkpoints) -> Results:
+        return _run(task, 1, settings._replace(checkpoints=checkpoints))
 
-    def many(
-        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
-    ) -> Results:
-        results = Results.empty(len(starts), disc.state_size)
-        _run_through(disc, Task(table, starts, paces, durations), settings, results, {}, tolerance)
-        return results
+    def many(task: Task, _: Checkpoints) -> Results:
+        return _run_through(disc, task, len(task.starts), settings, {}, tolerance)
 
     t = 0.0
     while t < recording.duration:
-        end = recording.follow(one, many, state, t)
+        end = recording.follow(table, one, many, state, t)
         t, state = t + float(end.times[0]), end.states[0]
         if end.ends[0] != HANDED_OVER:
             break
@@ -90,23 +76,24 @@ def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDAr
     return DiscSettings(tolerance_of_steps(tolerance), early_end, around, regions, nowhere)
 
 
-def _run(task: Task, settings: DiscSettings, results: Results, threads: int = 1) -> None:
-    """Run all trajectories as far as compiled code can follow them."""
-    kernel = run_points if settings.around else run_rings
-    in_chunks(lambda first, last: kernel(task, settings, results, first, last), len(results.ends), threads)
+def _run(task: Task, n: int, settings: DiscSettings, threads: int = 1) -> Results:
+    """Run trajectories as far as compiled code can follow them."""
+    kernel, results = run_points if settings.around else run_rings, Results.empty(n, DiscOnDisc.state_size)
+    in_chunks(lambda first, last: kernel(task, settings, results, first, last), n, threads)
+    return results
 
 
 def _run_through(
     disc: DiscOnDisc,
     task: Task,
+    n: int,
     settings: DiscSettings,
-    results: Results,
     varied: Mapping[str, FloatArray],
     tolerance: float,
     threads: int = 1,
-) -> None:
-    """Run all trajectories to their ends; the plain reference continues those handed over in between."""
-    _run(task, settings, results, threads)
+) -> Results:
+    """Run trajectories to their ends; the plain reference continues those handed over."""
+    results = _run(task, n, settings, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
     handed = np.flatnonzero(results.ends == HANDED_OVER)
     while handed.size:
@@ -115,18 +102,17 @@ def _run_through(
             _continue_until_slip(one, results, int(i), float(durations[i]), tolerance, settings.early)
         handed = handed[results.ends[handed] == HANDED_OVER]
         if handed.size:
-            again = Results.empty(len(handed), disc.state_size)
-            left = durations[handed] - results.times[handed]
             table = task.parameters[handed] if varied else task.parameters
-            _run(Task(table, results.states[handed], from_the_start(), left), settings, again, threads)
+            rest = Task(table, results.states[handed], durations[handed] - results.times[handed])
+            again = _run(rest, len(handed), settings, threads)
             again.times[:] += results.times[handed]
             again.steps[:] += results.steps[handed]
-            results.ends[handed], results.times[handed] = again.ends, again.times
-            results.states[handed], results.measures[handed] = again.states, again.measures
-            results.steps[handed] = again.steps
+            for name, values in again._asdict().items():
+                getattr(results, name)[handed] = values
             handed = handed[again.ends == HANDED_OVER]
     at_end = results.times > durations * (1.0 - ROUNDED)
     results.times[at_end] = durations[at_end]
+    return results
 
 
 def _continue_until_slip(

@@ -2,7 +2,7 @@
 
 Self-centred
     The state is checked once per free period. It converges if d·q/(1 − q) is small, with the distance d between
-    checks and q the larger of its last two ratios (:mod:`.core.convergence`). Because a motion may come close to an
+    checks and q the larger of its last two ratios (:mod:`.core.recurrence`). Because a motion may come close to an
     unstable equilibrium and leave it later, as some of Fig. 11 do, the equilibrium must also attract, and be as
     close by Newton's method (:mod:`.stability`).
 Whirl
@@ -20,11 +20,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from reference_model.ensemble.core.convergence import ACCURACY
+from reference_model.ensemble.core.checkpoints import next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import fill
-from reference_model.ensemble.core.requested_times import next_requested, recorded
+from reference_model.ensemble.core.recurrence import (
+    ACCURACY,
+    NO_WINDOW,
+    Measures,
+    compared,
+    measured,
+    open_window,
+    see_radius,
+)
 from reference_model.ensemble.core.stepping.dense_output import (
     outward,
     position_on,
@@ -32,7 +40,7 @@ from reference_model.ensemble.core.stepping.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.window import NO_WINDOW, Measures, measured, open_window, see_radius
+from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     BOTH,
@@ -55,7 +63,6 @@ from reference_model.ensemble.disc.memory import (
     OF_TURN,
     DiscMemory,
     DiscSettings,
-    compared,
     record_requested,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
@@ -237,13 +244,9 @@ def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: Di
             a, b, c, d, e = length * radius, speed * along.real, speed * along.imag, speed * r, 0.0
         else:
             a, b, c, d, e = length * z.real, length * z.imag, speed * v.real, speed * v.imag, speed * r
-        centre, form = region.centre, region.form
-        a, b, c, d, e = a - centre[0], b - centre[1], c - centre[2], d - centre[3], e - centre[4]
-        level = a * (form.aa * a + 2.0 * (form.ab * b + form.ac * c + form.ad * d + form.ae * e))
-        level += b * (form.bb * b + 2.0 * (form.bc * c + form.bd * d + form.be * e))
-        level += c * (form.cc * c + 2.0 * (form.cd * d + form.ce * e))
-        level += d * (form.dd * d + 2.0 * form.de * e) + e * form.ee * e
-        if level < region.level:
+        centre = region.centre
+        apart = a - centre[0], b - centre[1], c - centre[2], d - centre[3], e - centre[4]
+        if quadratic_form(region.form, apart) < region.level:
             memory.end, measures = (WHIRL if region.circle else SELF_CENTRED), region.measures
             fill(
                 memory.found,

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
+from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import row_of, run
-from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.nondimensional import ROUNDING, units
+from reference_model.ensemble.core.lanes import row_of, run, store_end
+from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, DiscLaw, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
-from reference_model.ensemble.core.requested_times import next_requested, recorded
-from reference_model.ensemble.core.stepping.implicit import collocate_points, collocate_ring
+from reference_model.ensemble.core.stepping.implicit import Collocation, collocate_points, collocate_ring
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.ensemble.disc.events import Slow, handle_flag_with
+from reference_model.ensemble.disc.events import Attracts, Slow, handle_flag_with
 from reference_model.ensemble.disc.lanes import (
     RADII,
     TURNS,
     DiscLanes,
+    Edge,
     Rates,
     advance_with,
     idle,
@@ -40,8 +40,8 @@ from reference_model.ensemble.disc.rest import (
 from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.disc.stability import attracts
 from reference_model.ensemble.disc.stride import disc_stride_with
-from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
-from reference_model.ensemble.parameters import Task
+from reference_model.ensemble.end_states import Results
+from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
 from reference_model.systems import FloatArray
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(DiscLanes), layout(DiscMemory)
@@ -117,9 +117,9 @@ def load_with(
     speed, kappa = length * rate, math.sqrt(inertia / mass)
     u = complex(vx + omega * y, vy - omega * x) / speed
     r = kappa * (spin - omega) / speed
-    if abs(u) <= ROUNDING * abs(omega) * math.hypot(x, y) / speed:
+    if abs(u) <= ROUNDING_OF_SLIP * abs(omega) * math.hypot(x, y) / speed:
         u = 0j
-    if abs(spin - omega) <= ROUNDING * abs(omega):
+    if abs(spin - omega) <= ROUNDING_OF_SLIP * abs(omega):
         r = 0.0
     put(lanes.trial.state, lane, (x / length, y / length, u.real, u.imag, r, angle, 0.0, 0.0))
     take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
@@ -134,86 +134,55 @@ def load_with(
 @scalar
 def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> None:
     """Write the result of a lane in SI units."""
-    number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
-    put_state(results.states[number], lanes, lanes.trial, memory, lane)
-    results.times[number] = lanes.trial.state.time[lane] / rate
-    results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])
-    least = largest = slip = math.nan
-    if memory.end != UNDECIDED and memory.end != HANDED_OVER:
-        least, largest, slip = found.least * length, found.largest * length, found.slip * length * rate
-    measures = results.measures[number]
-    measures[0], measures[1], measures[2] = least, largest, slip
-
-
-@scalar
-def _ring_attracts(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    return attracts(z, v, r, law, circle, near)
+    put_state(results.states[memory.number], lanes, lanes.trial, memory, lane)
+    store_end(lanes, memory, lane, results)
 
 
 @scalar
 def _points_attract(z: complex, v: complex, r: float, law: DiscLaw, circle: bool, near: float) -> bool:
-    """Return whether a motion of a disc on points attracts; known only without friction.
-
-    Friction of points changes with the angle. Without friction every damped motion on springs attracts.
-    """
+    """Return whether a motion of a disc on points attracts; known only without friction."""
     return law.friction == 0.0 and law.damping > 0.0 and law.stiffness > 0.0
 
 
-@written_out
-def _ring_strides(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw) -> None:
-    disc_stride_with(lanes, memory, lane, law, ring_rates, ring_edge, collocate_ring)
+def _functions(
+    rest: Slow, slow: Slow, attracts: Attracts, rates: Rates, edge: Edge, collocate: Collocation, small_step: float
+) -> tuple[Any, Any, Any, Any]:  # fmt: skip
+    """Return the functions of ``core.lanes.run`` for one kind of contact: load, advance (one or all), handle flag.
+
+    The compiler accepts functions as arguments only if they are global or enclosed like these.
+    """
+
+    @written_out
+    def load(
+        lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
+    ) -> bool:
+        return load_with(lanes, memory, lane, number, task, settings, rest, rates)
+
+    @scalar
+    def advance(lanes: DiscLanes, around: Tuple) -> None:
+        advance_with(lanes, around, rates, edge, small_step, LANES)
+
+    @scalar
+    def advance_alone(lanes: DiscLanes, around: Tuple) -> None:
+        advance_with(lanes, around, rates, edge, small_step, 1)
+
+    @written_out
+    def stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw) -> None:
+        disc_stride_with(lanes, memory, lane, law, rates, edge, collocate)
+
+    @written_out
+    def handle_flag(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: DiscSettings) -> bool:
+        return handle_flag_with(lanes, memory, lane, settings, stride, slow, attracts)
+
+    return load, advance, advance_alone, handle_flag
 
 
-@written_out
-def _points_stride(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw) -> None:
-    disc_stride_with(lanes, memory, lane, law, points_rates, no_edge, collocate_points)
-
-
-# The compiler accepts only global functions as arguments, so there is one set for rings and one for points.
-
-
-@written_out
-def _load_ring(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
-) -> bool:
-    return load_with(lanes, memory, lane, number, task, settings, ring_rests, ring_rates)
-
-
-@scalar
-def _advance_rings(lanes: DiscLanes, around: Tuple) -> None:
-    advance_with(lanes, around, ring_rates, ring_edge, 0.0, LANES)
-
-
-@scalar
-def _advance_ring_alone(lanes: DiscLanes, around: Tuple) -> None:
-    advance_with(lanes, around, ring_rates, ring_edge, 0.0, 1)
-
-
-@written_out
-def _handle_ring(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: DiscSettings) -> bool:
-    return handle_flag_with(lanes, memory, lane, settings, _ring_strides, ring_slow, _ring_attracts)
-
-
-@written_out
-def _load_points(
-    lanes: DiscLanes, memory: DiscMemory, lane: int, number: int, task: Task, settings: DiscSettings
-) -> bool:
-    return load_with(lanes, memory, lane, number, task, settings, points_rest, points_rates)
-
-
-@scalar
-def _advance_points(lanes: DiscLanes, around: Tuple) -> None:
-    advance_with(lanes, around, points_rates, no_edge, WATCHED_STEP, LANES)
-
-
-@scalar
-def _advance_points_alone(lanes: DiscLanes, around: Tuple) -> None:
-    advance_with(lanes, around, points_rates, no_edge, WATCHED_STEP, 1)
-
-
-@written_out
-def _handle_points(lanes: DiscLanes, memory: DiscMemory, lane: int, settings: DiscSettings) -> bool:
-    return handle_flag_with(lanes, memory, lane, settings, _points_stride, points_slow, _points_attract)
+_load_ring, _advance_rings, _advance_ring_alone, _handle_ring = _functions(
+    ring_rests, ring_slow, attracts, ring_rates, ring_edge, collocate_ring, 0.0
+)
+_load_points, _advance_points, _advance_points_alone, _handle_points = _functions(
+    points_rest, points_slow, _points_attract, points_rates, no_edge, collocate_points, WATCHED_STEP
+)
 
 
 @called_from_python

@@ -274,10 +274,7 @@ def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
 
 @scalar
 def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Bring slip to rest if it ends within a moment, linearly, or is within rounding of zero.
-
-    Return whether it does.
-    """
+    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it does."""
     trial = lanes.trial
     state = state_at(trial, lane)
     x, y, ux, uy, r, angle, t, way = state

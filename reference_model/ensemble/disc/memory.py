@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, NamedTuple
 
 from numpy.typing import NDArray
 
-from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
-from reference_model.ensemble.core.convergence import converged
+from reference_model.ensemble.core.checkpoints import ON_THE_WAY, Checkpoints, mark_requested
 from reference_model.ensemble.core.jit import scalar
 from reference_model.ensemble.core.records import Record
-from reference_model.ensemble.core.requested_times import mark_requested
-from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.ensemble.core.window import Measures, Window
+from reference_model.ensemble.core.recurrence import Measures, Series, Window
 from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
 from reference_model.systems import FloatArray
 
@@ -21,55 +17,26 @@ OF_TURN, OF_PEAK = 1, 2
 """Kinds of windows: from one crossing where x is largest to the next, or from one largest radius to the next."""
 
 
-class RegionForm(NamedTuple):
-    """The upper half of a quadratic form in five numbers, row by row."""
-
-    aa: float
-    ab: float
-    ac: float
-    ad: float
-    ae: float
-    bb: float
-    bc: float
-    bd: float
-    be: float
-    cc: float
-    cd: float
-    ce: float
-    dd: float
-    de: float
-    ee: float
-
-
 class Region(Record):
-    """A neighbourhood of a motion that no motion leaves, in m and s: where the form is below its level.
+    """A neighbourhood of a motion that no motion leaves, in m and s: where a quadratic form is below its level.
 
     ``circle`` is 1 about a whirl, in coordinates that turn with the centre (ρ, v along and across the radius, r, 0),
-    and 0 about an equilibrium, in (x, y, vx, vy, r). The measures are those of the motion at its centre.
+    and 0 about an equilibrium, in (x, y, vx, vy, r). ``form`` is the upper half of the form, row by row. The measures
+    are those of the motion at its centre.
     """
 
     circle: int
     centre: Annotated[FloatArray, 5]
-    form: RegionForm
+    form: Annotated[FloatArray, 15]
     level: float
     measures: Measures
-
-
-class Series(Record):
-    """The last values of a kind, the last two distances between successive values, and their number."""
-
-    values: Annotated[FloatArray, 5]
-    last: float
-    before: float
-    count: int
 
 
 class DiscMemory(Record):
     """Data of a lane that no vector needs.
 
-    They are the end state so far and the period of checks; the motion at checks, at the largest x and at the
-    largest radius; the window that measures an end state; the proposed implicit step; and counts of checkpoints and
-    requested times.
+    ``tick`` is the period of checks, ``checks``, ``turns`` and ``peaks`` the motion at checks, at the largest x and
+    at the largest radius. Other fields are those of a pin.
     """
 
     number: int
@@ -99,19 +66,6 @@ class DiscSettings(NamedTuple):
     around: tuple[float, ...]
     regions: NDArray[Any]
     checkpoints: Checkpoints
-
-
-@scalar
-def compared(series: Series, values: Tuple, scale: float) -> bool:
-    """Compare with earlier values of the same kind; return whether less than ACCURACY·scale remains to converge."""
-    square = 0.0
-    for i in range(5):
-        square += (values[i] - series.values[i]) ** 2
-        series.values[i] = values[i]
-    distance, before, first = math.sqrt(square), series.last, series.before
-    series.last, series.before = distance, before
-    series.count += 1
-    return series.count >= 5 and converged(distance, before, first, scale)
 
 
 @scalar

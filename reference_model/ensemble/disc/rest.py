@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import math
 
-from reference_model.ensemble.checkpoints import SLIPS, STICKS
+from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, recorded
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import DiscLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
-from reference_model.ensemble.core.requested_times import recorded
-from reference_model.ensemble.core.window import Measures
+from reference_model.ensemble.core.recurrence import Measures, compared
 from reference_model.ensemble.disc.events import found
 from reference_model.ensemble.disc.lanes import (
     AT_END,
@@ -32,7 +31,6 @@ from reference_model.ensemble.disc.memory import (
     OF_PEAK,
     DiscMemory,
     DiscSettings,
-    compared,
     record_requested,
     take_checkpoint,
 )
@@ -65,8 +63,7 @@ def _creeps_out(
 ) -> bool:
     """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
 
-    This is possible only if its pull just rotates with the master disc, as for a pin in
-    ``pin.slip.creeps_steadily``. The remaining speed and distance are far below the tolerance.
+    This is possible only if its pull just rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
     """
     s, left = slip_left(lanes, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
@@ -124,10 +121,7 @@ def points_rest(
 
 @scalar
 def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Keep a disc on a ring at rest as long as friction holds it, then begin slip.
-
-    Return whether the trajectory ends.
-    """
+    """Keep a disc on a ring at rest while friction holds it, then begin slip; return whether its trajectory ends."""
     x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:

@@ -72,10 +72,7 @@ def no_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
 
 @scalar
 def held_friction(law: DiscLaw) -> float:
-    """Return the force that friction of a ring can hold together with the shaft's moment; < 0 if not even the moment.
-
-    As in ``stick.stuck_centre``, the points of the limit surface are force and moment at all ratios of U and W.
-    """
+    """Return the force that friction of a ring can hold with the shaft's moment, as ``stick.stuck_centre``, or -1."""
     needed = law.shaft_rate * abs(law.lag)
     most = law.friction * law.leverage
     if needed > most:
@@ -107,10 +104,7 @@ def centre_of(law: DiscLaw, held: float) -> PinLaw:
 
 @scalar
 def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
-    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction.
-
-    As ``stick.slip_direction``.
-    """
+    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction."""
     towards = pull(z, 0j, law)
     strength = abs(towards)
     best, fastest = 0.0, -math.inf

@@ -39,10 +39,7 @@ def disc_stride_with(
     edge: Edge,
     collocate: Collocation,
 ) -> None:
-    """Replace the trial step and its flags by an implicit step, if that brings the disc much further.
-
-    A step must not cross the ``edge`` of friction.
-    """
+    """Try an implicit step in place of the trial step and its flags; it must not cross the ``edge`` of friction."""
     now, trial = lanes.now, lanes.trial
     state, k = state_at(now, lane), rates_at(now, lane)
     short = now.step[lane] * k.time

@@ -1,13 +1,11 @@
 """Trapping regions of a disc's equilibria and whirls: a motion that enters one is decided.
 
-Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion.
-A fan of directions in (x, y, vx, vy, r) or, about the circle of a whirl without offset, in (ρ, v along and across
-the radius, r) shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
+Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
+fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
 smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used.
 
 A disc on points oscillates about the motion on a ring. There the spheres must be crossed inwards at all angles from
-INNER of the size on, and the motion ends inside of that. With an offset a whirl is not a circle, and no region is
-known beforehand.
+INNER of the size on, and the motion ends inside of that.
 """
 
 from __future__ import annotations
@@ -157,7 +155,7 @@ def _region(
     region["circle"], region["centre"][:d] = circle, centre
     matrix = np.zeros((5, 5))
     matrix[:d, :d] = form / np.outer(scale, scale)
-    region["form"] = tuple(matrix[np.triu_indices(5)])
+    region["form"] = matrix[np.triu_indices(5)]
     region["level"] = SAFE * (size / largest) ** 2
     z, v = (centre[0], 1j * centre[2]) if circle else (complex(*centre[:2]), 0j)
     slip = _accelerations(ring, np.array([z]), np.array([v]), centre[d - 1 :])[2][0]

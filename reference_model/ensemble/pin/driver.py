@@ -6,15 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import Checkpoints, empty_checkpoints, from_the_start
-from reference_model.ensemble.chunks import in_chunks
+from reference_model.ensemble.core.checkpoints import Checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
-from reference_model.ensemble.end_states import Ensemble, Results
-from reference_model.ensemble.parameters import Task, parameter_table
-from reference_model.ensemble.pin.kernel import PARAMETERS, run_pins
-from reference_model.ensemble.pin.memory import no_regions, settings_of
+from reference_model.ensemble.end_states import Results
+from reference_model.ensemble.pin.kernel import PARAMETERS, results_of, run_pins
+from reference_model.ensemble.pin.memory import settings_of
 from reference_model.ensemble.pin.trapping import trapping_regions
 from reference_model.ensemble.recording import Recording
+from reference_model.ensemble.task import Task, in_chunks, parameter_table
 from reference_model.systems import FloatArray, PinOnDisc
 
 
@@ -27,37 +26,24 @@ def simulate_pins(
     early_end: bool,
     n: int,
     threads: int,
-) -> Ensemble:
+) -> Results:
     """Simulate ``n`` pins like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
-    table = parameter_table(pin, PARAMETERS, varied)
-    regions = no_regions()  # a writable array, because the kernel is compiled for one kind only
-    if not varied:
-        regions[:] = trapping_regions(pin)
-    local = tolerance_of_steps(tolerance)
-    task, results = (
-        Task(table, starts, from_the_start(), np.full(1, duration)),
-        Results.empty(n, pin.state_size),
-    )
-    nowhere = empty_checkpoints(0, pin.state_size)
+    regions = None if varied else trapping_regions(pin)
+    task = Task(parameter_table(pin, PARAMETERS, varied), starts, np.full(1, duration))
+    results, local = Results.empty(n, pin.state_size), tolerance_of_steps(tolerance)
 
     def run(first: int, last: int) -> None:
-        run_pins(task, settings_of(local, early_end, False, regions, nowhere), results, first, last)
+        run_pins(task, settings_of(local, early_end, regions=regions), results, first, last)
 
     in_chunks(run, n, threads)
-    return results.ensemble(varied.get("friction_force", pin.friction_force))
+    return results
 
 
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
     """Record the motion of a pin from ``state`` on."""
     local = tolerance_of_steps(tolerance)
-    table, regions = parameter_table(pin, PARAMETERS), no_regions()
 
-    def run(
-        starts: FloatArray, paces: FloatArray, durations: FloatArray, checkpoints: Checkpoints
-    ) -> Results:
-        results = Results.empty(len(starts), pin.state_size)
-        task = Task(table, starts, paces, durations)
-        run_pins(task, settings_of(local, False, False, regions, checkpoints), results, 0, len(starts))
-        return results
+    def run(task: Task, checkpoints: Checkpoints) -> Results:
+        return results_of(task, settings_of(local, checkpoints=checkpoints))
 
-    recording.follow(run, run, state, 0.0)
+    recording.follow(parameter_table(pin, PARAMETERS), run, run, state, 0.0)

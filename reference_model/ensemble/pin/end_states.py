@@ -2,13 +2,11 @@
 
 Permanent stick
     In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside this
-    largest radius slips once per turn: if the pull exceeds g by δ, then for a time ~√δ, with slip ~δ^(3/2), and the
-    radius changes by ~δ². It decreases if k > |ω|, and no radius in between maps to itself. So a pin that moves
-    inward in a turn by less than the remaining distance creeps forever and counts as stuck
-    (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping prevents it from
-    overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while slip is along the
-    pull (``slip.creeps_slaved``).
+    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside slips once
+    per turn. If k > |ω| and it moves inward in a turn by less than the remaining distance, it creeps forever and
+    counts as stuck (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping
+    prevents it from overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while
+    slip is along the pull (``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
@@ -46,32 +44,23 @@ from typing import NamedTuple
 
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw
+from reference_model.ensemble.core.stepping.linear import quadratic_form
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
+from reference_model.systems import FloatArray
 
-
-class Form(NamedTuple):
-    """The upper half of a quadratic form in ξ, η, ξ'/k, η'/k."""
-
-    xi_xi: float
-    xi_eta: float
-    xi_u: float
-    xi_v: float
-    eta_eta: float
-    eta_u: float
-    eta_v: float
-    u_u: float
-    u_v: float
-    v_v: float
+FORM_SIZE = 10
+"""Size of the upper half of a quadratic form in ξ, η, ξ'/k, η'/k."""
 
 
 class EquilibriumRegion(NamedTuple):
-    """The self-centred equilibrium z* (3), V, and the level of its trapping region; negative if none is known."""
+    """The self-centred equilibrium z* (3), the upper half of V, and the level of its trapping region, or -1."""
 
     place: complex
-    form: Form
+    form: Tuple
     level: float
 
 
-NOTHING = Form(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOTHING = (0.0,) * FORM_SIZE
 
 
 @scalar
@@ -90,7 +79,7 @@ def equilibrium_region(law: PinLaw) -> EquilibriumRegion:
     along, across = (c + g / slip) / k, c / k
     lever_along, lever_across = math.sqrt(1.0 + along**2 / 4.0), math.sqrt(1.0 + across**2 / 4.0)
     weight = (2.0 * lever_along * g / (radius * k2)) ** 2 / (along * across)
-    form = Form(
+    form = (
         1.0 + along**2 / 2.0, 0.0, along / 2.0, 0.0,
         weight * (1.0 + across**2 / 2.0), 0.0, weight * across / 2.0,
         1.0, 0.0, weight,
@@ -112,16 +101,10 @@ def _least_share(a: float) -> float:
 
 
 @scalar
-def depth(z: complex, w: complex, law: PinLaw, well: EquilibriumRegion) -> float:
-    """Return V of a motion."""
-    size = abs(well.place)
-    along = well.place.conjugate() / size if size > 0.0 else 1.0 + 0j
-    place = (z - well.place) * along
+def depth(z: complex, w: complex, law: PinLaw, equilibrium: complex, form: FloatArray | Tuple) -> float:
+    """Return V of a motion about an ``equilibrium``."""
+    size = abs(equilibrium)
+    along = equilibrium.conjugate() / size if size > 0.0 else 1.0 + 0j
+    place = (z - equilibrium) * along
     speed = (w + 1j * law.disc_speed * z) * along / math.sqrt(law.stiffness)
-    xi, eta, u, v, form = place.real, place.imag, speed.real, speed.imag, well.form
-    return (
-        xi * (form.xi_xi * xi + 2.0 * (form.xi_eta * eta + form.xi_u * u + form.xi_v * v))
-        + eta * (form.eta_eta * eta + 2.0 * (form.eta_u * u + form.eta_v * v))
-        + u * (form.u_u * u + 2.0 * form.u_v * v)
-        + form.v_v * v * v
-    )
+    return quadratic_form(form, (place.real, place.imag, speed.real, speed.imag))

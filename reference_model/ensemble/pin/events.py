@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from reference_model.ensemble.checkpoints import SLIPS, STICKS
-from reference_model.ensemble.core.convergence import ACCURACY, converged
+from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
 from reference_model.ensemble.core.laws import (
     PinLaw,
@@ -14,7 +13,13 @@ from reference_model.ensemble.core.laws import (
     release_delay,
     sticking_radius,
 )
-from reference_model.ensemble.core.requested_times import next_requested, recorded
+from reference_model.ensemble.core.recurrence import (
+    ACCURACY,
+    NO_WINDOW,
+    compared,
+    open_window,
+    see_radius,
+)
 from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
     position_on,
@@ -23,9 +28,9 @@ from reference_model.ensemble.core.stepping.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
-from reference_model.ensemble.core.window import NO_WINDOW, open_window, see_radius
+from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
-from reference_model.ensemble.pin.end_states import EquilibriumRegion, depth
+from reference_model.ensemble.pin.end_states import depth
 from reference_model.ensemble.pin.lanes import (
     EXTREME,
     IS_DUE,
@@ -142,11 +147,8 @@ def check_region(
 @scalar
 def in_region(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
     """Return whether the motion is in the trapping region of the equilibrium."""
-    level = memory.level
-    if level <= 0.0:
-        return False
-    well = EquilibriumRegion(memory.equilibrium, memory.form, level)
-    return depth(position_at(lanes.trial, lane), slip_at(lanes.trial, lane), law, well) <= level
+    level, z, w = memory.level, position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
+    return level > 0.0 and depth(z, w, law, memory.equilibrium, memory.form) <= level
 
 
 @written_out
@@ -174,18 +176,14 @@ def record_crossing(
         lanes.watch[lane] = UNWATCHED
         return settings.early
     turns = memory.turns
-    came = z.real - turns.place.real, z.imag - turns.place.imag, speed - turns.speed
-    distance = math.sqrt(came[0] ** 2 + came[1] ** 2 + came[2] ** 2)
-    before, first = turns.last, turns.before
-    turns.place, turns.speed = z, speed
-    turns.last, turns.before = distance, before
-    turns.count += 1
-    if turns.count < 5 or not converged(distance, before, first, abs(speed)):
+    came = z.real - turns.values[0], z.imag - turns.values[1], speed - turns.values[2]
+    first = turns.before
+    if not compared(turns, (z.real, z.imag, speed, 0.0, 0.0), abs(speed)):
         return False
     way = lanes.now.state.way[lane] + way_along(step, u, law.disc_speed)
     if memory.window.kind == OF_TURN:
         # Near convergence the last distance may be small by chance, like noise.
-        share = distance / max(distance, before, first, 1e-300)
+        share = turns.last / max(turns.last, turns.before, first, 1e-300)
         period, near = t - memory.window.since, ACCURACY * abs(speed) * share
         if not orbit_attracts(z, velocity_on(step, u), period, law, came, near):
             forget_turns(lanes, memory, lane)
@@ -201,22 +199,12 @@ def record_crossing(
 @scalar
 def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings: Settings) -> bool:
     """Return whether the motion crosses the section in the trapping region of the known whirl."""
-    regions, turn, metric, length = (
-        settings.regions,
-        settings.regions.turn,
-        settings.regions.metric,
-        memory.length,
-    )
+    regions, turn, length = settings.regions, settings.regions.turn, memory.length
     if regions.reach <= 0.0:
         return False
-    x, y = z.real * length - turn.x, z.imag * length - turn.y
-    v = speed * length / math.sqrt(law.stiffness) - turn.v
-    square = (
-        x * (metric.xx * x + 2.0 * (metric.xy * y + metric.xv * v))
-        + y * (metric.yy * y + 2.0 * metric.yv * v)
-        + metric.vv * v * v
-    )
-    if square > regions.reach:
+    x, y = z.real * length - turn[0], z.imag * length - turn[1]
+    v = speed * length / math.sqrt(law.stiffness) - turn[2]
+    if quadratic_form(regions.metric, (x, y, v)) > regions.reach:
         return False
     measures, pace = regions.measures, length * memory.rate
     keep(memory, measures.least / length, measures.largest / length, measures.slip / pace)
@@ -264,10 +252,7 @@ def rest(
     settings: Settings,
     creeps: bool,
 ) -> bool:
-    """Follow a pin from rest at ``z`` until it slips; return whether its trajectory ends before.
-
-    A pin that ``creeps`` slips so slowly that it counts as resting permanently.
-    """
+    """Follow a pin from rest at ``z`` until it slips, or forever if it ``creeps``; return whether that ends it."""
     end = memory.duration
     w = 0j
     forget_turns(lanes, memory, lane)
@@ -316,12 +301,6 @@ def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
         lanes.watch[lane] = TURNS
 
 
-@inlined
-def watched(lanes: PinLanes, lane: int) -> bool:
-    """Return whether a lane is watched."""
-    return bool(lanes.watch[lane] != UNWATCHED)
-
-
 @scalar
 def released(
     lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, settings: Settings
@@ -329,21 +308,19 @@ def released(
     """Record a release at ``z``; return whether the trajectory ends."""
     if memory.end == STUCK:
         return False
-    if memory.end == UNDECIDED and not watched(lanes, lane) and t < lanes.due[lane]:
+    unwatched = lanes.watch[lane] == UNWATCHED
+    if memory.end == UNDECIDED and unwatched and t < lanes.due[lane]:
         return False
-    if not watched(lanes, lane) and memory.end != STICK_SLIP:
+    if unwatched and memory.end != STICK_SLIP:
         memory.end = UNDECIDED  # the previous end state was not the end
         lanes.watch[lane] = TURNS
     radius, largest = abs(z), sticking_radius(law)
     releases = memory.releases
-    if releases.count > 0 and creeps_by_turns(radius, releases.radius, law):
+    if releases.count > 0 and creeps_by_turns(radius, releases.values[0], law):
         memory.end = STUCK
         keep(memory, largest, largest, 0.0)
         return settings.early
-    distance, before, first = abs(radius - releases.radius), releases.last, releases.before
-    releases.radius, releases.last, releases.before = radius, distance, before
-    releases.count += 1
-    if releases.count < 5 or not converged(distance, before, first, radius):
+    if not compared(releases, (radius, 0.0, 0.0, 0.0, 0.0), radius):
         return False
     way = lanes.trial.state.way[lane]
     if memory.window.kind == OF_RELEASE:

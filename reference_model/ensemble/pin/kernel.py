@@ -6,16 +6,13 @@ import math
 
 import numpy as np
 
-from reference_model.ensemble.checkpoints import LENGTH, RATE, SHORT, SLIPS, SPAN, STEP
+from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import row_of, run
-from reference_model.ensemble.core.laws import PinLaw, pull
-from reference_model.ensemble.core.nondimensional import ROUNDING, units
-from reference_model.ensemble.core.records import LANES, clear, fill, layout, put
-from reference_model.ensemble.core.requested_times import next_requested, recorded
-from reference_model.ensemble.end_states import SELF_CENTRED, UNDECIDED, Results
-from reference_model.ensemble.parameters import Task
-from reference_model.ensemble.pin.end_states import equilibrium_region
+from reference_model.ensemble.core.lanes import row_of, run, store_end
+from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, PinLaw, pull, units
+from reference_model.ensemble.core.records import LANES, clear, layout, put
+from reference_model.ensemble.end_states import SELF_CENTRED, Results
+from reference_model.ensemble.pin.end_states import FORM_SIZE, equilibrium_region
 from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
     LANDING,
@@ -40,11 +37,13 @@ from reference_model.ensemble.pin.memory import (
     put_state,
     take_checkpoint,
 )
+from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
+from reference_model.systems import PinOnDisc
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units of time. By measurement, more makes steps shorter and less makes rest and release stiffer."""
+"""s₀ over g, in units of time. More makes steps shorter, less makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
@@ -97,7 +96,7 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
     lanes.trial.state.time[lane] = lanes.trial.state.way[lane] = 0.0
     z = complex(x, y) / length
     w = complex(vx + omega * y, vy - omega * x) / speed
-    if abs(w) <= ROUNDING * abs(law.disc_speed * z):
+    if abs(w) <= ROUNDING_OF_SLIP * abs(law.disc_speed * z):
         w = 0j
     take_checkpoint(memory, SLIPS, 0.0, z, w, law, settings)
     if w == 0j and friction > 0.0:
@@ -116,7 +115,7 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
 
 @inlined
 def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> None:
-    """Watch the motion from the start on, or only at the end if all of it is simulated in any case."""
+    """Watch the motion from the start on, or only at the end if all of it is simulated."""
     begin_watching = (
         recorded(settings) or settings.early or settings.once or memory.duration <= LAST_TICKS * memory.tick
     )
@@ -134,27 +133,19 @@ def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
     """Store the trapping region of the equilibrium, if known, and the time of the first check."""
     well, regions = equilibrium_region(law), settings.regions
     memory.equilibrium, memory.level = well.place, well.level
-    fill(memory.form, well.form)
     if regions.level > 0.0:
         memory.level = regions.level / memory.length**2
-        fill(memory.form, regions.form)
+    for i in range(FORM_SIZE):
+        memory.form[i] = regions.form[i] if regions.level > 0.0 else well.form[i]
     memory.tick = TICK_TURNS * 2.0 * math.pi / math.sqrt(law.stiffness) if law.stiffness > 0.0 else math.inf
 
 
 @scalar
 def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> None:
     """Write the result of a lane in SI units."""
-    number, length, found = memory.number, memory.length, memory.found
     z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
-    put_state(results.states[number], memory, z, w, law_of(lanes, lane))
-    results.times[number] = lanes.trial.state.time[lane] / memory.rate
-    results.ends[number] = memory.end
-    results.steps[number] = int(lanes.steps[lane])
-    least = largest = slip = math.nan
-    if memory.end != UNDECIDED:
-        least, largest, slip = found.least * length, found.largest * length, found.slip * length * memory.rate
-    measures = results.measures[number]
-    measures[0], measures[1], measures[2] = least, largest, slip
+    put_state(results.states[memory.number], memory, z, w, law_of(lanes, lane))
+    store_end(lanes, memory, lane, results)
 
 
 @called_from_python
@@ -170,3 +161,10 @@ def _run_pins(task: Task, settings: Settings, results: Results, first: int, last
         load, advance, advance_alone, handle_flag, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,
     )  # fmt: skip
+
+
+def results_of(task: Task, settings: Settings) -> Results:
+    """Run all trajectories of a task with a start each, in one thread."""
+    results = Results.empty(len(task.starts), PinOnDisc.state_size)
+    run_pins(task, settings, results, 0, len(task.starts))
+    return results

@@ -68,8 +68,7 @@ STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 SHORT_STEP, MANY = 5e-3, 40.0
 """Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
 
-Rest and release take fewer short steps. One implicit step costs as much as about 50 explicit steps of a single
-trajectory, or a thousand steps of a trajectory that shares its lanes with others.
+One implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
 """
 
 SMALLEST_STEP = 1e-13
@@ -209,10 +208,7 @@ def put_position(moment: Moment, lane: int, z: complex, w: complex) -> None:
 
 @scalar
 def landed(lanes: PinLanes, lane: int, end: float) -> bool:
-    """Move the trial to the time ``end`` if it is close; otherwise reject it for a shorter step. Return which.
-
-    Both use the known rate of time at the end of the step, as Newton's method does.
-    """
+    """Move the trial to the time ``end`` if it is close; otherwise reject it for a shorter step. Return which."""
     now, trial = lanes.now, lanes.trial
     state, rates = trial.state, trial.rates
     beyond, share = state.time[lane] - end, rates.time[lane]

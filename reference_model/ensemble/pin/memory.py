@@ -2,87 +2,60 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference_model.contact.limit_surface import ComplexArray
-from reference_model.ensemble.checkpoints import ON_THE_WAY, Checkpoints
+from reference_model.ensemble.core.checkpoints import (
+    ON_THE_WAY,
+    Checkpoints,
+    empty_checkpoints,
+    mark_requested,
+)
 from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.ensemble.core.laws import PinLaw
 from reference_model.ensemble.core.records import Record, fill, layout
-from reference_model.ensemble.core.requested_times import mark_requested
-from reference_model.ensemble.core.window import NO_WINDOW, Measures, Window, measured, see_radius
-from reference_model.ensemble.pin.end_states import Form
+from reference_model.ensemble.core.recurrence import (
+    NO_WINDOW,
+    Measures,
+    Series,
+    Window,
+    measured,
+    see_radius,
+)
+from reference_model.ensemble.pin.end_states import FORM_SIZE
 from reference_model.ensemble.pin.lanes import Moment, PinLanes, position_at, slip_at
 from reference_model.ensemble.pin.slip import MOST_TERMS
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, PinOnDisc
 
 OF_TURN, OF_RELEASE = 1, 2
 """Kinds of windows: a turn from crossing to crossing, or a cycle from release to release."""
-
-
-class Crossing(NamedTuple):
-    """A crossing of the section where x is largest: x, y and ẏ/k."""
-
-    x: float
-    y: float
-    v: float
-
-
-class SectionForm(NamedTuple):
-    """The upper half of a quadratic form in the components of a crossing."""
-
-    xx: float
-    xy: float
-    xv: float
-    yy: float
-    yv: float
-    vv: float
 
 
 class TrappingRegions(Record):
     """Trapping regions, if all trajectories have the same parameters; in m and s.
 
     ``level`` and ``form`` describe the region of the equilibrium. ``reach`` is the level of that of the whirl,
-    ``turn`` its crossing of the section, ``metric`` the form there, and ``measures`` its measures. Level or reach are
-    0 if unknown.
+    ``turn`` its crossing of the section in x, y and ẏ/k, ``metric`` the upper half of the form there, and
+    ``measures`` its measures. Level or reach are 0 if unknown.
     """
 
     level: float
-    form: Form
+    form: Annotated[FloatArray, FORM_SIZE]
     reach: float
-    turn: Crossing
-    metric: SectionForm
+    turn: Annotated[FloatArray, 3]
+    metric: Annotated[FloatArray, 6]
     measures: Measures
-
-
-class Turns(Record):
-    """Crossings of the section: position and ẏ at the last one, the last two distances, and their number."""
-
-    place: complex
-    speed: float
-    last: float
-    before: float
-    count: int
-
-
-class Releases(Record):
-    """Radius of the last release, the last two distances, and their number."""
-
-    radius: float
-    last: float
-    before: float
-    count: int
 
 
 class PinMemory(Record):
     """Data of a lane that no vector needs.
 
-    They are the units and the end state so far; the self-centred equilibrium with its trapping region and the time
-    between checks; crossings, releases and the window that measures an end state; the proposed implicit step; and
-    counts of checkpoints and requested times.
+    ``tick`` is the time between checks, ``turns`` x, y and ẏ at crossings of the section, ``releases`` the radii of
+    releases, ``span`` the proposed implicit step; ``checkpoints`` and ``passed`` count checkpoints and requested
+    times.
     """
 
     number: int
@@ -93,10 +66,10 @@ class PinMemory(Record):
     found: Measures
     equilibrium: complex
     level: float
-    form: Form
+    form: Annotated[FloatArray, FORM_SIZE]
     tick: float
-    turns: Turns
-    releases: Releases
+    turns: Series
+    releases: Series
     window: Window
     span: float
     checkpoints: int
@@ -125,11 +98,18 @@ def no_regions() -> NDArray[Any]:
 
 
 def settings_of(
-    tolerance: float, early: bool, once: bool, regions: NDArray[Any], checkpoints: Checkpoints
+    tolerance: float,
+    early: bool = False,
+    once: bool = False,
+    regions: NDArray[Any] | None = None,
+    checkpoints: Checkpoints | None = None,
 ) -> Settings:
     """Return the settings of one call of the kernel, with work space; ``regions`` has the shape (1,)."""
+    # A writable copy, because the kernel is compiled for one kind only.
+    known = no_regions() if regions is None else regions.copy()
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
-    return Settings(tolerance, early, once, regions[0], series, checkpoints)
+    room = empty_checkpoints(0, PinOnDisc.state_size) if checkpoints is None else checkpoints
+    return Settings(tolerance, early, once, known[0], series, room)
 
 
 @inlined

@@ -2,7 +2,6 @@
 
 As elsewhere z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ =
 dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and almost unchanged far from rest.
-So one right-hand side serves all lanes.
 """
 
 from __future__ import annotations
@@ -22,15 +21,12 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series of beginning slip, usually and where it stays slow, see STIFF.
-
-The truncation error of a short series is an error of direction, which slip forgets.
-"""
+"""Number of terms of the series of beginning slip, usually and where it stays slow, see STIFF."""
 
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
 
-Otherwise friction only just exceeds the pull, and a longer series replaces many stiff steps of a short excursion.
+Otherwise a longer series replaces many stiff steps of a short excursion.
 """
 
 SLAVED = 0.02
@@ -97,7 +93,7 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
-    """Return whether slip, which need not be slow, follows the pull closely enough to decay like slow slip.
+    """Return whether slip follows the pull closely enough to decay like slow slip.
 
     Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. s' =
     e − c·s and e' = −K·s of :func:`creeps_steadily` keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and

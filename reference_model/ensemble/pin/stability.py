@@ -27,8 +27,7 @@ from reference_model.systems import FloatArray
 STRIDE, STABLE = 0.5, 1.5
 """Step sizes, in units of time or of the time scale of the slip velocity, and in units of 1/(c + g/s).
 
-Deviations decay at the rate c + g/s; the method is stable up to 2.8 units of 1/(c + g/s). The multipliers of Fig. 5's
-whirls have errors of 1e-5, and of 1e-3 if slip almost ends in a turn.
+Deviations decay at the rate c + g/s; the method is stable up to 2.8 units of 1/(c + g/s).
 """
 
 MOST_STRIDES = 20_000
@@ -63,10 +62,7 @@ def orbit_attracts(
 
 @scalar
 def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: FloatArray) -> bool:
-    """Write the derivative of the return map in (x, y, ẏ) to ``derivative``.
-
-    Return whether the turn was completed.
-    """
+    """Write the derivative of the return map in (x, y, ẏ); return whether the turn was completed."""
     work = complex_zeros(32).reshape(4, 4, 2)
     y, stage, change, rates = work[0], work[1], work[2], work[3]
     y[0, 0], y[0, 1], y[1, 0], y[2, 0], y[3, 1] = z, v, 1.0, 1j, 1j

@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_discrete_lyapunov
 
-from reference_model.ensemble.checkpoints import empty_checkpoints, from_the_start
 from reference_model.ensemble.end_states import EndState, Results
-from reference_model.ensemble.parameters import Task, parameter_table
-from reference_model.ensemble.pin.kernel import PARAMETERS, run_pins
+from reference_model.ensemble.pin.kernel import PARAMETERS, results_of
 from reference_model.ensemble.pin.memory import no_regions, settings_of
+from reference_model.ensemble.task import Task, parameter_table
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc
 
@@ -30,7 +29,7 @@ Map = Callable[[FloatArray], FloatArray]
 """Takes points (n, d) and returns their images after a turn, NaN if the motion is of another kind."""
 
 TOLERANCE = 1e-10
-"""Tolerance of the maps, whatever that of the trajectories, because they are differentiated."""
+"""Tolerance of the maps, which are differentiated."""
 
 DIRECTIONS = 128
 """Number of points on the surface of an ellipsoid."""
@@ -59,10 +58,7 @@ DIFFERENCE = 1e-4
 
 @lru_cache(maxsize=64)
 def trapping_regions(pin: PinOnDisc) -> NDArray[Any]:
-    """Return the trapping regions of ``pin``, shape (1,), with zeros where none is known.
-
-    This takes some ten milliseconds, which a sweep in many parts should spend once.
-    """
+    """Return the trapping regions of ``pin``, shape (1,), with zeros where none is known."""
     regions = no_regions()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
         _find_equilibrium_region(pin, regions)
@@ -90,8 +86,7 @@ def _find_equilibrium_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
         given_up = results.times < 0.5 * duration
         return np.where(given_up[:, np.newaxis], np.nan, np.column_stack((z.real, z.imag, v.real, v.imag)))
 
-    regions["level"], form = _contracting_region(after_some_time, 4, abs(place))
-    regions["form"] = tuple(form)
+    regions["level"], regions["form"] = _contracting_region(after_some_time, 4, abs(place))
 
 
 def _find_whirl_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
@@ -123,11 +118,10 @@ def _find_whirl_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
         start = _on_section(turn[np.newaxis], k)  # so that the measures are those of the orbit itself
-    regions["turn"], regions["measures"] = tuple(turn), tuple(found.measures[0])
-    regions["reach"], metric = _contracting_region(
+    regions["turn"], regions["measures"] = turn, tuple(found.measures[0])
+    regions["reach"], regions["metric"] = _contracting_region(
         lambda points: crossing_from(turn + points) - turn, 3, radius
     )
-    regions["metric"] = tuple(metric)
 
 
 def _on_section(crossings: FloatArray, k: float) -> FloatArray:
@@ -138,12 +132,8 @@ def _on_section(crossings: FloatArray, k: float) -> FloatArray:
 def _run(
     pin: PinOnDisc, starts: FloatArray, duration: float, *, early: bool = False, once: bool = False
 ) -> Results:
-    results = Results.empty(len(starts), pin.state_size)
-    task = Task(parameter_table(pin, PARAMETERS), starts, from_the_start(), np.full(1, duration))
-    checkpoints = empty_checkpoints(0, pin.state_size)
-    settings = settings_of(TOLERANCE, early, once, no_regions(), checkpoints)
-    run_pins(task, settings, results, 0, len(starts))
-    return results
+    task = Task(parameter_table(pin, PARAMETERS), starts, np.full(1, duration))
+    return results_of(task, settings_of(TOLERANCE, early, once))
 
 
 def _derivative(flow: Map, dimension: int, size: float) -> FloatArray:

@@ -20,36 +20,30 @@ from reference_model.formulas.pin.rest import (
     equilibrium_radius,
     largest_load_in_words,
     largest_load_with_equilibrium,
-    semicircle_residual,
-)
-from reference_model.formulas.pin.sticking import (
     release_time,
     resonant_disc_speed,
+    semicircle_residual,
     squared_holding_force,
     sticking_margin,
     sticking_radius,
     turn_until_release,
 )
 from reference_model.formulas.pin.whirl import (
-    circling_speed,
-    driven_radius,
-    require_drive,
-    whirl_frequency,
-    whirl_radius,
-)
-from reference_model.formulas.pin.whirl_stability import (
+    WhirlResponse,
     characteristic_coefficients,
     characteristic_coefficients_as_printed,
+    circling_speed,
     coefficient_margins,
-    lower_branch_margin,
-    upper_branch_margin,
-    variational_matrix,
-)
-from reference_model.formulas.pin.whirl_with_offset import (
-    WhirlResponse,
+    driven_radius,
     first_order_whirl_response,
     first_order_whirl_shift,
+    lower_branch_margin,
+    require_drive,
     third_order_of_whirl_shift,
+    upper_branch_margin,
+    variational_matrix,
+    whirl_frequency,
+    whirl_radius,
     whirl_shift,
     whirl_shift_error_limit,
 )

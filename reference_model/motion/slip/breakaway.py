@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -125,7 +126,7 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
                 )
             continue
         stop = min(t + step, run.end)
-        run.record(stop, _Sample(motion, piece, t))
+        run.record(stop, partial(_sample, motion, piece, t))
         start, t = piece.at(np.array([stop - t]))[0], stop
         if piece.falling or step * piece.stiffness < STIFF or leave(start.tolist()):
             break
@@ -151,10 +152,7 @@ class _Piece:
 
     @property
     def error(self) -> float:
-        """Contribution of the last terms of the series of values or rates, whichever contains less noise.
-
-        It is relative where the unknowns are large.
-        """
+        """Contribution of the last terms of the series of values or rates, whichever contains less noise."""
         sizes = 1.0 + abs(self.values.coefficients[0])
         by_values = abs(self.values.coefficients[-2:]) / sizes
         by_rates = self.values.t * abs(TO_SERIES[-2:] @ self.rates) / sizes
@@ -173,14 +171,8 @@ class _Piece:
         return self.at(self.values.t + delays)
 
 
-@dataclass(frozen=True, eq=False)
-class _Sample:
-    motion: Coordinates
-    piece: _Piece
-    t: float
-
-    def __call__(self, times: FloatArray) -> FloatArray:
-        return self.motion.standard(self.piece.at(times - self.t).T)
+def _sample(motion: Coordinates, piece: _Piece, t: float, times: FloatArray) -> FloatArray:
+    return motion.standard(piece.at(times - t).T)
 
 
 @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected

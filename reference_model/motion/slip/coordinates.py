@@ -84,10 +84,7 @@ class Coordinates:
         return math.hypot(*y[-self.slip :])
 
     def differences(self, unknowns: FloatArray) -> FloatArray:
-        """Return the changes of ``unknowns`` for numerical derivatives, both of shape (k, n).
-
-        ``unknowns`` may have further columns at the end.
-        """
+        """Return the changes of ``unknowns`` (k, n), which may have more columns, for numerical derivatives."""
         changes = np.full(unknowns.shape, DIFFERENCE)
         if self.turning is not None:
             own = SHARE * abs(unknowns[:, self.turning]) + LEAST_SLIP
@@ -99,8 +96,7 @@ class Coordinates:
 
         ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
         tolerances. An implicit step bounds the error of s instead of ln s, because slip that decays for a long time
-        would need many steps otherwise. Explicit steps keep the tighter bound: without it each reversal would add the
-        tolerance to the error of the run.
+        would need many steps otherwise.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
@@ -122,10 +118,7 @@ class Coordinates:
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
-    """Return the surface where the stop of a support begins, or () without a stop.
-
-    The unknowns start with x and y.
-    """
+    """Return the surface where the stop begins, or () without one, for unknowns that start with x and y."""
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
 
@@ -186,10 +179,7 @@ def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcom
 
 
 def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[float]) -> list[float]:
-    """Follow the last ``left`` of slip, which falls linearly; return the final unknowns.
-
-    The other unknowns follow by the midpoint rule, with an error of order left³.
-    """
+    """Follow the last ``left`` of slip, which falls linearly, by the midpoint rule; return the final unknowns."""
     others = len(y) - motion.slip
     first = motion.rates(y)[:others]
 
@@ -210,10 +200,7 @@ def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[f
 def grip_lost(
     motion: Coordinates, solver: Stepper, unknowns: Callable[[list[float]], list[float]]
 ) -> float | None:
-    """Return where in the last step the grip falls to zero; None if it holds throughout.
-
-    ``unknowns`` converts the solver's unknowns to those of the motion.
-    """
+    """Return where in the last step the grip falls to zero, or None; ``unknowns`` converts those of the solver."""
     if motion.grip is None:
         return None
     grip, dense = motion.grip, solver.dense_output()

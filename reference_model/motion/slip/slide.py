@@ -2,8 +2,8 @@
 
 While slip is fast or grows, its components are unknowns. While it approaches zero it is written s·n with a unit
 vector n, and the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so
-these equations are smooth and not stiff down to s = 0. There n tends to a limit direction of the discontinuity
-(Antali and Stépán 2019), and the remaining time is s over its rate of decrease. No event has to be located.
+these equations are smooth and not stiff down to s = 0. There n tends to a limit direction (Antali and Stépán 2019),
+and the remaining time is s over its rate of decrease.
 """
 
 from __future__ import annotations
@@ -130,10 +130,7 @@ def _stretched(
 
 
 def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:
-    """Return τ for the values ``delays`` of the time, the last unknown of ``dense``, by Newton's method.
-
-    Time grows monotonically with τ in a step. Newton's method is clipped to the step.
-    """
+    """Return τ for the values ``delays`` of the time, the last unknown of ``dense``, by Newton's method."""
     first, last = dense.t_min, dense.t_max
     t_first, t_last = dense(first)[-1], dense(last)[-1]
     tau: FloatArray = first + (last - first) * (delays - t_first) / (t_last - t_first)

@@ -1,9 +1,7 @@
 """Stiff slip by an implicit method: creep, persistently slow slip, and strong damping.
 
-If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs
-steps of about s/g. Slip of a strongly damped body may even decay forever, s ~ exp(−λt), towards a position where
-friction just holds it (:mod:`reference_model.motion.bodies`). As functions of time, n and ln s are smooth, and
-collocation takes steps as long as the motion allows.
+If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs steps
+of about s/g. As functions of time, n and ln s are smooth, and collocation takes steps as long as the motion allows.
 """
 
 from __future__ import annotations
@@ -36,10 +34,7 @@ COST = 4.0
 def slide_stiffly(
     run: Run, motion: Coordinates, start: float, y: list[float], leave: Leave, step: float
 ) -> Outcome:
-    """Integrate by an implicit method as long as it pays, until slip is zero, or until ``leave`` returns True.
-
-    ``step`` is the step of the explicit method.
-    """
+    """Integrate implicitly while it pays, down to zero slip or ``leave``; ``step`` is that of the explicit method."""
     others = len(y) - motion.slip
     solver = _stepper(run, motion, start, y, 2.0 * step)
     t, taken, first = start, run.steps, motion.speed(y)

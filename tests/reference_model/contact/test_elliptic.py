@@ -62,15 +62,15 @@ EDGES += [math.sqrt(SMALL) * (1.0 + step) for step in (-1e-9, 1e-9)]
 EDGES += [1.0 / ratio for ratio in EDGES]
 
 
-def test_closed_form_of_the_ring_is_accurate_at_a_thousand_random_ratios_and_at_edge_cases():
+def test_closed_form_of_the_ring_is_accurate_at_random_ratios_and_at_edge_cases():
     edges = [(slip, slip * ratio) for slip in (1e-150, 0.7, 1e150) for ratio in EDGES]
     resting = 0
-    for slip, rim in random_arguments(1000) + edges:
+    for slip, rim in random_arguments(300) + edges:
         found, exact = mean_directions(slip, rim), exact_directions(slip, rim)
         at_rest = abs(slip - rim) <= 1e-12 * rim
         resting += at_rest
         assert found == pytest.approx(exact, rel=AT_REST if at_rest else ROUNDING, abs=0.0), (slip, rim)
-    assert resting > 50
+    assert resting > 30
 
 
 def test_friction_of_pure_slip_and_pure_spin_has_its_limits():
@@ -86,7 +86,7 @@ def test_friction_of_pure_slip_and_pure_spin_has_its_limits():
 
 
 def test_curvatures_are_the_second_derivatives():
-    arguments = [pair for pair in random_arguments(100, seed=21) if pair[0] != pair[1]]
+    arguments = [pair for pair in random_arguments(40, seed=21) if pair[0] != pair[1]]
     arguments += [(1.0, math.sqrt(SMALL) * (1.0 + step)) for step in (-1e-9, 1e-9)]
     for slip, rim in arguments:
         exact = exact_curvatures(slip, rim)

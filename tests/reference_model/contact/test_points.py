@@ -51,36 +51,6 @@ def test_two_points_resist_their_own_slip_with_their_own_shares():
     assert moment == pytest.approx(-0.1 * 0.3 * 0.8, abs=1e-14)
 
 
-def test_rod_under_uniform_pressure_resists_with_its_integral():
-    """A rod of the length 2l along x slips with u + i·w·x, whose unit vectors have elementary integrals."""
-    length, u, w = 0.4, 0.2 - 0.1j, 1.5
-    ends = np.array([-1.0, 1.0]) * length * w + u.imag
-    straight, turn = np.hypot(ends, u.real), np.arcsinh(ends / u.real)
-    force = -complex(u.real * np.diff(turn)[0], np.diff(straight)[0]) / (2.0 * length * w)
-    squares = 0.5 * np.diff(ends * straight - u.real**2 * turn)[0]
-    moment = -(squares - u.imag * np.diff(straight)[0]) / (2.0 * length * w**2)
-    errors = []
-    for points in (20, 40, 80):
-        places = length * ((2.0 * np.arange(points) + 1.0) / points - 1.0)
-        rod = Points([(x, 0.0, 1.0 / points) for x in places])
-        found = rod.force_and_moment(u, -w, 0.0)
-        errors.append((abs(found[0] - force), abs(found[1] - moment)))
-    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.02)
-
-
-def test_square_that_turns_about_its_centre_meets_the_moment_of_its_mean_distance():
-    """The mean distance from the centre of a square with the side a is a·(√2 + asinh 1)/6."""
-    exact = (math.sqrt(2.0) + math.asinh(1.0)) / 6.0
-    assert friction_of_polygon(SQUARE, 0j) == (pytest.approx(0j, abs=1e-15), pytest.approx(-exact, rel=1e-15))
-    errors = []
-    for divisions in (4, 8, 16):
-        force, moment = polygon_patch(SQUARE, divisions).force_and_moment(0j, -1.0, 0.0)
-        assert abs(force) < 1e-14  # for symmetry
-        errors.append(abs(moment + exact))
-    assert errors[-1] < 2e-6
-    np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 3.0, atol=0.2)
-
-
 @POLYGONS
 def test_patch_converges_with_order_4_to_a_turn_about_a_point_outside(corners):
     for pole in (1.2 + 1.5j, -0.9 + 0.3j, 0.45 - 1.6j):

@@ -13,7 +13,7 @@ from plain_engines import stuck_state
 
 from compare.claims.parameters import FIG5, FIG9, FIG11
 from reference_model import simulate
-from reference_model.ensemble import chunks, simulate_ensemble
+from reference_model.ensemble import simulate_ensemble, task
 from reference_model.ensemble.core.records import layout
 from reference_model.ensemble.disc import kernel as disc_kernel
 from reference_model.ensemble.disc.lanes import DiscLanes
@@ -55,7 +55,7 @@ def test_neighbours_chunks_and_threads_do_not_change_a_single_bit(system, durati
     assert_same(together, results(starts, threads=2))
     assert_same(together, results(starts[order], threads=2), order)
     assert_same(together, results(starts[17]), slice(17, 18))
-    monkeypatch.setattr(chunks, "CHUNK", chunk)
+    monkeypatch.setattr(task, "CHUNK", chunk)
     assert_same(together, results(starts, threads=3))
 
 

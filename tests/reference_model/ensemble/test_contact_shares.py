@@ -63,7 +63,7 @@ def test_friction_of_a_ring_with_a_resting_point_loses_a_logarithm_of_its_accura
         assert abs(share - exact) <= 5.0 * EPS * math.log(4.0 / EPS)
 
 
-@pytest.mark.parametrize("points", [3, 4, 6, 24])
+@pytest.mark.parametrize("points", [3, 7])
 def test_friction_of_points_agrees_with_the_contact_law(points):
     rng = np.random.default_rng(points)
     law = PointsOnRing(1.0, points)

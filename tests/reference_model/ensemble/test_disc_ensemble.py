@@ -8,10 +8,11 @@ import pytest
 from plain_engines import stuck_state
 from test_compiled_runs import STICKING
 
-from compare.claims.parameters import FIG8, FIG9, FIG11
-from reference_model import DiscOnDisc, self_centred_equilibria, simulate, whirls
+from compare.claims.parameters import FIG8, FIG11
+from reference_model import DiscOnDisc, self_centred_equilibria, simulate, sticking_radius, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.disc.trapping import trapping_regions
+from reference_model.formulas.disc import held_pin
 
 BISTABLE = DiscOnDisc(
     mass=1.0, polar_inertia=0.01, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1,
@@ -30,53 +31,8 @@ def starts_of(n, seed=0):
     return starts
 
 
-@pytest.mark.parametrize("points", [None, 6])
-@pytest.mark.parametrize("disc", [FIG8, FIG9, FIG11], ids=["Fig. 8", "Fig. 9", "Fig. 11"])
-def test_slip_agrees_with_the_reference_up_to_t_100(disc, points):
-    disc = replace(disc, contact_points=points)
-    starts = starts_of(5)
-    found = simulate_ensemble(disc, starts, duration=100.0, early_end=False)
-    expected = [simulate(disc, start, [0.0, 100.0], tolerance=1e-11).at_end for start in starts]
-    assert np.all(found.time == 100.0)
-    assert np.max(np.abs(found.states - expected)) < 1e-7
-
-
-@pytest.mark.parametrize("points", [None, 6])
-def test_stick_and_release_agree_with_the_reference_up_to_t_40(points):
-    disc = replace(STICKING, contact_points=points)
-    start = stuck_state(disc, -0.08, 0.0)
-    motion = simulate(disc, start, [0.0, 40.0], tolerance=1e-11)
-    found = simulate_ensemble(disc, start, duration=40.0, early_end=False)
-    assert len(motion.stick_phases) > 3
-    assert np.max(np.abs(found.states[0] - motion.at_end)) < 1e-7
-
-
-def test_error_falls_with_the_tolerance():
-    start = starts_of(3, seed=2)
-    exact = [simulate(FIG8, one, [0.0, 50.0], tolerance=1e-13).at_end for one in start]
-    errors = [
-        np.max(
-            np.abs(simulate_ensemble(FIG8, start, duration=50.0, tolerance=t, early_end=False).states - exact)
-        )
-        for t in (1e-5, 1e-7, 1e-9)
-    ]
-    # The error is proportional to the tolerance up to a factor of 4.
-    assert errors[1] < 4e-2 * errors[0]
-    assert errors[2] < 4e-2 * errors[1]
-
-
-def test_each_parameter_set_moves_as_in_a_single_run():
-    loads = np.array([0.03, 0.05, 0.08])
-    found = simulate_ensemble(FIG8, starts_of(1)[0], duration=60.0, parameters={"friction_force": loads})
-    for i, load in enumerate(loads):
-        expected = simulate(
-            replace(FIG8, friction_force=load), starts_of(1)[0], [0.0, found.time[i]], tolerance=1e-11
-        )
-        assert np.max(np.abs(found.states[i] - expected.at_end)) < 1e-7
-
-
 def test_early_end_at_the_equilibrium_of_fig_8_has_its_radius_and_power():
-    starts = starts_of(40)
+    starts = starts_of(10)
     early = simulate_ensemble(FIG8, starts, duration=3000.0)
     full = simulate_ensemble(FIG8, starts, duration=3000.0, early_end=False)
     point = self_centred_equilibria(FIG8)[0]
@@ -108,7 +64,7 @@ def test_motion_from_the_edge_of_a_trapping_region_goes_to_the_equilibrium():
 
 
 def test_early_end_states_agree_with_full_length_and_the_reference():
-    starts = starts_of(300, seed=4)
+    starts = starts_of(80, seed=4)
     early = simulate_ensemble(BISTABLE, starts, duration=1000.0)
     full = simulate_ensemble(BISTABLE, starts, duration=1000.0, early_end=False)
     assert set(early.end) == {EndState.SELF_CENTRED, EndState.WHIRL}
@@ -130,20 +86,20 @@ def test_early_end_states_agree_with_full_length_and_the_reference():
 def test_whirl_without_offset_is_the_circle_of_the_formula():
     whirl = whirls(WHIRLING)[0]
     assert whirl.stable
-    found = simulate_ensemble(WHIRLING, starts_of(30), duration=2000.0)
-    full = simulate_ensemble(WHIRLING, starts_of(30), duration=2000.0, early_end=False)
+    found = simulate_ensemble(WHIRLING, starts_of(12), duration=2000.0)
+    full = simulate_ensemble(WHIRLING, starts_of(12), duration=2000.0, early_end=False)
     assert np.array_equal(found.end, full.end)
     assert set(found.end) == {EndState.WHIRL, EndState.STUCK}  # friction may also hold this disc
     whirling = found.end == EndState.WHIRL
     assert found.largest_radius[whirling] == pytest.approx(whirl.radius, rel=1e-4)
     assert np.hypot(*full.states[whirling, :2].T) == pytest.approx(whirl.radius, rel=1e-8)
-    for start, end in list(zip(starts_of(30), found.end, strict=True))[:6]:
+    for start, end in list(zip(starts_of(12), found.end, strict=True))[:6]:
         last = simulate(WHIRLING, start, [0.0, 400.0]).phases[-1]
         assert last.kind == ("slip" if end == EndState.WHIRL else "stick")
 
 
 def test_modulated_whirl_of_fig_11_has_the_radii_of_the_reference():
-    found = simulate_ensemble(FIG11, starts_of(20), duration=3000.0)
+    found = simulate_ensemble(FIG11, starts_of(6), duration=3000.0)
     # This start avoids the axis, where errors of the integrator determine the further motion.
     near = (0.04, 0.0, 0.0, 0.0, 0.04, 1.39)
     late = simulate(FIG11, near, np.linspace(0.0, 1000.0, 10001)).radius[6000:]
@@ -246,10 +202,13 @@ def test_ring_that_slips_briefly_in_each_turn_is_stuck_at_its_final_radius():
     found = ended(disc, stuck_state(disc, 0.27, 0.0))
     assert found.end[0] == EndState.STUCK
     limit = found.largest_radius[0]
-    turns = 400.0 * 2.0 * math.pi / abs(disc.disc_speed)
+    assert limit == pytest.approx(sticking_radius(held_pin(disc)), rel=1e-12)
+    turns = 10.0 * 2.0 * math.pi / abs(disc.disc_speed)
     left = simulate(disc, found.states[0], [0.0, turns, 4.0 * turns], compiled=True).radius - limit
-    assert left[2] < 1e-3 * limit
-    assert left[1] / left[2] == pytest.approx(4.0, rel=0.2)  # the remaining distance falls like 1/turns
+    # The remaining distance falls like 1/turns.
+    assert np.diff(1.0 / left) == pytest.approx(
+        [1.0 / left[1] - 1.0 / left[0]] * np.array([1.0, 3.0]), rel=0.1
+    )
 
 
 def test_largest_radius_of_a_stick_slip_cycle_occurs_at_the_start_of_slip():

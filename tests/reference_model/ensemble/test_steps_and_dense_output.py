@@ -11,11 +11,6 @@ from reference_model.ensemble.core.stepping.dense_output import (
     velocity_on,
 )
 from reference_model.ensemble.core.stepping.runge_kutta import (
-    CAUTION,
-    LARGEST_FACTOR,
-    SMALLEST_FACTOR,
-    error_of,
-    factor_of,
     step,
 )
 
@@ -34,31 +29,11 @@ def swing(start, law, h, steps):
     return y
 
 
-@numba.njit
-def estimate(start, law, h, tolerance):
-    mean, third, fifth = step(pendulum, law, start, pendulum(start, law), h)
-    new = (start[0] + h * mean[0], start[1] + h * mean[1])
-    return error_of(start, new, h, third, fifth, tolerance)
-
-
 def test_step_is_of_eighth_order():
     exact = np.array(swing((1.0, 0.5), 2.0, 0.005, 800))
     errors = [np.abs(np.array(swing((1.0, 0.5), 2.0, 4.0 / n, n)) - exact).max() for n in (10, 20, 40)]
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 7.5), orders
-
-
-def test_error_estimate_is_of_eighth_order_in_the_step():
-    errors = [estimate((1.0, 0.5), 2.0, h, 1e-9) for h in (0.4, 0.2)]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(8.0, abs=0.7)
-    assert estimate((1.0, 0.5), 2.0, 0.3, 1e-8) == pytest.approx(estimate((1.0, 0.5), 2.0, 0.3, 1e-9) / 10.0)
-
-
-def test_next_step_follows_from_the_error():
-    assert factor_of(0.5**8) == pytest.approx(2.0 * CAUTION, rel=1e-14)
-    assert factor_of(0.0) == LARGEST_FACTOR
-    for hopeless in (1e20, np.inf, np.nan):
-        assert factor_of(hopeless) == SMALLEST_FACTOR
 
 
 def motion_at(x, y, t):

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from disc_equations import STICKY
-from plain_engines import coulomb, integrate, stuck_state
+from plain_engines import integrate, stuck_state
 
 from reference_model import PinOnDisc, power_balance, simulate
 from reference_model.contact.contact_law import ThreeTermRing
@@ -15,7 +15,7 @@ from reference_model.trajectory import Trajectory
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 CENTRED = replace(FIG_5, offset=0.0)
-TO_EQUILIBRIUM, TO_WHIRL = [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0]  # the starts of Fig. 5
+TO_WHIRL = [0.1, 0.0, 0.03, 0.0]  # a start of Fig. 5
 ON_WHIRL = [0.9, 0.0, 0.0, 0.9]
 
 
@@ -91,26 +91,6 @@ def test_motion_with_smooth_friction_balances_with_the_heat_of_smooth_friction(e
 
 def viscous_below(pin, slip_speed):
     return lambda slip: -pin.friction_force * slip / max(math.hypot(*slip), slip_speed)
-
-
-def box(pin):
-    """Return friction that is limited separately along x and y."""
-    return lambda slip: -pin.friction_force * np.tanh(slip / 1e-3)
-
-
-def along_x_only(pin):
-    return lambda slip: -pin.friction_force * np.array([slip[0] / math.hypot(*slip), 0.0])
-
-
-def against_drag(pin):
-    return lambda slip: -coulomb(pin)(slip)
-
-
-@pytest.mark.parametrize("law", [against_drag, box, along_x_only])
-def test_motion_with_wrong_friction_does_not_balance(law):
-    times = np.linspace(0.0, 10.0, 2001)
-    assert relative_residual(integrate(FIG_5, ON_WHIRL, times, coulomb(FIG_5))) < 1e-9
-    assert relative_residual(integrate(FIG_5, ON_WHIRL, times, law(FIG_5), tolerance=1e-9)) > 1e-3
 
 
 SLIPPING = [0.5, 0.3, 0.0, 0.0, 0.15, 0.4]

@@ -68,19 +68,6 @@ def test_crossings_of_equal_slip_and_rim_speed_keep_the_tolerance():
     assert np.array_equal(other.states, simulate(disc, start, times, tolerance=1e-9).states)
 
 
-def test_without_friction_the_disc_is_a_damped_oscillator_and_a_spin_that_decays():
-    disc = replace(FIG11, friction_force=0.0, offset=0.1, shaft_damping=0.3)
-    times = np.linspace(0.0, 20.0, 41)
-    trajectory = simulate(disc, [0.3, -0.2, 0.4, -0.1, 0.4, -2.0], times)
-    spin = 1.25 + (-2.0 - 1.25) * np.exp(-0.3 * times)
-    angle = 0.4 + 1.25 * times + (-2.0 - 1.25) / 0.3 * (1.0 - np.exp(-0.3 * times))
-    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0, disc_speed=1.5, offset=0.1)
-    centre = simulate(pin, [0.3, -0.2, -0.1, 0.4], times, tolerance=1e-13)
-    expected = np.column_stack((centre.states[:, :2], angle, centre.states[:, 2:], spin))
-    assert np.abs(trajectory.states - expected).max() < 1e-9 * 30
-    assert kinds(trajectory) == ["slip"]
-
-
 @pytest.mark.parametrize("support", [{}, {"stop_gap": 0.12, "stop_stiffness": 0.5}], ids=["linear", "stop"])
 def test_stuck_ring_is_released_like_a_pin_with_the_friction_that_the_moment_leaves(support):
     disc = replace(STICKY, **support)

@@ -7,10 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plain_engines import (
-    just_released,
     pull_on_stuck_pin,
-    release_after,
-    stick_time_bounds,
     stuck_state,
     turned_with_disc,
 )
@@ -206,9 +203,21 @@ def test_holding_force_that_peaks_at_the_friction_force_does_not_release_the_pin
     assert trajectory.radius == pytest.approx(0.1, rel=1e-14)
 
 
-@pytest.mark.parametrize("excess", [2e-8, 1e-6, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1])
-def test_holding_force_that_just_exceeds_friction_releases_the_pin_briefly_in_each_turn(excess):
+OUT_OF_REACH = {"stop_gap": 10.0, "stop_stiffness": 1.0}
+"""A stop that the pin never meets, with which the release is searched for and not computed in closed form."""
+
+
+@pytest.mark.parametrize(
+    ("excess", "support"),
+    [
+        *((excess, {}) for excess in (2e-8, 1e-6, 1e-4, 1e-3, 1e-2, 0.1)),
+        (1e-6, OUT_OF_REACH),
+        (1e-3, OUT_OF_REACH),
+    ],
+)
+def test_holding_force_that_just_exceeds_friction_releases_the_pin_briefly_in_each_turn(excess, support):
     pin, start, width = grazing_pin(excess)
+    pin = replace(pin, **support)
     times = np.linspace(0.0, 7.0, 71)
     trajectory = simulate(pin, start, times)
     assert kinds(trajectory)[:3] == ["stick", "slip", "stick"]
@@ -257,32 +266,6 @@ def test_run_that_ends_some_time_after_release_is_the_first_part_of_the_whole_ru
     np.testing.assert_allclose(part.states[:-1], whole.states[times < part.times[-1]], atol=1e-11)
     ends = simulate(FIG_5, stuck, [0.0, part.times[-1]]).at_end
     assert np.abs(part.at_end - ends).max() < 1e-9
-
-
-@pytest.mark.parametrize(
-    ("pin", "start"),
-    [
-        (FIG_5, TO_EQUILIBRIUM),
-        (FIG_5, TO_WHIRL),
-        (replace(FIG_6, hardening=1.0), TO_WHIRL),
-        (replace(FIG_6, stop_gap=0.12, stop_stiffness=0.5), TO_WHIRL),
-    ],
-    ids=["to the equilibrium", "to the whirl", "hardening", "stop"],
-)
-def test_stick_and_release_times_agree_with_a_plain_integrator_and_a_bracketed_root(pin, start):
-    expected, t, state = [], 0.0, np.array(start)
-    for _ in range(2):
-        earliest, latest, t, state = stick_time_bounds(pin, state, t, longest=10.0)
-        assert latest - earliest < 1e-8
-        held = release_after(pin, state, longest=4.0)
-        released = turned_with_disc(pin, state, held)
-        release = t + held
-        expected += [(earliest + latest) / 2.0, release]
-        # After 1e-4 s the slip ½κt² is accurate to some 1e-4 of its 1e-10 m/s. The continuation is stiff.
-        shortly = just_released(pin, released, 1e-4)
-        early = slide(pin, shortly, [release + 1e-4, release + 0.05], method="Radau", rtol=1e-11, atol=1e-13)
-        t, state = release + 0.05, early.y[:, -1]
-    assert event_times(simulate(pin, start, [0.0, 15.0]))[:4] == pytest.approx(expected, abs=1e-8)
 
 
 # ---------------------------------------------------------------- requested times

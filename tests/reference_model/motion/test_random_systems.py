@@ -15,7 +15,7 @@ from reference_model import DiscOnDisc, power_balance, simulate
 from reference_model.contact.points import PointsOnRing
 
 seeds = pytest.mark.parametrize("seed", range(SYSTEMS))
-each_combination = pytest.mark.parametrize("seed", range(SYSTEMS // 2))
+every_second = pytest.mark.parametrize("seed", range(0, SYSTEMS, 2))
 OF_ALL_STEPS = 30.0
 """Error bound in tolerances. Each of some hundreds of steps may be off by 0.05, and most errors decay."""
 
@@ -33,9 +33,9 @@ def simulated(seed):
 def test_random_systems_include_all_transitions_between_phases():
     kinds = [[phase.kind for phase in simulated(seed)[0].phases] for seed in range(SYSTEMS)]
     transitions = Counter(pair for each in kinds for pair in set(pairwise(each)))
-    assert transitions["slip", "stick"] > 40
-    assert transitions["stick", "slip"] > 20
-    assert sum("pivot" in each for each in kinds) > 3
+    assert transitions["slip", "stick"] > 30
+    assert transitions["stick", "slip"] > 10
+    assert sum("pivot" in each for each in kinds) > 2
 
 
 @seeds
@@ -58,11 +58,11 @@ def test_error_is_at_most_a_few_tolerances(seed):
 def test_motions_take_little_work():
     """Half of the constants of the step control change only the work.
 
-    The bounds are 5 % above the measured 31,901 steps and 800,680 evaluations for 120 motions.
+    The bounds are 5 % above the measured 15,743 steps and 382,003 evaluations for 60 motions.
     """
     runs = [simulated(seed)[0].solution for seed in range(SYSTEMS)]
-    assert sum(run.steps for run in runs) < 33_500
-    assert sum(run.evaluations for run in runs) < 841_000
+    assert sum(run.steps for run in runs) < 16_530
+    assert sum(run.evaluations for run in runs) < 401_100
 
 
 @seeds
@@ -105,7 +105,7 @@ def slips_of_points(disc, states):
     return np.abs(centre + 1j * spin * arms)
 
 
-@each_combination
+@every_second
 def test_mirrored_motion_and_motion_turned_by_half_a_turn_are_the_same(seed):
     system, start = motion(seed).system, motion(seed).start
     _, states = simulated(seed)
@@ -123,7 +123,7 @@ def test_mirrored_motion_and_motion_turned_by_half_a_turn_are_the_same(seed):
     assert np.abs((turned - shift) * half_turn - states).max() < OF_ALL_STEPS * 1e-9
 
 
-@each_combination
+@every_second
 def test_power_balance_closes_and_heat_never_falls(seed):
     run, _ = simulated(seed)
     fine = simulate(run.system, run.states[0], np.linspace(run.times[0], run.times[-1], 2001))

@@ -61,23 +61,22 @@ def printed(process):
     """Return the factor, whether the process loaded the kernel, and whether it compiled the kernel."""
     output, errors = process.communicate()
     assert process.returncode == 0, errors
+    assert errors == ""
     factor, loaded, made = output.split()
     return float(factor), loaded == "1", made == "1"
 
 
 def test_a_kernel_is_compiled_again_if_another_file_of_its_package_changes(package):
-    compiled, loaded = (False, True), (True, False)
-    assert printed(start(package)) == (2.0, *compiled)
-    assert printed(start(package)) == (2.0, *loaded)
+    assert printed(start(package)) == (2.0, False, True)
     (package / "factor.py").write_text(FACTOR.format(3.0))
-    assert printed(start(package)) == (3.0, *compiled)
+    assert printed(start(package)) == (3.0, False, True)
     (package / "factor.py").write_text(FACTOR.format(2.0))
-    assert printed(start(package)) == (2.0, *loaded)
+    assert printed(start(package)) == (2.0, True, False)
 
 
 def test_one_of_several_simultaneous_processes_compiles_and_the_others_load(package):
-    runs = [printed(each) for each in [start(package) for _ in range(3)]]
-    assert sorted(runs) == [(2.0, False, True), (2.0, True, False), (2.0, True, False)]
+    runs = [printed(each) for each in [start(package) for _ in range(2)]]
+    assert sorted(runs) == [(2.0, False, True), (2.0, True, False)]
 
 
 def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(package, tmp_path):
@@ -90,15 +89,13 @@ def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(packag
 
 def test_kernel_runs_if_no_cache_can_be_written(package, tmp_path):
     (tmp_path / "file").touch()
-    for _ in range(2):
-        run = start(package, NUMBA_CACHE_DIR=str(tmp_path / "file"))
-        assert printed(run) == (2.0, False, True)
+    run = start(package, NUMBA_CACHE_DIR=str(tmp_path / "file"))
+    assert printed(run) == (2.0, False, True)
 
 
-@pytest.mark.parametrize(("long", "lines"), [(0.0, 1), (600.0, 0)])
-def test_long_compilation_is_reported_in_one_line(package, long, lines):
-    _, errors = start(package, long).communicate()
-    assert errors.count("Compiling for this machine") == len(errors.splitlines()) == lines
+def test_long_compilation_is_reported_in_one_line(package):
+    _, errors = start(package, long=0.0).communicate()
+    assert errors.count("Compiling for this machine") == len(errors.splitlines()) == 1
 
 
 def test_cache_directory_of_numba_does_not_change(package, tmp_path, monkeypatch):

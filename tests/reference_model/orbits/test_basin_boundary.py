@@ -76,18 +76,6 @@ def test_closed_curve_encloses_the_basin_of_the_equilibrium_of_fig_5(boundary):
     assert tested > 10
 
 
-def test_points_of_the_curve_separate_the_basins(boundary):
-    (curve,) = boundary
-    x, vx = curve.points.T
-    anticlockwise = np.sign(np.sum(x[:-1] * vx[1:] - x[1:] * vx[:-1]))
-    for i in range(1, len(x) - 1, 16):
-        along = curve.points[i + 1] - curve.points[i - 1]
-        outward = 1e-5 * anticlockwise * np.array([along[1], -along[0]]) / np.linalg.norm(along)
-        for side in (-1.0, 1.0):
-            x0, vx0 = curve.points[i] + side * outward
-            assert whirls([x0, 0.0, vx0, 0.0], 250.0, 1e-8) == (side > 0.0), curve.points[i]
-
-
 def test_curve_through_a_rectangle_that_cuts_the_basin_ends_at_its_limits(saddle):
     low, high = 0.0, 0.05
     (curve,) = basin_boundary(with_tolerance(saddle, 1e-6), ranges=((low, high), (0.0, 0.15)), cells=2)

@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import LARGE, eq_23, mirrored, points_on_ring, rates, rates_in_turning_axes
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from disc_equations import LARGE, eq_23, mirrored, points_on_ring, rates_in_turning_axes
 from plain_engines import support_force
 from scipy.optimize import brentq
 from test_stability import assert_same_eigenvalues, derivative, pin_rates_in_turning_axes, rates_of_eq_1
@@ -18,7 +16,6 @@ from reference_model import (
     onset_load,
     self_centred_equilibria,
     simulate,
-    whirl_orbit,
     whirls,
     why_no_equilibrium,
     why_no_whirl,
@@ -27,7 +24,6 @@ from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas import pin as formulas
 from reference_model.formulas.disc import pin_of
 from reference_model.steady.stability import (
-    jacobian_without_angle,
     sliding_jacobian,
     turning_frame_jacobian,
     whirl_eigenvalues,
@@ -102,27 +98,6 @@ def test_whirl_of_the_pin_is_a_fixed_point_of_eq_1_in_turning_axes_with_its_jaco
     assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(expected), tolerance=1e-11)
 
 
-@settings(max_examples=60)
-@given(
-    st.floats(0.0, 3.0), st.floats(0.0, 30.0), st.floats(0.01, 1.0), st.floats(0.1, 100.0), st.floats(0.02, 1.0),
-    st.floats(0.5, 6.0),
-)  # fmt: skip
-def test_whirls_of_the_pin_agree_with_a_search_over_radii(stiffness, hardening, gap, stop, load, speed):
-    pin = PinOnDisc(
-        mass=1.3, stiffness=stiffness, damping=0.2, friction_force=load, disc_speed=speed, hardening=hardening,
-        stop_gap=gap, stop_stiffness=stop,
-    )  # fmt: skip
-    radii = np.geomspace(1e-4, 100.0, 1001)
-    pulls = np.array([math.hypot(*support_force(pin, [rho, 0.0, 0.0, 0.0])) for rho in radii])
-    turning = np.sqrt(pulls / (pin.mass * radii))
-    drive = pin.friction_force - pin.damping * turning * radii
-    places = np.flatnonzero((np.diff(np.sign(drive)) != 0.0) & (turning[:-1] < speed) & (turning[1:] < speed))
-    found = whirls(pin)
-    assert len(found) == len(places) or abs(formulas_turning(pin) / speed - 1.0) < 0.01
-    for whirl, i in zip(found, places, strict=False):
-        assert radii[i] * (1.0 - 1e-12) <= whirl.radius <= radii[i + 1] * (1.0 + 1e-12)
-
-
 def formulas_turning(pin):
     """Return the angular speed of the circle with the speed μN/β, even if it is not a whirl."""
     radius = formulas.driven_radius(pin, pin.friction_force)
@@ -139,23 +114,6 @@ def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc
     trajectory = simulate(pin, [0.5, 0.0, 0.0, 0.5], np.linspace(0.0, 200.0, 201))
     assert trajectory.phases[-1].kind == "stick"
     assert trajectory.phases[-1].end - trajectory.phases[-1].start > 50.0
-
-
-@pytest.mark.parametrize("support", [{"hardening": 2.0}, {"stop_gap": 0.4, "stop_stiffness": 20.0}])
-def test_circle_of_an_undamped_pin_grows_until_it_turns_as_fast_as_the_disc(support):
-    pin = centred(replace(FIG_5, damping=0.0), **support)
-    assert whirls(pin) == ()
-    assert "as fast as the disc" in why_no_whirl(pin)
-    carried = brentq(
-        lambda rho: math.hypot(*support_force(pin, [rho, 0.0, 0.0, 0.0])) - 1.5**2 * rho, 0.3, 5.0
-    )
-    trajectory = simulate(pin, [0.3, 0.0, 0.0, 0.3], np.linspace(0.0, 200.0, 201))
-    assert trajectory.phases[-1].kind == "stick"
-    # Friction balances the rest of the force.
-    stuck = trajectory.radius[-1]
-    spare = abs(math.hypot(*support_force(pin, [stuck, 0.0, 0.0, 0.0])) - 1.5**2 * stuck)
-    assert spare < pin.friction_force
-    assert abs(stuck - carried) < 0.1 * carried
 
 
 # ---------------------------------------------------------------- a stop without a gap is a spring
@@ -185,23 +143,6 @@ OF_A_DISC = [
     {"stop_gap": 0.03, "stop_stiffness": 3.0},
     {"hardening": 10.0, "stop_gap": 0.02, "stop_stiffness": 1.0},
 ]
-
-
-@pytest.mark.parametrize("support", OF_A_DISC)
-def test_jacobian_at_the_equilibrium_of_the_disc_is_the_derivative_of_eq_19(support):
-    friction_points = 32768
-    disc = replace(FIG8, damping=0.1, **support)
-    (found,) = self_centred_equilibria(disc)
-
-    def without_angle(part):
-        state = np.insert(part, 2, 0.0)
-        return np.delete(rates(disc, points_on_ring(disc, friction_points), state), 2)
-
-    jacobian = derivative(without_angle, np.delete(found.state, 2))
-    assert jacobian_without_angle(disc, found.state) == pytest.approx(
-        jacobian, abs=1e-9 * np.abs(jacobian).max()
-    )
-    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-9)
 
 
 def circles_by_radius(disc, contact):
@@ -291,20 +232,3 @@ def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
 
 
 # ---------------------------------------------------------------- orbits by shooting
-
-
-@pytest.mark.parametrize("support", [{"hardening": 3.0}, {"stop_gap": 0.51, "stop_stiffness": 5.0}])
-def test_long_simulation_ends_on_the_orbit_with_an_offset(support):
-    pin = replace(FIG_5, disc_speed=4.0, damping=0.3, friction_force=0.16, **support)
-    orbit = whirl_orbit(pin)
-    assert orbit.stable
-    if pin.stop_stiffness > 0.0:  # the orbit enters and leaves the stop
-        d = np.hypot(orbit.trajectory.states[:, 0] - pin.offset, orbit.trajectory.states[:, 1])
-        assert d.min() < pin.stop_gap < d.max()
-    largest = abs(orbit.multipliers[1])
-    periods = math.ceil(math.log(1e-10) / math.log(largest))
-    end = simulate(pin, orbit.state * 1.05, [0.0, periods * orbit.period], tolerance=1e-12)
-    nearest = np.abs(orbit.trajectory.states - end.at_end).max(axis=1).min()
-    assert nearest < 2.0 * math.pi / 256 * np.abs(orbit.state).max()
-    radius = np.hypot(*simulate(pin, end.at_end, orbit.trajectory.times).states[:, :2].T)
-    assert radius.max() == pytest.approx(orbit.trajectory.radius.max(), rel=1e-4)

@@ -138,10 +138,6 @@ def where_radius_turns(step: DenseOutput) -> float:
 
 @inlined
 def _zero_of(measure: Callable[[DenseOutput, float], float], step: DenseOutput) -> float:
-    """Return the u where ``measure`` of the step is zero; it changes sign between the ends.
-
-    Uses inverse quadratic interpolation, kept within the bracket.
-    """
     low, high = 0.0, 1.0
     at_low, at_high = measure(step, low), measure(step, high)
     if at_low == at_high:

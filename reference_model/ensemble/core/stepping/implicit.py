@@ -1,13 +1,11 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
 Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit an explicit step, but not this method (Hairer and Wanner, Solving Ordinary Differential
-Equations II, IV.5).
+β/m. These rates limit an explicit step, but not this method.
 
-The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The position
-of the centre depends on slip linearly. The derivative −g·P'' of friction is symmetric and zero along the slip,
-because P is a potential of degree one. Rounding would spoil the component along the slip, so it is removed from the
-differences.
+The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative
+−g·P'' of friction is symmetric and zero along the slip, because P is a potential of degree one. Rounding would spoil
+the component along the slip, so it is removed from the differences.
 """
 
 from __future__ import annotations
@@ -29,7 +27,7 @@ from reference_model.systems import FloatArray
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
-"""As in :mod:`reference_model.numerics.collocation`; PLACES are the nodes in [0, 1]."""
+"""PLACES are the nodes in [0, 1]."""
 
 APART = 1e-7
 """Relative change of slip for the derivative of friction."""
@@ -119,7 +117,6 @@ def collocate_with(
 
 @scalar
 def _complete(slopes: FloatArray, along: FloatArray, size: float, law: DiscLaw) -> None:
-    """Complete the slopes of friction at a node, computed by differences, to those of the rates of slip."""
     _free_of(slopes, along, size)
     slopes[0, 0] -= law.damping
     slopes[0, 1] += law.disc_speed
@@ -131,7 +128,7 @@ def _complete(slopes: FloatArray, along: FloatArray, size: float, law: DiscLaw) 
 
 @scalar
 def _turns(disc_speed: float, step: float) -> ComplexArray:
-    """Return the rotation of the master disc up to the nodes, e^(iωt)."""
+    """Return e^(iωt) at the nodes."""
     turns = complex_zeros(NODES)
     for j in range(NODES):
         turn = disc_speed * step * PLACES[j]
@@ -158,10 +155,7 @@ def _linearise(
     w: FloatArray, f: FloatArray, slopes: FloatArray, start: FloatArray, step: float, reach: ComplexArray,
     linear: FloatArray, rest: FloatArray,
 ) -> None:  # fmt: skip
-    """Write the residual of the slip equations at the nodes to ``rest`` (NODES, d).
-
-    Its derivative with respect to all slip goes to ``linear`` (NODES, d, NODES, d).
-    """
+    """Write the residual at the nodes to ``rest`` (NODES, d), its derivative to ``linear`` (NODES, d, NODES, d)."""
     d = len(start)
     for i in range(NODES):
         for a in range(d):
@@ -201,49 +195,22 @@ def pin_friction(
     return -ux / s, -uy / s, 0.0, s
 
 
-@written_out
-def collocate_pin(
-    z: complex,
-    angle: float,
-    start: FloatArray,
-    step: float,
-    law: DiscLaw,
-    w: FloatArray,
-    f: FloatArray,
-    power: FloatArray,
-) -> float:
-    """Collocate a pin, see :func:`collocate_with`."""
-    return float(collocate_with(z, angle, start, step, law, w, f, power, pin_friction))
+def _collocation(friction: Friction, compiled: Callable[[Collocation], Collocation]) -> Collocation:
+    """Return :func:`collocate_with` for one kind of friction; the compiler accepts no partial functions."""
+
+    def collocate(
+        z: complex, angle: float, start: FloatArray, step: float, law: DiscLaw, w: FloatArray, f: FloatArray,
+        power: FloatArray,
+    ) -> float:  # fmt: skip
+        return float(collocate_with(z, angle, start, step, law, w, f, power, friction))
+
+    return compiled(collocate)
 
 
-@scalar
-def collocate_ring(
-    z: complex,
-    angle: float,
-    start: FloatArray,
-    step: float,
-    law: DiscLaw,
-    w: FloatArray,
-    f: FloatArray,
-    power: FloatArray,
-) -> float:
-    """Collocate a disc on a ring, see :func:`collocate_with`."""
-    return float(collocate_with(z, angle, start, step, law, w, f, power, ring_friction))
-
-
-@written_out
-def collocate_points(
-    z: complex,
-    angle: float,
-    start: FloatArray,
-    step: float,
-    law: DiscLaw,
-    w: FloatArray,
-    f: FloatArray,
-    power: FloatArray,
-) -> float:
-    """Collocate a disc on points, see :func:`collocate_with`."""
-    return float(collocate_with(z, angle, start, step, law, w, f, power, points_friction))
+collocate_pin = _collocation(pin_friction, written_out)
+collocate_ring = _collocation(ring_friction, scalar)
+collocate_points = _collocation(points_friction, written_out)
+"""Collocation of a pin, and of a disc on a ring or on points."""
 
 
 @written_out
@@ -328,7 +295,7 @@ def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: 
 
 @inlined
 def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
-    """Project the direction ``along``, of length ``size``, out of a symmetric matrix from both sides."""
+    """Project a direction of length ``size`` out of a symmetric matrix from both sides."""
     d = len(along)
     for i in range(d):
         part = 0.0
@@ -355,7 +322,7 @@ def _size_of(matrix: FloatArray) -> float:
 
 @scalar
 def _turns_back(start: FloatArray, w: FloatArray) -> bool:
-    """Return whether slip turns by more than a right angle before a node, so that it came to rest on the way."""
+    """Return whether slip turns by more than a right angle, so that it came to rest on the way."""
     before = start
     for i in range(NODES):
         along = 0.0
@@ -369,10 +336,7 @@ def _turns_back(start: FloatArray, w: FloatArray) -> bool:
 
 @scalar
 def _last_term(start: FloatArray, w: FloatArray) -> float:
-    """Return the largest last coefficient of the polynomials through the slip at the start and the nodes.
-
-    Polynomials through the nodes alone would not resolve the motion before the first node.
-    """
+    """Return the largest last coefficient of the polynomials through the slip at the start and the nodes."""
     largest = 0.0
     for k in range(len(start)):
         term = LAST_TERM[0] * start[k]

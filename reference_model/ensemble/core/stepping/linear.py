@@ -8,6 +8,7 @@ import numpy as np
 
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.jit import scalar
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
 from reference_model.systems import FloatArray
 
 SQUARINGS = 40
@@ -37,6 +38,20 @@ def length_of(vector: FloatArray) -> float:
     for value in vector:
         total += value * value
     return math.sqrt(total)
+
+
+@scalar
+def quadratic_form(upper: FloatArray | Tuple, x: Tuple) -> float:
+    """Return xᵀAx for a symmetric matrix A; ``upper`` is its upper half, row by row."""
+    total, k = 0.0, 0
+    for i in range(len(x)):
+        own, others = upper[k], 0.0
+        k += 1
+        for j in range(i + 1, len(x)):
+            others += upper[k] * x[j]
+            k += 1
+        total += x[i] * (own * x[i] + 2.0 * others)
+    return total
 
 
 @scalar

@@ -1,8 +1,4 @@
-"""One step of Dormand and Prince's eighth-order Runge-Kutta method, with the coefficients of SciPy's DOP853 (Hairer).
-
-The unknowns are a tuple of numbers and the step is branch-free code, so a loop over lanes that calls it is
-vectorised.
-"""
+"""One step of Dormand and Prince's method of eighth order, with the coefficients of SciPy's DOP853."""
 
 from __future__ import annotations
 
@@ -37,8 +33,8 @@ E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
 TURNED_BACK = 256.0
 """Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
-Friction reverses between two stages of such a step. At a tolerance of 1e-8 the error estimate accepted 65 of 20,000
-reversals with errors of more than a hundred tolerances.
+Friction reverses between two stages of such a step. The error estimate would accept some of them with errors of a
+hundred tolerances.
 """
 
 LOCAL = 0.1
@@ -53,8 +49,7 @@ def tolerance_of_steps(tolerance: float) -> float:
     return max(LOCAL * tolerance, TIGHTEST)
 
 
-# Sums over tuples are written as machine instructions, one per term. In Python each term would pass through all of
-# numba, and loops over tuples would not become branch-free code.
+# Machine instructions, one per term: loops over tuples would not become branch-free code.
 
 
 @intrinsic  # type: ignore[untyped-decorator]
@@ -142,10 +137,7 @@ def step(
 
 @inlined
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
-    """Return the error of a step as a multiple of the tolerance, by Hairer's estimate from both differences.
-
-    It is absolute for unknowns below 1 and relative for larger ones.
-    """
+    """Return the error over the tolerance by Hairer's estimate; absolute for unknowns below 1, else relative."""
     high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
 

@@ -1,0 +1,89 @@
+"""Recurrence of a motion: convergence of successive values, and measures from one value to the next."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, NamedTuple
+
+from reference_model.ensemble.core.jit import inlined, scalar
+from reference_model.ensemble.core.records import Record
+from reference_model.ensemble.core.stepping.runge_kutta import Tuple
+from reference_model.systems import FloatArray
+
+ACCURACY = 1e-4
+"""Relative distance that may remain when a motion counts as converged."""
+
+STILL = 1e-2
+"""Distance between crossings, as a fraction of the distance allowed by ACCURACY, that is only noise."""
+
+NO_WINDOW = 0
+"""Kind of a window that measures nothing."""
+
+
+class Series(Record):
+    """The last values of a kind, the last two distances between successive values, and their number."""
+
+    values: Annotated[FloatArray, 5]
+    last: float
+    before: float
+    count: int
+
+
+class Measures(NamedTuple):
+    """Measures of an end state: smallest and largest radius, and mean slip speed."""
+
+    least: float
+    largest: float
+    slip: float
+
+
+class Window(Record):
+    """Kind of the measurement, its start, the slip distance at the start, and the range of the radius so far."""
+
+    kind: int
+    since: float
+    way: float
+    least: float
+    largest: float
+
+
+@scalar
+def compared(series: Series, values: Tuple, scale: float) -> bool:
+    """Compare with earlier values of the same kind; return whether less than ACCURACY·scale remains to converge."""
+    square = 0.0
+    for i in range(5):
+        square += (values[i] - series.values[i]) ** 2
+        series.values[i] = values[i]
+    distance, before, first = math.sqrt(square), series.last, series.before
+    series.last, series.before = distance, before
+    series.count += 1
+    return series.count >= 5 and converged(distance, before, first, scale)
+
+
+@scalar
+def converged(last: float, before: float, first: float, scale: float) -> bool:
+    """Return whether the last three distances between crossings imply that less than ACCURACY·scale remains."""
+    allowed = ACCURACY * scale
+    if max(last, before, first) < STILL * allowed and not last > before > first:
+        return True  # near a saddle they are small too, but grow
+    ratio = max(last / before, before / first) if before > 0.0 and first > 0.0 else 1.0
+    return ratio < 1.0 and last * ratio < allowed * (1.0 - ratio)
+
+
+@inlined
+def open_window(window: Window, kind: int, t: float, way: float, radius: float) -> None:
+    """Begin to measure."""
+    window.kind, window.since, window.way = kind, t, way
+    window.least, window.largest = radius, radius
+
+
+@inlined
+def see_radius(window: Window, radius: float) -> None:
+    """Include a radius in the window."""
+    window.least, window.largest = min(window.least, radius), max(window.largest, radius)
+
+
+@inlined
+def measured(window: Window, t: float, way: float) -> Measures:
+    """Return the measures of the window up to the time ``t``."""
+    return Measures(window.least, window.largest, (way - window.way) / (t - window.since))

@@ -1,0 +1,56 @@
+"""Trajectories to simulate in the form of compiled code, and their distribution to threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from reference_model.systems import FloatArray, System
+
+CHUNK = 512
+"""Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
+
+LENGTH, RATE, STEP, SHORT, SPAN = range(5)
+"""Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.
+
+They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
+and the length of an implicit step, all as in lanes.
+"""
+
+PACE_SIZE = SPAN + 1
+
+
+class Task(NamedTuple):
+    """Trajectories to simulate; each array has a row per trajectory, or one for all.
+
+    ``parameters`` (1 or n, parameters) are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI
+    units, ``durations`` (1 or n,) in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
+    """
+
+    parameters: FloatArray
+    starts: FloatArray
+    durations: FloatArray
+    paces: FloatArray = np.zeros((1, PACE_SIZE))
+
+
+def parameter_table(
+    system: System, names: Sequence[str], varied: Mapping[str, FloatArray] | None = None
+) -> FloatArray:
+    """Return the named parameters, shape (1 or n, parameters); those ``varied``, (n,), have a row per trajectory."""
+    columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
+    return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)
+
+
+def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
+    """Call ``run(first, last)`` for all of ``n`` trajectories; it must release the global interpreter lock."""
+    firsts = range(0, n, CHUNK)
+    if threads == 1:
+        for first in firsts:
+            run(first, min(first + CHUNK, n))
+        return
+    with ThreadPoolExecutor(min(threads, len(firsts))) as pool:
+        for _ in pool.map(lambda first: run(first, min(first + CHUNK, n)), firsts):
+            pass  # retrieves the result, so that an error is raised here
