@@ -6,7 +6,7 @@ import pytest
 
 import reference_model
 from compare.claims.parameters import FIG5, FIG11
-from compare.studies.pin.sticking_domain.theory import pin_at
+from compare.studies.pin.sticking_domain.study import pin_at
 from compare.studies.toolkit.pins import safest_angle, stuck
 from exudyn_models import simulate
 from exudyn_models.forces.laws.places import point_regularisation, ring_places

@@ -1,8 +1,8 @@
 """Fig. 8 and eqs. (24) to (26): position and spin of the self-centred disc over the friction force, and its end."""
 
-from compare.studies.disc.fig08.pictures import draw
+from compare.studies.disc.fig08.pictures import curves, draw
 from compare.studies.disc.fig08.study import STUDY
 
-STUDY.provides(figures=draw)
+STUDY.provides(figures=draw, curves=curves)
 
 __all__ = ["STUDY"]

@@ -1,4 +1,4 @@
-"""Figures."""
+"""Curves and figures."""
 
 from __future__ import annotations
 
@@ -9,9 +9,42 @@ import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import GREY, PALETTE, Axes, Figure, axis, curve, engines_in, new_figure, points
-from compare.studies.disc.fig08.theory import RESOLUTION, RING, place_and_spin
+from compare.studies.disc.fig08.study import OFFSETS, PAPER_LAW, RESOLUTION, RING, place_and_spin
 from compare.studies.toolkit.steady_motion import last_load, with_load
-from reference_model.formulas.disc import shaft_torque
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.formulas.disc import positions_by_26, shaft_torque
+from reference_model.systems import DiscOnDisc, FloatArray
+
+
+def curves(count: int = 121) -> Data:
+    """Return spins and positions over ``count`` values of μN, and their ends over X0."""
+
+    def balanced(
+        loads: FloatArray, disc: DiscOnDisc = RING, law: IsotropicContact | None = None
+    ) -> FloatArray:
+        return np.array([place_and_spin(with_load(disc, load), law) for load in loads])
+
+    def printed(loads: FloatArray) -> FloatArray:
+        return np.array([positions_by_26(with_load(RING, load), as_printed=True)[0] for load in loads])
+
+    data: Data = {"offset": np.array(OFFSETS), "end offset": np.geomspace(0.002, 0.5, 61)}
+    for offset in OFFSETS:
+        disc = replace(RING, offset=offset)
+        for name, law in (("ring", None), ("corrected", PAPER_LAW)):
+            # Denser towards the end, where the spin rises steeply.
+            loads = last_load(disc, law) * np.sin(np.linspace(0.0, 0.5 * np.pi, count))[:-1]
+            data |= {f"{name} load {offset:g}": loads, f"{name} {offset:g}": balanced(loads, disc, law)}
+    loads = np.linspace(0.0, 1.08 * last_load(RING), count)
+    shared = data[f"ring load {RING.offset:g}"]
+    shared = shared[shared < last_load(RING, PAPER_LAW)]
+    return data | {
+        "printed load": loads,
+        "printed": printed(loads),
+        "distance load": shared,
+        "distance corrected": np.abs(balanced(shared, law=PAPER_LAW) - balanced(shared)),
+        "distance printed": np.abs(printed(shared) - balanced(shared)),
+        "end": np.array([last_load(replace(RING, offset=offset)) for offset in data["end offset"]]),
+    }
 
 
 def draw(data: ByEngine) -> Figures:

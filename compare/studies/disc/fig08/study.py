@@ -1,4 +1,4 @@
-"""Claims."""
+"""Steady states by eqs. (24) to (26) and by (23), and an engine's motions near them."""
 
 from __future__ import annotations
 
@@ -9,39 +9,124 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.interpolate import KroghInterpolator
+from scipy.optimize import root
 
-import compare.studies.disc.fig08.theory as theory
 from compare.claims.error_estimates import ROUNDING, TIGHTEST, WORKING, Measurement, refined
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured, answers_of, asked
+from compare.claims.parameters import FIG8
 from compare.claims.study import Study
 from compare.engines import Engine
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
 from reference_model import simulate
-from reference_model.formulas.disc import positions_by_26, semicircle_residual
+from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
+from reference_model.formulas.disc import (
+    positions_by_26,
+    reduced_parameters,
+    semicircle_residual,
+    shaft_torque,
+    speed_difference_at,
+    squared_distance,
+)
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
+RING = FIG8
+SIX = replace(RING, contact_points=6)
+"""The disc on the continuous ring (20), and that of the paper's simulations."""
+
+PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
+"""Contact law (23)."""
+
+SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper omits; the friction forces are our choice"
+
+SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper omits X0"
+
+LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
+"""Friction forces in N. The paper does not print a range; the equilibrium ends slightly above C·X0 = 0.1 N."""
+
+DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
+"""Friction force in N, and the time span in s of the measured decay, late enough for small deviations."""
+
+END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
+"""Friction forces in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
+
+STICKING_RATIOS = (0.98, 1.02, 1.05)
+"""Friction forces in units of the largest one with an equilibrium."""
+
+STICKING_TIME = 80.0
+"""Time in s within which friction can accelerate a disc from 95 % to the speed of the master disc."""
+
+OFFSETS = (0.02, 0.05, 0.1, 0.2)
+"""Offsets X0 in m; the paper does not print X0, 0.1 m is the value of Figs. 4 to 6."""
+
+TOLERANCE = WORKING / 10
+"""Tolerance of motions to a position of rest, which the claims resolve to 1e-9."""
+
+BALANCED = 1e-9
+"""Largest residual force over μN due to rounding; (26) as printed leaves far more."""
+
+RESOLUTION = 1e-9
+"""Resolution of positions in m and spins in rad/s on the continuous ring."""
+
+
+def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:
+    """Return x and y in m and spin in rad/s of the self-centred equilibrium."""
+    equilibrium = equilibrium_of(disc, contact)
+    return np.array([equilibrium.x, equilibrium.y, equilibrium.spin])
+
+
+def grid() -> list[DiscOnDisc]:
+    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23), to check (26)."""
+    fractions = np.linspace(0.0, 1.0, 13)[1:-1]
+    return [
+        with_load(disc, fraction * last_load(disc, PAPER_LAW))
+        for disc in (replace(RING, offset=offset) for offset in OFFSETS)
+        for fraction in fractions
+    ]
+
+
+def by_26(disc: DiscOnDisc) -> FloatArray:
+    """Return x and y in m and spin in rad/s by the corrected (26)."""
+    (place,) = positions_by_26(disc)
+    return np.array(place)
+
+
+def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
+    """Return the residual force of springs and friction (23) over μN, at the position by (26)."""
+    place, *_ = positions_by_26(disc, as_printed=as_printed)
+    z, omega = complex(place.x, place.y), disc.disc_speed
+    friction, _ = PAPER_LAW.force_and_moment(-1j * omega * z, omega - place.spin, 0.0)
+    return abs(disc.stiffness * (disc.offset - z) / disc.friction_force + friction)
+
+
+def last_load_by_26(disc: DiscOnDisc) -> float:
+    """Return the friction force in N where A of (26) becomes zero."""
+    difference = reduced_parameters(disc).speed_difference
+
+    def miss(unknowns: FloatArray) -> FloatArray:
+        load, alpha = unknowns
+        loaded = with_load(disc, load)
+        squared, first_line = squared_distance(loaded, alpha), speed_difference_at(loaded, 0.0, alpha)
+        return np.array([squared / disc.offset**2, first_line - difference])
+
+    start = disc.stiffness * disc.offset + shaft_torque(disc) / disc.contact_radius
+    return float(root(miss, [start, math.pi / 4.0], options={"xtol": ROUNDING}).x[0])
+
+
 STUDY = Study.beside(
-    __file__,
-    "fig08",
-    source=theory.SOURCE,
-    system=theory.RING,
-    seconds=2.5,
-    words={"own": f"{theory.RING.offset:g}"},
+    __file__, "fig08", source=SOURCE, system=RING, seconds=2.5, words={"own": f"{RING.offset:g}"}
 )
-STUDY.provides(curves=theory.curves)
 
 
 @functools.lru_cache(maxsize=4)
 def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
     """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), with one common error."""
     found = refined(
-        lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads],
-        theory.TOLERANCE,
+        lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
     )
     # A single number may be right by chance, and two runs may agree to within the tolerance.
-    return Measurement(found.value, np.asarray(found.largest + theory.TOLERANCE * disc.offset))
+    return Measurement(found.value, np.asarray(found.largest + TOLERANCE * disc.offset))
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
@@ -55,16 +140,16 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
     "On the continuous ring, the engine's steady state is the self-centred equilibrium, at every friction force",
     equation="(19), (20)",
     unit="m, rad/s",
-    resolution=theory.RESOLUTION,
+    resolution=RESOLUTION,
     note="Measured: the state that repeats after a sixth of a turn in the engine, with the position (26) as initial "
     "guess. Predicted: balance of forces and moments. Error: the tolerance, and the change at a smaller one.",
     basis="reference",
     swept=("friction_force",),
 )
-def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    found = means_of(engine, theory.RING, loads)
+def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    found = means_of(engine, RING, loads)
     return Measured(
-        predicted=[theory.place_and_spin(with_load(theory.RING, load)) for load in loads],
+        predicted=[place_and_spin(with_load(RING, load)) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
@@ -77,19 +162,19 @@ def rests(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
     "The self-centred equilibria of the continuous ring lie on the semicircle (4)",
     equation="(4)",
     unit="m²",
-    resolution=1e-9 * theory.RING.offset**2,
+    resolution=1e-9 * RING.offset**2,
     note="Left side minus right side of (4), at the positions of the previous claim.",
     implied_by=rests,
     swept=("friction_force",),
 )
-def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    found = means_of(engine, theory.RING, loads)
+def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    found = means_of(engine, RING, loads)
     x, y, _ = found.value.T
     # The gradient of (4) is twice the vector from the circle's centre, of length X0 on the circle.
-    error = 2.0 * np.hypot(x - theory.RING.offset / 2.0, y) * found.error + found.error**2
+    error = 2.0 * np.hypot(x - RING.offset / 2.0, y) * found.error + found.error**2
     return Measured(
         predicted=np.zeros(len(loads)),
-        value=semicircle_residual(theory.RING, x, y),
+        value=semicircle_residual(RING, x, y),
         error=error,
         at={"μN in N": loads},
     )
@@ -102,24 +187,24 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Meas
     resolution=1e-4,
     note="Starts at rest at the relaxed position of the springs, with the spin of the shaft. Measured: growth of the "
     "slowest mode's share of the deviation, in the later half of "
-    + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in theory.DECAYS)
+    + ", ".join(f"{start:g} to {end:g} s" for _, (start, end) in DECAYS)
     + ". Error: the change from the earlier half, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
-def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = theory.DECAYS) -> Measured:
+def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = DECAYS) -> Measured:
     """``spans`` contains μN in N and times in s."""
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
-            functools.partial(_decay, engine, with_load(theory.RING, load), span), WORKING
+            functools.partial(_decay, engine, with_load(RING, load), span), WORKING
         )
         measured.append(later)
         # Nonlinear terms fall with the deviation, so they are smaller in the later half than the change shows.
         errors.append(np.max(error) + np.hypot(*(later - earlier)))
     return Measured(
         predicted=real_and_imaginary(
-            [equilibrium_of(with_load(theory.RING, load)).eigenvalues[0] for load, _ in spans]
+            [equilibrium_of(with_load(RING, load)).eigenvalues[0] for load, _ in spans]
         ),
         value=measured,
         error=np.repeat(np.array(errors)[:, np.newaxis], 2, axis=1),
@@ -150,26 +235,23 @@ def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], toleranc
     equation="(5)",
     unit="N",
     resolution=1e-6,
-    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in theory.END_LOADS)} N, with μN as a polynomial "
+    note=f"Measured: equilibria at {', '.join(f'{load:g}' for load in END_LOADS)} N, with μN as a polynomial "
     "of their distance from the axis. The equilibrium of a pin would end at C·X0 = "
-    f"{theory.RING.stiffness * theory.RING.offset:g} N; the moment of the shaft uses part of the disc's friction. "
+    f"{RING.stiffness * RING.offset:g} N; the moment of the shaft uses part of the disc's friction. "
     "Error: the change without the farthest equilibrium, and at a smaller tolerance.",
     basis="reference",
     swept=("friction_force",),
 )
 def ends(engine: Engine) -> Measured:
     found = refined(
-        lambda tolerance: [
-            _means(engine, with_load(theory.RING, load), tolerance) for load in theory.END_LOADS
-        ],
-        theory.TOLERANCE,
+        lambda tolerance: [_means(engine, with_load(RING, load), tolerance) for load in END_LOADS], TOLERANCE
     )
     distance = np.hypot(found.value[:, 0], found.value[:, 1])
-    on_axis = _extrapolated(distance, theory.END_LOADS)
-    moved = [_extrapolated(distance + found.largest * one, theory.END_LOADS) for one in np.eye(len(distance))]
-    without_farthest = _extrapolated(distance[1:], theory.END_LOADS[1:])
+    on_axis = _extrapolated(distance, END_LOADS)
+    moved = [_extrapolated(distance + found.largest * one, END_LOADS) for one in np.eye(len(distance))]
+    without_farthest = _extrapolated(distance[1:], END_LOADS[1:])
     return Measured(
-        predicted=last_load(theory.RING),
+        predicted=last_load(RING),
         value=on_axis,
         error=np.sum(np.abs(np.array(moved) - on_axis)) + abs(on_axis - without_farthest),
     )
@@ -185,19 +267,19 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
 @STUDY.claim(
     "A disc on the axis sticks to the master disc above the μN at which the equilibrium ends, but not below",
     equation="(5)",
-    note=f"Does it stick, or not, after {theory.STICKING_TIME:g} s at "
-    f"{', '.join(f'{ratio:g}' for ratio in theory.STICKING_RATIOS)} of this μN? Starts on the axis with 95 % of the "
+    note=f"Does it stick, or not, after {STICKING_TIME:g} s at "
+    f"{', '.join(f'{ratio:g}' for ratio in STICKING_RATIOS)} of this μN? Starts on the axis with 95 % of the "
     "speed of the master disc.",
     basis="reference",
     swept=("friction_force",),
 )
-def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> Measured:
+def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measured:
     """``ratios`` are in units of the μN at the end of the equilibrium."""
-    loads = np.array(ratios) * last_load(theory.RING)
-    start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * theory.RING.disc_speed]
+    loads = np.array(ratios) * last_load(RING)
+    start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
 
     def as_said(tolerance: float) -> list[bool]:
-        motions = [(with_load(theory.RING, load), start, [0.0, theory.STICKING_TIME]) for load in loads]
+        motions = [(with_load(RING, load), start, [0.0, STICKING_TIME]) for load in loads]
         runs = engine.simulate_many(motions, tolerance=tolerance)
         return [
             (run.phases[-1].kind == "stick") == (ratio > 1.0) for run, ratio in zip(runs, ratios, strict=True)
@@ -216,18 +298,16 @@ def sticks(engine: Engine, ratios: Sequence[float] = theory.STICKING_RATIOS) -> 
     f"{TIGHTEST:g}.",
     swept=("friction_force",),
 )
-def six_points(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measured:
-    found = means_of(engine, theory.SIX, loads)
-    beside_ring = np.abs(
-        found.value - [theory.place_and_spin(with_load(theory.RING, load)) for load in loads]
-    )[:, 2]
+def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
+    found = means_of(engine, SIX, loads)
+    beside_ring = np.abs(found.value - [place_and_spin(with_load(RING, load)) for load in loads])[:, 2]
     return Measured(
         predicted=[_six_points_of_reference(load) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
         components=("x in m", "y in m", "spin in rad/s"),
-        system=theory.SIX,
+        system=SIX,
         note=f"The spin differs from that on the continuous ring by {np.min(beside_ring):.1g} to "
         f"{np.max(beside_ring):.1g} rad/s.",
         data={"load": loads, "six points": found.value},
@@ -236,7 +316,7 @@ def six_points(engine: Engine, loads: Sequence[float] = theory.LOADS) -> Measure
 
 @functools.cache
 def _six_points_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(theory.SIX, load), TIGHTEST))
+    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(SIX, load), TIGHTEST))
 
 
 @STUDY.claim(
@@ -248,36 +328,34 @@ def _six_points_of_reference(load: float) -> tuple[float, ...]:
     swept=("friction_force", "offset"),
 )
 def corrected_26() -> Measured:
-    discs = theory.grid()
-    places = np.array([theory.by_26(disc) for disc in discs])
-    moved = np.array(
-        [theory.by_26(with_load(disc, disc.friction_force * (1.0 + ROUNDING))) for disc in discs]
-    )
+    discs = grid()
+    places = np.array([by_26(disc) for disc in discs])
+    moved = np.array([by_26(with_load(disc, disc.friction_force * (1.0 + ROUNDING))) for disc in discs])
     return Measured(
-        predicted=[theory.place_and_spin(disc, theory.PAPER_LAW) for disc in discs],
+        predicted=[place_and_spin(disc, PAPER_LAW) for disc in discs],
         value=places,
-        error=np.abs(moved - places) + ROUNDING * theory.RING.offset,
+        error=np.abs(moved - places) + ROUNDING * RING.offset,
         at={"X0, μN": [f"{disc.offset:g} m, {disc.friction_force:.4g} N" for disc in discs]},
         components=("x in m", "y in m", "spin in rad/s"),
-        source=theory.SOURCE_OF_GRID,
+        source=SOURCE_OF_GRID,
     )
 
 
 @STUDY.claim(
     "Springs and friction (23) do not balance at any position of (26) as printed",
     equation="(26)",
-    note=f"Is the residual force at a position below {theory.BALANCED:g}·μN for the corrected (26), and above it for "
+    note=f"Is the residual force at a position below {BALANCED:g}·μN for the corrected (26), and above it for "
     "the printed one?",
     swept=("friction_force", "offset"),
 )
 def printed_26() -> Measured:
-    discs = theory.grid()
+    discs = grid()
     corrected, printed = (
-        np.array([theory.unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
+        np.array([unbalanced(disc, as_printed) for disc in discs]) for as_printed in (False, True)
     )
     return answers_of(
-        [*(theory.BALANCED - corrected), *(printed - theory.BALANCED)],
-        source=theory.SOURCE_OF_GRID,
+        [*(BALANCED - corrected), *(printed - BALANCED)],
+        source=SOURCE_OF_GRID,
         note=f"At {len(discs)} positions each. It is at most {np.max(corrected):.1g}·μN for the corrected one, and "
         f"{np.min(printed):.2g} to {np.max(printed):.2g}·μN for the printed one.",
     )
@@ -292,12 +370,12 @@ def printed_26() -> Measured:
     swept=("friction_force", "offset"),
 )
 def end_of_26() -> Measured:
-    discs = [replace(theory.RING, offset=offset) for offset in theory.OFFSETS]
-    predicted = np.array([last_load(disc, theory.PAPER_LAW) for disc in discs])
+    discs = [replace(RING, offset=offset) for offset in OFFSETS]
+    predicted = np.array([last_load(disc, PAPER_LAW) for disc in discs])
     return Measured(
         predicted=predicted,
-        value=[theory.last_load_by_26(disc) for disc in discs],
+        value=[last_load_by_26(disc) for disc in discs],
         error=2.0 * ROUNDING * predicted,
-        at={"X0 in m": theory.OFFSETS},
-        source=theory.SOURCE_OF_GRID,
+        at={"X0 in m": OFFSETS},
+        source=SOURCE_OF_GRID,
     )

@@ -101,10 +101,6 @@ OFFSETS = np.geomspace(0.004, 0.25, 40)
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
-def on_six_points(disc: DiscOnDisc) -> DiscOnDisc:
-    return replace(disc, contact_points=6)
-
-
 def circle_of(load: float, which: int) -> SpinningWhirl:
     """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` in N."""
     return whirls(with_load(CENTRED, load))[which]
@@ -113,6 +109,16 @@ def circle_of(load: float, which: int) -> SpinningWhirl:
 def rest_of(load: float) -> SpinningEquilibrium:
     """Return the self-centred equilibrium of the ring at μN = ``load`` in N."""
     return equilibrium_of(with_load(RING, load))
+
+
+def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
+    """Return the whirl without offset of that number, or the equilibrium with the offset if it is None."""
+    return rest_of(load) if which is None else circle_of(load, which)
+
+
+def disc_of(load: float, which: int | None, points: int | None) -> DiscOnDisc:
+    """Return the disc of this motion on ``points``, or on the ring."""
+    return with_load(replace(RING if which is None else CENTRED, contact_points=points), load)
 
 
 def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
@@ -350,11 +356,6 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
 # --- The study
 
 STUDY = Study.beside(
-    __file__,
-    "fig09",
-    source=SOURCE,
-    system=RING,
-    seconds=7.0,
-    words={"own": f"{RING.offset:g}"},
+    __file__, "fig09", source=SOURCE, system=RING, seconds=7.0, words={"own": f"{RING.offset:g}"}
 )
 STUDY.provides(curves=curves)

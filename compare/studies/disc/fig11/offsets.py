@@ -8,23 +8,46 @@ from collections.abc import Sequence
 
 import numpy as np
 
-import compare.studies.disc.fig11.parameters as parameters
+import compare.studies.disc.fig11.theory as theory
 from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
-from compare.claims.parameters import at_each
+from compare.claims.parameters import FIG8, at_each
 from compare.engines import Engine, StatesOnly, UnsupportedSystemError
-from compare.studies.disc.fig11.parameters import STUDY
-from compare.studies.disc.fig11.theory import (
-    critical_offset,
-    disc_at,
-    extents,
-    extremes_of,
-    multipliers_by_variation,
-    pair_modulus,
-    rest_offset,
-)
+from compare.studies.disc.fig11.theory import STUDY
+from compare.studies.disc.fig11.whirl import GROWTH_NOTE, growth
 from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
-from reference_model import Orbit, Trajectory, simulate
-from reference_model.systems import FloatArray
+from reference_model import Orbit, Trajectory, simulate, whirl_orbit
+from reference_model.orbits import modulated_cycle
+from reference_model.systems import ANGLE, FloatArray
+
+ROUND = np.linspace(0.0, 300.0, 1201)
+"""Times in s, over more than one period of the modulation."""
+
+OF_RESTS = 200 * WORKING
+"""Tolerance of the motions on six points, where single points come to rest."""
+
+OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
+"""Offsets X0 in m of the long simulations, the last one from the other figures."""
+
+ENDS_UNTIL = 720.0
+"""Duration in s of the long simulations."""
+
+LOOKED_AT = 240.0
+"""Length in s of their evaluated end, a period of the modulation."""
+
+ENDS_TOLERANCE = 1e-4
+"""Tolerance of the long simulations."""
+
+SWING = 0.005
+"""Smallest swing in rad/s of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
+
+ORBITS_EXTENT = 1e-4
+"""Smallest swing in m of the radius of a motion that counts as a whirl, not as rest."""
+
+MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
+"""State close to the modulated motion at that offset, found by raising X0 in small steps."""
+
+KINDS = ("rest", "whirl", "modulated")
+
 
 # --- Ends of the motion over the offset
 
@@ -34,9 +57,9 @@ from reference_model.systems import FloatArray
     equation="(19)–(21)",
     kind="trajectory",
     unit="m",
-    resolution=1e-3 * parameters.TRIED[1],
+    resolution=1e-3 * theory.TRIED[1],
     note="Measured: whirls with an offset by shooting with the engine, for "
-    f"{at_each('X0', parameters.TRIED)} m, and their multipliers by differences. Predicted: the result of one Newton "
+    f"{at_each('X0', theory.TRIED)} m, and their multipliers by differences. Predicted: the result of one Newton "
     "step from that X0 with multipliers from the variational equations, integrated with the "
     "analytic Jacobian. Error: the change at a smaller tolerance, the change with linear "
     "interpolation, and the change of a time shift by the linearised return map.",
@@ -51,21 +74,21 @@ def critical(engine: Engine) -> Measured:
 @functools.lru_cache(maxsize=4)
 def critical_of(engine: Engine) -> tuple[float, Measurement]:
     """Return the critical X0 in m by exact multipliers and by the engine's, NaN if there is none."""
-    found = functools.cache(lambda tolerance: critical_offset(engine, tolerance))
+    found = functools.cache(lambda tolerance: theory.critical_offset(engine, tolerance))
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0])
         _, interpolation, slope, near = found(WORKING)
-        exact = multipliers_by_variation(disc_at(float(measured)), near)
+        exact = theory.multipliers_by_variation(theory.disc_at(float(measured)), near)
     except RuntimeError:  # no whirl, or no critical one
         return math.nan, Measurement(np.array(math.nan), np.array(0.0))
     error = error + interpolation + error_of_monodromy(near) / abs(slope)
-    predicted = float(measured) - (pair_modulus(exact) - 1.0) / slope
+    predicted = float(measured) - (theory.pair_modulus(exact) - 1.0) / slope
     return predicted, Measurement(measured, known(measured, error))
 
 
 def error_of_monodromy(orbit: Orbit) -> float:
     """Return an estimated relative error of the linearised return map, which should preserve a shift in time."""
-    shift = np.array(rates(disc_at(orbit.system.offset), orbit.state))[parameters.WITHOUT_ANGLE]
+    shift = np.delete(rates(theory.disc_at(orbit.system.offset), orbit.state), ANGLE)
     change = orbit.monodromy @ shift - shift
     # The shift is one of len(shift) directions.
     return math.sqrt(len(shift)) * float(np.linalg.norm(change) / np.linalg.norm(shift))
@@ -74,63 +97,52 @@ def error_of_monodromy(orbit: Orbit) -> float:
 @STUDY.claim(
     "Motions end modulated at small offsets, as a steady whirl at larger offsets, and at rest beyond",
     equation="(19)–(21)",
-    note=f"In the last {parameters.LOOKED_AT:g} of {parameters.ENDS_UNTIL:g} s, the spin averaged over a "
-    f"turn oscillates by more than {parameters.SWING:g} rad/s, or the radius by more than "
-    f"{parameters.ORBITS_EXTENT:g} m. Predicted: from the critical X0, and from the X0 at which an eigenvalue of "
+    note=f"In the last {LOOKED_AT:g} of {ENDS_UNTIL:g} s, the spin averaged over a "
+    f"turn oscillates by more than {SWING:g} rad/s, or the radius by more than "
+    f"{ORBITS_EXTENT:g} m. Predicted: from the critical X0, and from the X0 at which an eigenvalue of "
     "the self-centred equilibrium crosses zero.",
     basis="reference",
     swept=("offset",),
 )
-def ends(engine: Engine, offsets: Sequence[float] = parameters.OFFSETS) -> Measured:
+def ends(engine: Engine, offsets: Sequence[float] = OFFSETS) -> Measured:
     """``offsets`` are in m."""
     critical, _ = critical_of(engine)
-    predicted = [2 if offset < critical else 1 if offset < rest_offset() else 0 for offset in offsets]
+    predicted = [2 if offset < critical else 1 if offset < theory.rest_offset() else 0 for offset in offsets]
     extents: dict[float, list[list[float]]] = {}
 
     def as_predicted(tolerance: float) -> list[bool]:
         found = [end_of(engine, offset, tolerance=tolerance) for offset in offsets]
         extents[tolerance] = [extent for extent, _ in found]
-        return [
-            kind == parameters.KINDS[expected] for (_, kind), expected in zip(found, predicted, strict=True)
-        ]
+        return [kind == KINDS[expected] for (_, kind), expected in zip(found, predicted, strict=True)]
 
     return answers_of(
-        *asked(as_predicted, parameters.ENDS_TOLERANCE),
-        note=f"{', '.join(parameters.KINDS[kind] for kind in predicted)} for {at_each('X0', offsets)} m; the "
+        *asked(as_predicted, ENDS_TOLERANCE),
+        note=f"{', '.join(KINDS[kind] for kind in predicted)} for {at_each('X0', offsets)} m; the "
         "last one is that of the other figures.",
-        data={"offsets": offsets, "extents": extents[parameters.ENDS_TOLERANCE]},
+        data={"offsets": offsets, "extents": extents[ENDS_TOLERANCE]},
     )
 
 
 def end_of(
-    engine: Engine,
-    offset: float,
-    start: tuple[float, ...] = START,
-    tolerance: float = parameters.ENDS_TOLERANCE,
+    engine: Engine, offset: float, start: tuple[float, ...] = START, tolerance: float = ENDS_TOLERANCE
 ) -> tuple[list[float], str]:
     """Return smallest and largest final radius in m and spin in rad/s, and the kind, one of ``KINDS``."""
-    step = 2.0 * math.pi / RING.natural_frequency / parameters.SAMPLES_A_TURN
+    step = 2.0 * math.pi / RING.natural_frequency / theory.SAMPLES_A_TURN
     run = engine.simulate(
-        disc_at(offset), start, np.arange(0.0, parameters.ENDS_UNTIL, step), tolerance=tolerance
+        theory.disc_at(offset), start, np.arange(0.0, ENDS_UNTIL, step), tolerance=tolerance
     )
-    found = extents(run, round(parameters.LOOKED_AT / step))
+    found = theory.extents(run, round(LOOKED_AT / step))
     averaged = np.convolve(
-        run.states[:, 5], np.full(parameters.SAMPLES_A_TURN, 1.0 / parameters.SAMPLES_A_TURN), "valid"
+        run.states[:, 5], np.full(theory.SAMPLES_A_TURN, 1.0 / theory.SAMPLES_A_TURN), "valid"
     )
-    swing = np.ptp(averaged[-round(parameters.LOOKED_AT / step) :])
-    kind = (
-        "modulated"
-        if swing > parameters.SWING
-        else "whirl"
-        if found[1] - found[0] > parameters.ORBITS_EXTENT
-        else "rest"
-    )
+    swing = np.ptp(averaged[-round(LOOKED_AT / step) :])
+    kind = "modulated" if swing > SWING else "whirl" if found[1] - found[0] > ORBITS_EXTENT else "rest"
     return found, kind
 
 
 # --- The modulated motion on six points, where single points come to rest
 
-NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
+NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
 
 @STUDY.claim(
@@ -142,7 +154,7 @@ NOTE = f"Within {parameters.ROUND[-1]:g} s. Predicted: the reference at 1e-11."
     note=f"{NOTE} A missing or additional rest makes all numbers missing.",
 )
 def points_rest(engine: Engine) -> Measured:
-    if isinstance(_run(engine, parameters.OF_RESTS), StatesOnly):
+    if isinstance(_run(engine, OF_RESTS), StatesOnly):
         raise UnsupportedSystemError(f"{engine.name} does not report when single points rest")
     predicted = rests_of_points(_reference())
 
@@ -150,8 +162,8 @@ def points_rest(engine: Engine) -> Measured:
         found = rests_of_points(_run(engine, tolerance))
         return found if len(found) == len(predicted) else np.full(len(predicted), np.nan)
 
-    found = refined(rests, parameters.OF_RESTS)
-    longer = engine.simulate(SIX, START, parameters.TIMES, tolerance=parameters.OF_RESTS)
+    found = refined(rests, OF_RESTS)
+    longer = engine.simulate(SIX, START, theory.TIMES, tolerance=OF_RESTS)
     return Measured(
         predicted=predicted,
         value=found.value,
@@ -173,12 +185,12 @@ def points_rest(engine: Engine) -> Measured:
     note=NOTE,
 )
 def extremes_on_six_points(engine: Engine) -> Measured:
-    found = refined(lambda tolerance: extremes_of(_run(engine, tolerance)), parameters.OF_RESTS, alike=False)
+    found = refined(lambda tolerance: theory.extremes_of(_run(engine, tolerance)), OF_RESTS, alike=False)
     return Measured(
-        predicted=extremes_of(_reference()),
+        predicted=theory.extremes_of(_reference()),
         value=found.value,
         error=found.largest,
-        components=parameters.EXTREMES,
+        components=theory.EXTREMES,
         system=SIX,
     )
 
@@ -190,9 +202,103 @@ def rests_of_points(trajectory: Trajectory) -> FloatArray:
 
 @functools.lru_cache(maxsize=4)
 def _run(engine: Engine, tolerance: float) -> Trajectory:
-    return engine.simulate(SIX, START, parameters.ROUND, tolerance=tolerance)
+    return engine.simulate(SIX, START, ROUND, tolerance=tolerance)
 
 
 @functools.cache
 def _reference() -> Trajectory:
-    return simulate(SIX, START, parameters.ROUND, tolerance=1e-11)
+    return simulate(SIX, START, ROUND, tolerance=1e-11)
+
+
+# --- Without an engine: stability of the whirl under each contact law, and the motion's limit cycle
+
+
+@STUDY.claim(
+    "Shooting finds the modulated cycle that integration approaches, periodic up to a rotation",
+    equation="(19)–(21)",
+    kind="trajectory",
+    unit="s, rad, m, rad/s",
+    resolution=1e-3,
+    note="Error: the change at a smaller tolerance, and the change from the previous modulation in the integrated "
+    "motion.",
+)
+def shooting() -> Measured:
+    predicted, error = theory.predicted_modulation()
+    guess = simulate(RING, START, theory.TIMES, tolerance=1e-7)
+
+    def cycle(tolerance: float) -> FloatArray:
+        orbit = modulated_cycle(RING, guess, tolerance=tolerance, samples=len(ROUND))
+        return np.array([orbit.period, orbit.turn, *theory.extremes_of(orbit.trajectory)])
+
+    found = refined(cycle, 100 * WORKING, alike=False)
+    return Measured(
+        predicted=predicted,
+        value=found.value,
+        error=found.error + error,
+        components=("period in s", "turn in rad", *theory.EXTREMES),
+        source=theory.CENTRED,
+    )
+
+
+@STUDY.claim(
+    "The whirl is unstable on the continuous ring and on six points, but stable by (23)",
+    equation="(19)–(23)",
+    note="The simplified equations would therefore not have shown the modulated cycle.",
+    basis="reference",
+    swept=("contact_points",),
+)
+def unstable() -> Measured:
+    found = theory.whirls_by_law()
+    return answers_of(
+        np.array((1.0, 1.0, -1.0)) * [whirl.eigenvalue.real for whirl in found],
+        source=theory.CENTRED,
+        note="Sign of the largest real part, in this order: "
+        + ", ".join(f"{whirl.eigenvalue:.5f}" for whirl in found)
+        + " 1/s.",
+    )
+
+
+@STUDY.claim(
+    "By (23), a small deviation from the whirl decays as its linearisation predicts",
+    equation="(23)",
+    unit="1/s",
+    note=f"Simulated with the reference. {GROWTH_NOTE}",
+    basis="reference",
+)
+def dies_out_by_23() -> Measured:
+    exact = theory.steady_whirl(RING, theory.EXPANSION).eigenvalue
+    reference = Engine("reference by (23)", functools.partial(simulate, contact=theory.EXPANSION), ("ring",))
+    found = growth(reference, RING, theory.EXPANSION)
+    return Measured(
+        predicted=(exact.real, exact.imag),
+        value=found.value,
+        error=found.error,
+        resolution=5e-3 * abs(exact),
+        components=("rate", "frequency"),
+        parameters={"contact_points": "continuous ring by (23)"},
+        source=theory.CENTRED,
+    )
+
+
+@STUDY.claim(
+    "Just above the critical X0, the steady whirl and the modulated motion are both stable",
+    equation="(19)–(21)",
+    note="Does the pair of multipliers lie inside the unit circle, and does the spin still oscillate by more "
+    f"than {SWING:g} rad/s after {ENDS_UNTIL:g} s?",
+    basis="reference",
+)
+def both_stable() -> Measured:
+    orbit = whirl_orbit(theory.disc_at(theory.BOTH_STABLE), tolerance=WORKING)
+    reference = Engine("reference", simulate, ("ring",))
+
+    def modulated(tolerance: float) -> bool:
+        _, kind = end_of(reference, theory.BOTH_STABLE, MODULATED_THERE, tolerance)
+        return kind == "modulated"
+
+    margin, error = asked(modulated, ENDS_TOLERANCE)
+    return answers_of(
+        (1.0 - theory.pair_modulus(orbit.multipliers), float(margin)),
+        (error_of_monodromy(orbit), float(error)),
+        system=theory.disc_at(theory.BOTH_STABLE),
+        source=f"{SOURCE}; start {MODULATED_THERE}",
+    )

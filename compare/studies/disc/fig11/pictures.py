@@ -1,13 +1,15 @@
-"""Figures."""
+"""Curves and figures."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
-from compare.claims import ByEngine, Figures
+import compare.studies.disc.fig11.theory as theory
+from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import (
     BLACK,
     GREEN,
@@ -22,9 +24,16 @@ from compare.output.figures import (
     new_figure,
     points,
 )
-from compare.studies.disc.fig11.parameters import TIMES
-from compare.studies.toolkit.fig11 import DISCS, RING
+from compare.studies.disc.fig11.theory import TIMES, disc_at, extents
+from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
+from reference_model import Orbit, self_centred_equilibria, simulate, whirl_orbit
 from reference_model.systems import FloatArray
+
+BRANCH = np.array(
+    [*np.linspace(0.0, 0.015, 11), 0.016, 0.0166, 0.0175, 0.0185, 0.0192, 0.0196, 0.0198, 0.0199, 0.01993]
+)
+"""Offsets X0 in m of the whirls in the figure, up to the fold at 0.019930 m; the equilibrium is stable there."""
+
 
 K = RING.natural_frequency
 
@@ -39,6 +48,39 @@ SETTLED = 230.0
 """Start time in s of sections and spectra."""
 
 X0_AXIS = 0.025
+
+
+def curves(whirling: ArrayLike = BRANCH) -> Data:
+    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` in m."""
+    found = theory.whirls_by_law()
+    return {
+        "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in found]),
+        "whirls": np.array([(whirl.radius, whirl.state[-1]) for whirl in found]),
+        "modulation": theory.predicted_modulation()[0],
+        "cycle": integrated(RING, START, theory.UNTIL, len(TIMES), 1e-12),
+        "(23)": simulate(RING, START, TIMES, tolerance=1e-8, contact=theory.EXPANSION).states,
+        **branches(whirling),
+    }
+
+
+def branches(whirling: ArrayLike) -> Data:
+    """Return whirl and equilibrium over X0, with the critical X0 added to ``whirling``."""
+    critical, last = theory.critical_offset_of_reference(), theory.rest_offset()
+    orbits: list[Orbit] = []
+    offsets = np.sort(np.append(whirling, critical))
+    for offset in offsets:
+        guess = orbits[-1].from_the_right() if orbits else None
+        orbits.append(whirl_orbit(disc_at(float(offset)), guess=guess, tolerance=1e-9, samples=64))
+    resting = np.sort([*np.linspace(0.0005, 0.025, 50), last])
+    rest = [self_centred_equilibria(disc_at(float(offset)))[0] for offset in resting]
+    return {
+        "whirl: offset": offsets,
+        "whirl: extents": np.array([extents(orbit.trajectory) for orbit in orbits]),
+        "rest: offset": resting,
+        "rest: place": np.array([(math.hypot(state.x, state.y), state.spin) for state in rest]),
+        "critical offset": np.array(critical),
+        "rest offset": np.array(last),
+    }
 
 
 def draw(data: ByEngine) -> Figures:

@@ -9,22 +9,50 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-import compare.studies.disc.fig11.parameters as parameters
-from compare.claims import TRUTH, Data
+from compare.claims import TRUTH, Study
 from compare.claims.linearised_flow import ComplexArray, rotated
-from compare.claims.parameters import FIG11
+from compare.claims.parameters import FIG8, FIG11
 from compare.engines import Engine
-from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated, rates
+from compare.studies.toolkit.fig11 import DISCS, RING, SOURCE, START, integrated, rates
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
-from reference_model.contact.contact_law import IsotropicContact
+from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.steady.stability import jacobian_without_angle, turning_frame_jacobian
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
+
+EXPANSION = ThreeTermRing(RING.contact_radius)
+"""Contact law (23)."""
+
+CENTRED = f"{SOURCE}: 0 here"
+
+EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
+
+UNTIL = 700.0
+"""Duration in s, three periods of the modulation."""
+
+TIMES = np.linspace(0.0, UNTIL, 2801)
+
+TRIED = (0.0072, 0.00725, 0.0073)
+"""Offsets X0 in m between which the critical X0 is interpolated."""
+
+SAMPLES_A_TURN = 16
+
+BOTH_STABLE = 0.0073
+"""Offset X0 in m slightly above the critical one."""
+
+STUDY = Study.beside(
+    __file__,
+    "fig11",
+    source=f"{CENTRED}; start {START}",
+    system=RING,
+    seconds=5.0,
+    words={"both_stable": f"{BOTH_STABLE:g}", "other_offset": f"{FIG8.offset:g}"},
+)
+
 
 # --- The whirl and its critical modes
 
@@ -95,6 +123,11 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     )
 
 
+def whirls_by_law() -> list[SteadyWhirl]:
+    """Return the whirls on the continuous ring, on six points and by (23)."""
+    return [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
+
+
 def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     """Return the whirl on points close to ``guess``, with modes of the return map linearised by differences."""
     reference = Engine("reference", simulate, ("points",))
@@ -106,7 +139,7 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     def returned(state: FloatArray) -> FloatArray:
         return rotated(simulate(disc, state, [0.0, period], tolerance=TRUTH).at_end, -turn)
 
-    step = parameters.STEP * guess[0]
+    step = 1e-4 * guess[0]
     columns = [
         (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
         for shift in step * np.eye(disc.state_size)
@@ -142,8 +175,8 @@ def modulations(states: FloatArray) -> FloatArray:
     maxima of the radius.
     """
     x, y = states[:, 0], states[:, 1]
-    radius, spin = CubicSpline(parameters.TIMES, np.hypot(x, y)), CubicSpline(parameters.TIMES, states[:, 5])
-    angle = CubicSpline(parameters.TIMES, np.unwrap(np.arctan2(y, x)))
+    radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
+    angle = CubicSpline(TIMES, np.unwrap(np.arctan2(y, x)))
     turning, of_spin = (curve.derivative().roots(extrapolate=False) for curve in (radius, spin))
     largest = turning[radius(turning, 2) < 0.0]
     rows = []
@@ -168,8 +201,7 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
     """Return the last modulation by direct integration of (19), and its error, both of shape (6,)."""
     fine, rough = (
-        last_modulation(integrated(RING, START, parameters.UNTIL, len(parameters.TIMES), tolerance))
-        for tolerance in (1e-12, 1e-11)
+        last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
     )
     return fine[0], np.abs(rough[0] - fine[0]) + fine[1]
 
@@ -205,7 +237,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     whirl, or if it is not nearly critical.
     """
     orbits: list[Orbit] = []
-    for offset in parameters.TRIED:
+    for offset in TRIED:
         guess = orbits[-1] if orbits else _whirl_of_reference()
         orbits.append(
             whirl_orbit(
@@ -213,15 +245,12 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
                 simulate=engine.simulate,
                 guess=guess,
                 tolerance=tolerance,
-                samples=parameters.SAMPLES_A_TURN,
+                samples=SAMPLES_A_TURN,
                 precision=engine.precision,
             )
         )
-    middle = parameters.TRIED[1]
-    tried, moduli = (
-        np.subtract(parameters.TRIED, middle),
-        [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits],
-    )
+    middle = TRIED[1]
+    tried, moduli = (np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits])
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
@@ -238,7 +267,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 @functools.cache
 def _whirl_of_reference() -> Orbit:
     """Return the reference's whirl at the first X0 of ``TRIED``, the first guess for shooting."""
-    return whirl_orbit(disc_at(parameters.TRIED[0]), tolerance=1e-8, samples=parameters.SAMPLES_A_TURN)
+    return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
 
 
 @functools.cache
@@ -263,10 +292,10 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
         start = np.concatenate((state, np.eye(5).ravel()))
         run = solve_ivp(equations, (0.0, period), start, method="DOP853", rtol=tolerance, atol=tolerance)
         end, monodromy = run.y[:6, -1], run.y[6:, -1].reshape(5, 5)
-        miss = (end - state)[parameters.WITHOUT_ANGLE]
+        miss = np.delete(end - state, ANGLE)
         if float(np.max(np.abs(miss))) < 1e-10:
             return np.asarray(np.linalg.eigvals(monodromy), dtype=complex)
-        by_time = np.array(rates(disc, end))[parameters.WITHOUT_ANGLE]
+        by_time = np.delete(rates(disc, end), ANGLE)
         by_start = (monodromy - np.eye(5))[:, [0, 2, 3, 4]]  # y = 0 at the start
         step = np.linalg.solve(np.column_stack((by_start, by_time)), miss)
         state[[0, 3, 4, 5]] -= step[:4]
@@ -291,38 +320,3 @@ def extents(run: Trajectory, last: int = 0) -> list[float]:
     """Return the smallest and largest radius (m) and spin (rad/s) of the ``last`` samples, or of all samples."""
     radius, spin = run.radius[-last:], run.states[-last:, 5]
     return [radius.min(), radius.max(), spin.min(), spin.max()]
-
-
-# --- Data of the figures
-
-
-def curves(whirling: ArrayLike = parameters.BRANCH) -> Data:
-    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` in m."""
-    whirls_of = [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, parameters.EXPANSION)]
-    return {
-        "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in whirls_of]),
-        "whirls": np.array([(whirl.radius, whirl.state[-1]) for whirl in whirls_of]),
-        "modulation": predicted_modulation()[0],
-        "cycle": integrated(RING, START, parameters.UNTIL, len(parameters.TIMES), 1e-12),
-        "(23)": simulate(RING, START, parameters.TIMES, tolerance=1e-8, contact=parameters.EXPANSION).states,
-        **branches(whirling),
-    }
-
-
-def branches(whirling: ArrayLike) -> Data:
-    """Return whirl and equilibrium over X0, with the critical X0 added to ``whirling``."""
-    orbits: list[Orbit] = []
-    offsets = np.sort(np.append(whirling, critical_offset_of_reference()))
-    for offset in offsets:
-        guess = orbits[-1].from_the_right() if orbits else None
-        orbits.append(whirl_orbit(disc_at(float(offset)), guess=guess, tolerance=1e-9, samples=64))
-    resting = np.sort([*np.linspace(0.0005, 0.025, 50), rest_offset()])
-    rest = [self_centred_equilibria(disc_at(float(offset)))[0] for offset in resting]
-    return {
-        "whirl: offset": offsets,
-        "whirl: extents": np.array([extents(orbit.trajectory) for orbit in orbits]),
-        "rest: offset": resting,
-        "rest: place": np.array([(math.hypot(state.x, state.y), state.spin) for state in rest]),
-        "critical offset": np.array(critical_offset_of_reference()),
-        "rest offset": np.array(rest_offset()),
-    }

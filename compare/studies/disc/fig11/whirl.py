@@ -8,19 +8,43 @@ import math
 import numpy as np
 from scipy.special import stdtrit
 
-import compare.studies.disc.fig11.parameters as parameters
-from compare.claims import Measured, Measurement, known, refined
+import compare.studies.disc.fig11.theory as theory
+from compare.claims import WORKING, Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
+from compare.claims.parameters import components_of
 from compare.engines import Engine
-from compare.studies.disc.fig11.parameters import STUDY
-from compare.studies.disc.fig11.theory import SteadyWhirl, last_modulation, predicted_modulation, steady_whirl
+from compare.studies.disc.fig11.theory import (
+    STUDY,
+    SteadyWhirl,
+    last_modulation,
+    predicted_modulation,
+    steady_whirl,
+)
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
 from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-NOTE = (
-    f"Rate and frequency of a deviation of {parameters.AMPLITUDE:g} radii, followed for {parameters.DURATION:g} "
+SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
+"""Initial state of a motion whose contact points all slip for 100 s (our choice)."""
+
+SLIDING = np.linspace(0.0, 100.0, 101)
+
+OF_CYCLE = 10 * WORKING
+"""Tolerance of the motion that settles on the modulated cycle."""
+
+AMPLITUDE = 1e-4
+"""Initial size of a deviation, in units of the whirl's radius."""
+
+DURATION = 200.0
+"""Duration in s, about a period of the modulation; the deviation grows tenfold."""
+
+TOLERANCE = 2000 * WORKING
+"""Tolerance for deviations, small compared with ``AMPLITUDE``."""
+
+
+GROWTH_NOTE = (
+    f"Rate and frequency of a deviation of {AMPLITUDE:g} radii, followed for {DURATION:g} "
     "s to either side, from straight lines through logarithm and phase of its component in the pair of modes. Error: "
     "scatter about the lines, the change with twice the deviation, and at a smaller tolerance."
 )
@@ -37,24 +61,20 @@ NOTE = (
 def slides(engine: Engine, contact: str) -> Measured:
     disc = DISCS[contact]
     predicted, rougher = (
-        integrated(disc, parameters.SLIDING_START, parameters.SLIDING[-1], len(parameters.SLIDING), tolerance)
-        for tolerance in (3e-14, 2e-13)
+        integrated(disc, SLIDING_START, SLIDING[-1], len(SLIDING), tolerance) for tolerance in (3e-14, 2e-13)
     )
     found = refined(
-        lambda tolerance: (
-            engine.simulate(disc, parameters.SLIDING_START, parameters.SLIDING, tolerance=tolerance).states
-        ),
-        5e-10,
+        lambda tolerance: engine.simulate(disc, SLIDING_START, SLIDING, tolerance=tolerance).states, 5e-10
     )
     return Measured(
         predicted=predicted,
         value=found.value,
         # A single number may be right by chance.
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
-        at={"t in s": parameters.SLIDING},
-        components=parameters.COMPONENTS,
+        at={"t in s": SLIDING},
+        components=components_of(RING),
         system=disc,
-        source=f"{parameters.CENTRED}; start {parameters.SLIDING_START} is our choice",
+        source=f"{theory.CENTRED}; start {SLIDING_START} is our choice",
         named={f"slip for 100 s on {contact}": None},
     )
 
@@ -63,20 +83,20 @@ def slides(engine: Engine, contact: str) -> Measured:
     "A small deviation from the whirl on {} grows at the rate of its linearisation",
     equation="(19)–(21)",
     unit="1/s",
-    note=NOTE,
+    note=GROWTH_NOTE,
     basis="reference",
     each=tuple(DISCS),
 )
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
-    times, sizes = departure(engine, DISCS[contact], whirl, parameters.FOLLOWED)
+    times, sizes = departure(engine, DISCS[contact], whirl)
     return Measured(
         predicted=whirl.eigenvalue.real,
         value=found.value[0],
         error=found.error[0],
         resolution=1e-2 * abs(whirl.eigenvalue.real),
         system=DISCS[contact],
-        source=parameters.CENTRED,
+        source=theory.CENTRED,
         note=_linearised(DISCS[contact]),
         named={f"rate of growth on {contact}": 0},
         data={f"{contact}: departure": np.column_stack((times, sizes))},
@@ -87,7 +107,7 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
     "A small deviation from the whirl on {} oscillates at the frequency of its linearisation",
     equation="(19)–(21)",
     unit="1/s",
-    note=NOTE,
+    note=GROWTH_NOTE,
     basis="reference",
     each=tuple(DISCS),
 )
@@ -99,7 +119,7 @@ def frequency_of_growth(engine: Engine, contact: str) -> Measured:
         error=found.error[1],
         resolution=5e-3 * abs(whirl.eigenvalue.imag),
         system=DISCS[contact],
-        source=parameters.CENTRED,
+        source=theory.CENTRED,
         note=_linearised(DISCS[contact]),
         named={f"frequency of growth on {contact}": 0},
     )
@@ -123,10 +143,9 @@ def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = 
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
-        lambda tolerance: fitted(*deviation(engine, disc, whirl, parameters.AMPLITUDE, tolerance)),
-        parameters.TOLERANCE,
+        lambda tolerance: fitted(*deviation(engine, disc, whirl, AMPLITUDE, tolerance)), TOLERANCE
     )
-    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * parameters.AMPLITUDE, parameters.TOLERANCE))
+    larger, _ = fitted(*deviation(engine, disc, whirl, 2.0 * AMPLITUDE, TOLERANCE))
     return Measurement(measured, scatter + np.abs(larger - measured) + error)
 
 
@@ -138,7 +157,7 @@ def deviation(
     The deviation is half the difference of two simulations that start on opposite sides of the whirl, which removes
     even powers.
     """
-    turns = np.arange(round(parameters.DURATION / whirl.period) + 1)
+    turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
     outwards, inwards = (
         rotated(
@@ -164,16 +183,14 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
     return coefficients[1], scatter
 
 
-def departure(
-    engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, until: float
-) -> tuple[FloatArray, FloatArray]:
+def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
     """Return times in s, once a period, and the size of the pair's share in units of the radius.
 
-    The deviation starts ten times larger than in :func:`deviation` and grows beyond the linear range.
+    The deviation starts ten times larger than in :func:`deviation`, and grows to the modulated cycle in 900 s.
     """
-    turns = np.arange(round(until / whirl.period) + 1)
+    turns = np.arange(round(900.0 / whirl.period) + 1)
     times = turns * whirl.period
-    run = engine.simulate(disc, whirl.displaced(10.0 * parameters.AMPLITUDE), times, tolerance=1e-6)
+    run = engine.simulate(disc, whirl.displaced(10.0 * AMPLITUDE), times, tolerance=1e-6)
     away = rotated(run.states, -turns * whirl.turn) - whirl.state
     away[:, ANGLE] -= turns * whirl.advance
     sizes = np.abs(away @ whirl.projection) / whirl.radius
@@ -183,7 +200,7 @@ def departure(
 # --- The modulated cycle on the continuous ring
 
 CYCLE_NOTE = (
-    f"The last modulation within {parameters.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
+    f"The last modulation within {theory.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "
     "(19) as printed, integrated at a tolerance of 1e-12. Error: the change at a smaller tolerance, and the "
     "change from the previous modulation, in both motions."
 )
@@ -205,7 +222,7 @@ def period_and_turn(engine: Engine) -> Measured:
         value=found.value[:2],
         error=found.error[:2],
         components=("period in s", "turn in rad"),
-        data={"the continuous ring": _run(engine, parameters.OF_CYCLE).states},
+        data={"the continuous ring": _run(engine, OF_CYCLE).states},
     )
 
 
@@ -223,7 +240,7 @@ def extremes(engine: Engine) -> Measured:
         predicted=predicted_modulation()[0][2:],
         value=found.value[2:],
         error=found.error[2:],
-        components=parameters.EXTREMES,
+        components=theory.EXTREMES,
     )
 
 
@@ -231,14 +248,12 @@ def extremes(engine: Engine) -> Measured:
 def modulation(engine: Engine) -> Measurement:
     """Return the engine's ``last_modulation``, with the errors of the engine and the prediction."""
     found = refined(
-        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], parameters.OF_CYCLE, alike=False
+        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
     )
-    error = (
-        found.error + predicted_modulation()[1] + last_modulation(_run(engine, parameters.OF_CYCLE).states)[1]
-    )
+    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
     return Measurement(found.value, known(found.value, error))
 
 
 @functools.lru_cache(maxsize=4)
 def _run(engine: Engine, tolerance: float) -> Trajectory:
-    return engine.simulate(RING, START, parameters.TIMES, tolerance=tolerance)
+    return engine.simulate(RING, START, theory.TIMES, tolerance=tolerance)

@@ -20,9 +20,27 @@ from reference_model.formulas.pin import upper_branch_margin
 from reference_model.simulation import simulate
 from reference_model.steady.bifurcation_curves import Kind, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
-from reference_model.steady.stability import equilibrium_eigenvalues, onset_load, whirl_eigenvalues
+from reference_model.steady.stability import onset_load, whirl_eigenvalues
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+
+ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
+
+BOTH_LAWS = "(19), (20), (23)"
+"""Equations of claims on both the ring and (23)."""
+
+FAR_FROM_KINK = 0.02
+"""Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
+
+ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
+"""Speeds ω in rad/s of the onsets by eigenvalues."""
+
+UNSTABLE_LOADS = (0.3, 0.7)
+"""Friction forces as fractions of the interval from the fold to the Hopf point of (23)."""
+
+BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
+"""Factors on the state of the larger whirl at these forces."""
+
 
 # --- The traced curves against independent eigenvalues, and the borders next to Fig. 11
 
@@ -40,7 +58,7 @@ def _spectra_on_map(kind: Kind) -> list[tuple[ComplexArray, float]]:
 
 @STUDY.claim(
     "At every point of the Hopf curves, a pair of eigenvalues of the whirl is imaginary",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     resolution=1e-10,
     note="Real part over frequency, by the Jacobian in the frame that turns with the whirl, which the tracing does "
     f"not use. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues.",
@@ -58,7 +76,7 @@ def marginal(curves: theory.Traced | None = None) -> Measured:
 @STUDY.claim(
     "At every point of the Hopf curves, all other eigenvalues of the whirl are stable: the curves bound its "
     "stability",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     note="Are the real parts of all other eigenvalues negative?",
 )
 def no_other_grows() -> Measured:
@@ -72,7 +90,7 @@ def no_other_grows() -> Measured:
 
 @STUDY.claim(
     "At every point of the fold curves, an eigenvalue of the whirl is zero",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     resolution=1e-8,
     note=f"The smallest eigenvalue over k. {CURVES}. Error: rounding, from the condition numbers of the eigenvalues, "
     "which grow where a second one becomes zero.",
@@ -88,7 +106,7 @@ def folds() -> Measured:
 
 @STUDY.claim(
     "The traced curves cross the line of Fig. 11 where a search along this line finds the boundary",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     unit="N",
     resolution=1e-3 * theory.DISC.friction_force,
     note="μN of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
@@ -112,7 +130,7 @@ def crosses_line() -> Measured:
 
 @STUDY.claim(
     "The centred rotation loses its stability at the onset that the closed form predicts",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     unit="N",
     resolution=1e-9 * theory.DISC.friction_force,
     note="Measured: root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
@@ -122,13 +140,13 @@ def crosses_line() -> Measured:
 def onset() -> Measured:
     predicted, measured, errors = [], [], []
     for law in LAWS.values():
-        for speed in theory.ONSET_SPEEDS:
+        for speed in ONSET_SPEEDS:
             disc = theory.at(disc_speed=speed)
-            sticking = theory.sticking_load(disc)
+            # Above this load, the centred disc may stick permanently.
+            sticking = disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed) / disc.contact_radius
 
             def growth(load: float, disc: DiscOnDisc = disc, law: IsotropicContact = law) -> float:
-                loaded = replace(disc, friction_force=load)
-                return equilibrium_eigenvalues(loaded, theory.rotation(loaded), law)[0].real
+                return growth_of_rotation(replace(disc, friction_force=load), law)
 
             load = brentq(growth, 1e-3 * sticking, (1.0 - 1e-3) * sticking, xtol=1e-15)
             step = 1e-3 * load
@@ -140,7 +158,7 @@ def onset() -> Measured:
         predicted=predicted,
         value=measured,
         error=errors,
-        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in theory.ONSET_SPEEDS],
+        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in ONSET_SPEEDS],
     )
 
 
@@ -180,13 +198,13 @@ def remedies() -> Measured:
         slope = (growth(end) - growth(1.0)) / (end - 1.0)
         errors.append(16.0 * EPSILON * (theory.K / abs(slope) + 1.0))
     return Measured(
-        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=theory.ONE_AT_A_TIME
+        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=ONE_AT_A_TIME
     )
 
 
 @STUDY.claim(
     "Along the line of Fig. 11, whirls gain and lose their stability where the map predicts",
-    equation=theory.BOTH_LAWS,
+    equation=BOTH_LAWS,
     resolution=1e-8,
 )
 def by_whirls() -> Measured:
@@ -211,7 +229,7 @@ def by_whirls() -> Measured:
         value=measured,
         error=errors,
         components=names,
-        source=theory.ONE_AT_A_TIME,
+        source=ONE_AT_A_TIME,
         note="Borders on either side of the point of Fig. 11, and their distances: "
         + "; ".join(dict.fromkeys(names))
         + ".",
@@ -223,7 +241,7 @@ def by_whirls() -> Measured:
     "On the continuous ring, the whirl always loses its stability with a jump: the cycle at the border is unstable",
     equation="(19), (20)",
     note="Does the growth of the modulation increase with its amplitude, by the third-order terms of (19), at each "
-    f"point of the Hopf curves farther than {theory.FAR_FROM_KINK:g} from U = W in U : W?",
+    f"point of the Hopf curves farther than {FAR_FROM_KINK:g} from U = W in U : W?",
 )
 def jumps() -> Measured:
     data: dict[str, FloatArray] = {}
@@ -232,7 +250,7 @@ def jumps() -> Measured:
         for i, curve in enumerate(curves if kind == "Hopf" else ()):
             growth = np.full(len(curve.alpha), np.nan)
             for j, (values, alpha) in enumerate(zip(curve.parameters, curve.alpha.tolist(), strict=True)):
-                if abs(1.0 / math.tan(alpha) - 1.0) > theory.FAR_FROM_KINK:
+                if abs(1.0 / math.tan(alpha) - 1.0) > FAR_FROM_KINK:
                     disc = PLANES[plane].at(values)
                     growth[j] = growth_by_amplitude(disc, theory.state_at(disc, alpha, LAWS[law]), LAWS[law])
             data[f"{plane}/{law}/growth/{i}"] = growth
@@ -317,12 +335,12 @@ def collapses_by_23() -> Measured:
     law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
     (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
     starts = []
-    for share in theory.UNSTABLE_LOADS:
+    for share in UNSTABLE_LOADS:
         disc = theory.at(friction_force=fold + share * (hopf - fold))
         largest = whirls(disc, law)[0]
         starts += [
             theory.Start(disc, tuple((largest.state * factors).tolist()), "rotation", theory.SLOWLY_SETTLED)
-            for factors in theory.BESIDE_LARGEST
+            for factors in BESIDE_LARGEST
         ]
     _, measured = theory.ends_of(functools.partial(simulate, contact=law), starts)
     return measured

@@ -25,6 +25,7 @@ from compare.output.figures import (
     points,
 )
 from compare.studies.disc.stability_map.theory import ENDS
+from compare.studies.toolkit.fig11 import PLANES
 from reference_model.systems import FloatArray
 
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
@@ -50,12 +51,11 @@ class Region(NamedTuple):
 
 
 class Panel(NamedTuple):
-    """Names, labels, ranges and regions of a plane.
+    """Labels, ranges and regions of a plane.
 
     ``outward`` is +1 if the second coordinate increases from the onset to the large whirls, and -1 if it decreases.
     """
 
-    names: tuple[str, str]
     labels: tuple[str, str]
     x: tuple[float, float]
     y: tuple[float, float]
@@ -65,7 +65,6 @@ class Panel(NamedTuple):
 
 PANELS = {
     "load": Panel(
-        ("disc_speed", "friction_force"),
         (axis(r"\omega", "rad/s"), axis(r"\mu N", "N")),
         (0.95, 1.95),
         (0.0, 0.06),
@@ -78,7 +77,6 @@ PANELS = {
         ),
     ),
     "dampers": Panel(
-        ("damping", "shaft_damping"),
         (axis(r"\beta", "N s/m"), axis("b", "N m s/rad")),
         (0.2, 2.0),
         (0.004, 0.026),
@@ -91,7 +89,6 @@ PANELS = {
         ),
     ),
     "speeds": Panel(
-        ("disc_speed", "shaft_speed"),
         (axis(r"\omega", "rad/s"), axis(r"\omega - \Omega", "rad/s")),
         (0.95, 1.95),
         (0.0, 0.5),
@@ -104,7 +101,6 @@ PANELS = {
         ),
     ),
     "inertia": Panel(
-        ("polar_inertia", "shaft_damping"),
         (axis("J", "kg m²"), axis("b", "N m s/rad")),
         (0.0, 4.0),
         (0.0085, 0.0215),
@@ -140,10 +136,10 @@ def draw_map(data: ByEngine) -> Figure:
         handles += [
             Line2D([], [], marker=mark, label=words, **marks) for words, mark in (SIDES | ENDS_AS).items()
         ]
-    for engine in engines_in(data):
-        handles.append(
-            Line2D([], [], color=engine_style(engine).colour, linewidth=4.0, label=f"simulated: {engine}")
-        )
+    handles += [
+        Line2D([], [], color=engine_style(engine).colour, linewidth=4.0, label=f"simulated: {engine}")
+        for engine in engines_in(data)
+    ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9.5)
     return figure
 
@@ -176,12 +172,12 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
         linewidth=1.2,
         label="largest shaft moment at which the disc sticks",
     )
-    if panel.names[0] == "disc_speed":
+    if PLANES[name].names[0] == "disc_speed":
         axes.axvline(K, color=SKY, linewidth=1.4)
         axes.annotate(
             r"$\omega = k$", (K, 0.97), (5, 0), xycoords=("data", "axes fraction"), textcoords="offset points"
         )
-    here = np.array([[getattr(FIG11, parameter) for parameter in panel.names]])
+    here = np.array([[getattr(FIG11, parameter) for parameter in PLANES[name].names]])
     axes.plot(
         *shown(name, here), "*", color=BLACK, markersize=8.0, linestyle="none", zorder=4.0, label="Fig. 11"
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any, NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from compare.claims import WORKING, Data, Measured, Study, answers_of, asked
+from compare.claims import Data, Measured, Study, answers_of, asked
 from compare.claims.linearised_flow import ComplexArray, eigenvalues_with_rounding
 from compare.claims.parameters import FIG11, at_each
 from compare.engines import Simulate
@@ -28,72 +28,10 @@ from reference_model.steady.stability import (
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 DISC = FIG11
 K = DISC.natural_frequency
 
 SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are our choice"
-ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
-
-BOTH_LAWS = "(19), (20), (23)"
-"""Equations of claims on both the ring and (23)."""
-
-LINES = (
-    ("load", "disc_speed", 1.5),
-    ("dampers", "damping", 0.8),
-    ("speeds", "disc_speed", 1.3),
-    ("inertia", "polar_inertia", 0.4),
-)
-"""Lines of simulated discs on both sides of the ring's Hopf curves: plane, fixed parameter, its value."""
-
-ASIDE = 0.01
-"""Relative distance of these simulations from the curves."""
-
-DEVIATION = 0.02
-"""Initial deviation from the whirl, as a share of the distance to U = W, where a point of the ring comes to rest."""
-
-FLOW_TOLERANCE = 100 * WORKING
-"""Tolerance of simulations whose small differences are evaluated."""
-
-STUCK = 60.0
-"""Duration in s of the simulation of a disc that sticks on the axis, where nothing changes except by creep."""
-
-OUTSIDE, BEYOND = 0.003, 0.02
-"""Relative distances outside the Hopf curves where the modulated cycle coexists with the whirl, and is gone."""
-
-BESIDE = (1.002, 1.0, 1.0, 1.0, 1.002, 1.0)
-"""Factors on x, y, angle, vx, vy, spin of a whirl for a state close to it."""
-
-ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
-"""State x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""
-
-LOADS = (
-    *(0.0195, 0.0208, 0.0211, 0.0214, 0.0217, 0.0221, 0.0225),
-    *(0.0232, 0.024, 0.0247, 0.0251, 0.0255, 0.028),
-)
-"""Friction forces in N in the bifurcation diagram."""
-
-SLOW_LOADS = (0.0208, 0.0211)
-"""Friction forces in N where the whirl is stable but disturbances decay slowly."""
-
-FAR_FROM_KINK = 0.02
-"""Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
-
-ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
-"""Speeds ω in rad/s of the onsets by eigenvalues."""
-
-NEAR = 1e-3
-"""Relative distance from a border where the whirl has the stability of that side."""
-
-STATE_ROUNDING = 4.0 * np.finfo(float).eps
-"""Relative rounding error of the spin of a whirl computed from its α."""
-
-UNSTABLE_LOADS = (0.3, 0.7)
-"""Friction forces as fractions of the interval from the fold to the Hopf point of (23)."""
-
-BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
-"""Factors on the state of the larger whirl at these forces."""
 
 
 def at(**changes: Any) -> DiscOnDisc:
@@ -118,14 +56,6 @@ def state_at(disc: DiscOnDisc, alpha: float, law: IsotropicContact) -> FloatArra
     return np.array([radius, 0.0, 0.0, 0.0, K * radius, spin])
 
 
-def points_of(traced: Traced, kind: Kind) -> Iterator[tuple[str, DiscOnDisc, float]]:
-    """Yield law, disc and α for every point of the curves of one kind."""
-    for (plane, law, found), curves in traced.items():
-        for curve in curves if found == kind else ():
-            for values, alpha in zip(curve.parameters, curve.alpha.tolist(), strict=True):
-                yield law, PLANES[plane].at(values), alpha
-
-
 def critical_eigenvalues(
     disc: DiscOnDisc, state: FloatArray, law: IsotropicContact
 ) -> tuple[ComplexArray, float]:
@@ -134,7 +64,8 @@ def critical_eigenvalues(
     The error is that of the matrix, by the condition of the eigenvalue, plus that of the state: if U and W are nearly
     equal, the slopes of friction depend on their small difference.
     """
-    neighbour = state * (1.0 + STATE_ROUNDING * (np.arange(6) == 5))
+    # The spin computed from α has a relative rounding error of about 4 eps.
+    neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
     values, shifted = (
         np.array(sorted(whirl_eigenvalues(disc, which, law)[1:], key=lambda value: abs(value.real)))
         for which in (state, neighbour)
@@ -144,12 +75,15 @@ def critical_eigenvalues(
     return values, float(error + np.min(np.abs(shifted - values[0])))
 
 
-def spectra(kind: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
+def spectra(wanted: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
     """Return the ``critical_eigenvalues`` of the whirls at all points of the curves of one kind."""
-    return [
-        critical_eigenvalues(disc, state_at(disc, alpha, LAWS[law]), LAWS[law])
-        for law, disc, alpha in points_of(curves, kind)
-    ]
+    found = []
+    for (plane, law, kind), branches in curves.items():
+        for curve in branches if kind == wanted else ():
+            for values, alpha in zip(curve.parameters, curve.alpha.tolist(), strict=True):
+                disc = PLANES[plane].at(values)
+                found.append(critical_eigenvalues(disc, state_at(disc, alpha, LAWS[law]), LAWS[law]))
+    return found
 
 
 def crossed(curves: Sequence[Boundary], value: float) -> FloatArray:
@@ -163,29 +97,19 @@ def crossed(curves: Sequence[Boundary], value: float) -> FloatArray:
     return np.sort(found)
 
 
-def growth_of_rotation(disc: DiscOnDisc) -> float:
-    """Return the largest real part in 1/s of the eigenvalues of the centred rotation on the ring."""
-    return equilibrium_eigenvalues(disc, rotation(disc), LAWS["ring"])[0].real
-
-
-def sticking_load(disc: DiscOnDisc) -> float:
-    """Return b|ω − Ω|/R, the smallest μN in N that lets the centred disc stick permanently."""
-    return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed) / disc.contact_radius
-
-
-def rotation(disc: DiscOnDisc) -> FloatArray:
-    """Return the state of the centred rotation, where the shaft overcomes friction, shape (6,)."""
+def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -> float:
+    """Return the largest real part in 1/s of the eigenvalues of the centred rotation."""
     against = disc.disc_speed - disc.shaft_speed
-    relative_spin = against - math.copysign(
-        disc.friction_force * disc.contact_radius / disc.shaft_damping, against
-    )
-    return np.array([0.0, 0.0, 0.0, 0.0, 0.0, disc.disc_speed - relative_spin])
+    # The shaft overcomes friction.
+    slip = against - math.copysign(disc.friction_force * disc.contact_radius / disc.shaft_damping, against)
+    state = np.array([0.0, 0.0, 0.0, 0.0, 0.0, disc.disc_speed - slip])
+    return equilibrium_eigenvalues(disc, state, law)[0].real
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
     """Return the parameter value where a pair of the whirl crosses the imaginary axis, and its error.
 
-    The value is NaN if no pair crosses within ``NEAR`` (relative) of ``near``.
+    The value is NaN if no pair crosses within 0.1 % of ``near``.
     """
 
     def crossing_pair(value: float) -> tuple[float, float]:
@@ -193,7 +117,7 @@ def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[
         pairs = (critical_eigenvalues(disc, whirl.state, law) for whirl in whirls(disc, law))
         return min(((values[0].real, error) for values, error in pairs), key=lambda pair: abs(pair[0]))
 
-    low, high = near * (1.0 - NEAR), near * (1.0 + NEAR)
+    low, high = near * (1.0 - 1e-3), near * (1.0 + 1e-3)
     below, above = crossing_pair(low)[0], crossing_pair(high)[0]
     if below * above > 0.0:
         return math.nan, 0.0
@@ -306,9 +230,6 @@ def changes(disc: DiscOnDisc) -> str:
         f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
     return ", ".join(differing) or "Fig. 11"
-
-
-# --- The study
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

@@ -1,5 +1,8 @@
 """Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
 
-from compare.studies.pin.basins.study import STUDY
+from compare.studies.pin.basins.pictures import draw
+from compare.studies.pin.basins.study import STUDY, curves
+
+STUDY.provides(figures=draw, curves=curves)
 
 __all__ = ["STUDY"]

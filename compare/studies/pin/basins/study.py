@@ -1,65 +1,192 @@
-"""Claims."""
+"""Ends of many starts, and the boundary between them: the stable set of a saddle-type stick–slip orbit."""
 
 from __future__ import annotations
 
 import functools
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
-from compare.claims import WORKING, ByEngine, Figures, Measured, Study, answers_of, asked, known, refined
-from compare.claims.parameters import FIG5, FIG5_STARTS
-from compare.claims.shares import of_grid
+from compare.claims import TIGHTEST, WORKING, Data, Measured, Study, answers_of, asked, known, refined
+from compare.claims.parameters import FIG5
+from compare.claims.shares import Ends, mixed, of_grid, of_sample
 from compare.engines import Engine
-from compare.output.figures import BLACK, GREEN, PURPLE, SKY, axis, curve, new_figure
-from compare.studies.pin.basins.theory import (
-    AFTER,
-    ASIDE,
-    ASIDE_TOLERANCE,
-    ASKED,
-    BARELY,
-    CELLS,
-    FINER,
-    FROM_REST,
-    ON_BOUNDARY,
-    PLACES,
-    PLANE,
-    REACH,
-    RECOMPUTED,
-    RECTANGLE,
-    SETTLED,
-    SIDE,
-    SPEEDS,
-    STARTS,
-    STEP,
-    WHERE,
-    WITHIN,
-    beyond_equilibrium,
-    boundary,
-    curves,
-    distances,
-    enclosed,
-    ends_on_finer_grid,
-    ends_on_grid,
-    ensemble_of,
-    inside,
-    places_on_grid,
-    random_places,
-    saddle,
-    shares_over_speed,
-    smooth,
-    sought_from,
-    starts_at,
+from reference_model import (
+    StickSlipOrbit,
+    basin_boundary,
+    self_centred_equilibria,
+    simulate,
+    stick_slip_orbits,
 )
-from reference_model import simulate
-from reference_model.ensemble import EndState
+from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
 from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
 
-if TYPE_CHECKING:
-    pass
+PLANE = ((-0.3, 0.5), (-0.4, 0.4))
+"""Ranges of x0 in m and vx0 in m/s; y0 and vy0 are zero."""
+
+RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
+"""The same ranges as text."""
+
+FROM_REST = "Fig. 5; starts from rest in y"
+
+SIDE, FINER = 334, 3
+"""Starts along each side of the plane, and refinement factor of the grid where ends differ."""
+
+FASTEST = replace(FIG5, disc_speed=3.0)
+"""Fig. 5 at twice its speed, where the basin is small."""
+
+WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.06))}
+"""Search range for the boundary of each pin. The ends on the grid show that no part of it lies outside."""
+
+CELLS, ON_BOUNDARY = 8, 1e-5
+"""Resolution and tolerance of the boundary. Splines between its points are 1.2e-3 off, half a step of the grid."""
+
+ASKED, BARELY = 64, 1e-6
+"""Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
+
+UNTIL = 3000.0
+"""Duration in s until every start has reached its end."""
+
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
+"""Disc speeds in rad/s."""
+
+STARTS, SEED = 2000, 5
+"""Number of random starts in the plane, the same at every speed, and seed."""
+
+RECOMPUTED = 16
+"""Starts that the plain reference recomputes, half of them near the boundary."""
+
+SETTLED = 250.0
+"""Duration in s until the plain reference has reached one of the two ends from these starts."""
+
+STEP = 5e-3
+"""Distance in rad of other releases from the saddle's, for an engine's multiplier."""
+
+PLACES, ASIDE = 4, 5e-3
+"""Number of starts on the boundary for each engine, and distance from it to either side in m and m/s."""
+
+WITHIN, REACH = (0.05, -0.1), 0.4
+"""A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
+
+AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
+"""Duration in s until the engines' motions have left the saddle, and tolerance."""
+
+
+def curves(
+    side: int = SIDE, cells: int = CELLS, speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS
+) -> Data:
+    orbit = saddle(FIG5).trajectory
+    held = np.zeros(len(orbit.times))
+    for begin, end in orbit.stick_times.reshape(-1, 2):
+        held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
+    return {
+        "ends": ends_on_grid(FIG5, side).astype(float),
+        "curve": smooth(boundary(FIG5, cells)),
+        "saddle": np.column_stack((orbit.states[:, :2], held)),
+        "speeds": np.array(speeds),
+        "whirl": shares_over_speed(speeds, starts)[EndState.WHIRL],
+    }
+
+
+@functools.cache
+def saddle(pin: PinOnDisc) -> StickSlipOrbit:
+    """Return the orbit of ``pin`` whose stable set is the boundary."""
+    (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=TIGHTEST) if not orbit.stable)
+    return orbit
+
+
+def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
+    """Return the saddle with the tolerance ``ON_BOUNDARY``."""
+    orbit = saddle(pin)
+    return replace(orbit, problem=replace(orbit.problem, tolerance=ON_BOUNDARY))
+
+
+@functools.cache
+def boundary(pin: PinOnDisc, cells: int) -> FloatArray:
+    """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
+    (curve,) = basin_boundary(sought_from(pin), ranges=WHERE[pin], cells=cells)
+    points = np.asarray(curve.points)
+    return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
+
+
+def smooth(points: FloatArray, samples: int = 1000) -> FloatArray:
+    """Return a closed curve through ``points`` (n, 2) by periodic cubic splines, shape (samples + 1, 2)."""
+    length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
+    curve = CubicSpline(length, points, bc_type="periodic")
+    return np.asarray(curve(np.linspace(0.0, length[-1], samples + 1)))
+
+
+def enclosed(curve: FloatArray) -> float:
+    """Return the area inside a closed curve of shape (n, 2)."""
+    (x, y), (x_next, y_next) = curve[:-1].T, curve[1:].T
+    return 0.5 * abs(float(np.sum(x * y_next - x_next * y)))
+
+
+def beyond_equilibrium(state: FloatArray) -> float:
+    """Return the distance in m of a state from the equilibrium minus X0; it is positive on the whirl."""
+    (rest,) = self_centred_equilibria(FIG5)
+    return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
+
+
+def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
+    """Return states, shape (n, 4)."""
+    return np.column_stack((x, np.zeros_like(x), vx, np.zeros_like(x)))
+
+
+def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatArray) -> Ensemble:
+    """Return the ends of ``starts`` of shape (n, 4)."""
+    return simulate_ensemble(pin, starts, duration=UNTIL, parameters=parameters)
+
+
+def places_on_grid(side: int) -> FloatArray:
+    """Return x0 and vx0 of the grid, shape (side², 2)."""
+    x, vx = (np.linspace(low, high, side) for low, high in PLANE)
+    return np.column_stack([each.ravel() for each in np.meshgrid(x, vx)])
+
+
+@functools.lru_cache(maxsize=2)
+def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
+    """Return the ends, shape (side, side)."""
+    return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
+
+
+@functools.lru_cache(maxsize=2)
+def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
+    """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
+
+    Only starts in cells of the grid of ``side`` whose corners have different ends are simulated. All other starts get
+    the end of the corners of their cell.
+    """
+    coarse = ends_on_grid(pin, side)
+    cell = np.arange(FINER * (side - 1) + 1) // FINER
+    ends = coarse[np.ix_(cell, cell)]
+    doubtful = np.pad(mixed(coarse), (0, 1))[np.ix_(cell, cell)]
+    # The far edges of a cell are the near ones of the next.
+    doubtful[1:] |= doubtful[:-1]
+    doubtful[:, 1:] |= doubtful[:, :-1]
+    places = places_on_grid(len(cell))[doubtful.ravel()]
+    ends[doubtful] = ensemble_of(starts_at(*places.T), pin).end
+    return ends
+
+
+def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
+    """Return x0 and vx0 of the random starts, shape (starts, 2), and the generator for further ones."""
+    random = np.random.default_rng(SEED)
+    return np.column_stack([random.uniform(low, high, starts) for low, high in PLANE]), random
+
+
+@functools.lru_cache(maxsize=1)
+def shares_over_speed(speeds: tuple[float, ...], starts: int) -> dict[EndState, FloatArray]:
+    """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
+    places, _ = random_places(starts)
+    all_starts = np.tile(starts_at(*places.T), (len(speeds), 1))
+    found = ensemble_of(all_starts, disc_speed=np.repeat(speeds, starts)).end
+    rows = [of_sample(ends) for ends in found.reshape(len(speeds), starts)]
+    return {end: np.array([row[end] for row in rows]) for end in EndState}
 
 
 STUDY = Study.beside(
@@ -171,16 +298,20 @@ def parts(engine: Engine, places: int = PLACES) -> Measured:
     basis="reference",
 )
 def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
+    from matplotlib.path import Path
+    from scipy.spatial import cKDTree
+
     curve, places, ends = smooth(boundary(FIG5, cells)), places_on_grid(side), ends_on_grid(FIG5, side)
-    other = ends.ravel() != np.where(inside(places, curve), EndState.SELF_CENTRED, EndState.WHIRL)
+    inside = Path(curve).contains_points(places)
+    other = ends.ravel() != np.where(inside, EndState.SELF_CENTRED, EndState.WHIRL)
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
-    off = distances(beyond, curve)
+    off, _ = cKDTree(curve).query(beyond)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
     sides = Separatrix.of(saddle(FIG5))  # far tighter than the required margin
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)
-    how_far = f", none farther than {off.max():.2g} from it" if len(off) else ""
+    how_far = f", none farther than {off.max():.2g} from it" if off.size else ""
     # The others match their side of the curve, or are closer to it than the starts for shooting.
     margins = np.concatenate((as_it_ended, np.ones(len(places) - len(farthest))))
     return answers_of(
@@ -257,60 +388,3 @@ def shrinks(speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS) -> Measure
         note=f"All starts lead to the equilibrium up to ω = {speeds[last]:.3g} rad/s; {100.0 * rest[-1]:.2g} % still "
         f"do at {speeds[-1]:g} rad/s.",
     )
-
-
-# --- Figure
-
-
-def draw(data: ByEngine) -> Figures:
-    if "theory" not in data:
-        return {}
-    from matplotlib.colors import ListedColormap
-
-    found = data["theory"]
-    figure, (plane, orbit, share) = new_figure(ncols=3, width=13.0, height=4.0)
-    whirls = found["ends"] == EndState.WHIRL
-    plane.imshow(
-        np.where(found["ends"] == EndState.SELF_CENTRED, 0.0, np.where(whirls, 1.0, 2.0)),
-        origin="lower",
-        extent=(*PLANE[0], *PLANE[1]),
-        cmap=ListedColormap([SKY, "#f3ead7", PURPLE]),
-        vmin=0.0,
-        vmax=2.0,
-        interpolation="nearest",
-        aspect="equal",
-    )
-    plane.plot(*found["curve"].T, **curve("theory", "stable set of the saddle"))
-    for x, _, vx, _ in FIG5_STARTS.values():
-        plane.plot(x, vx, "+", color=BLACK, markersize=7.0)
-    plane.text(0.065, -0.11, "equilibrium", ha="center")
-    plane.text(-0.13, 0.25, "whirl", ha="center")
-    plane.set(xlabel=axis("x_0", "m"), ylabel=axis(r"\dot x_0", "m/s"))
-    plane.legend(loc="lower left")
-
-    x, y, held = found["saddle"].T
-    orbit.plot(x, y, color=BLACK, linewidth=1.0)
-    orbit.plot(*np.where(held > 0.0, (x, y), np.nan), color=PURPLE, linewidth=4.0, label="sticks")
-    orbit.plot(0.0, 0.0, "+", color=BLACK, markersize=8.0)
-    orbit.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
-    orbit.legend(loc="best")
-
-    value, low, high = found["whirl"].T
-    # Points without a line, because the share between two speeds is unknown.
-    bars = np.abs([value - low, high - value])
-    share.errorbar(
-        found["speeds"],
-        value,
-        bars,
-        color=GREEN,
-        fmt="o",
-        markersize=3.5,
-        capsize=2.5,
-        label="whirl, 95 % interval",
-    )
-    share.set(xlabel=axis(r"\omega", "rad/s"), ylabel="share of the starts", ylim=(-0.02, 1.02))
-    share.legend(loc="lower right")
-    return {"basins": figure}
-
-
-STUDY.provides(figures=draw, curves=curves)

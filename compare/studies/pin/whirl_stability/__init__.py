@@ -1,8 +1,8 @@
 """Eq. 11 to 16: the whirl without offset, its existence, and deviations from it."""
 
-from compare.studies.pin.whirl_stability.pictures import draw
+from compare.studies.pin.whirl_stability.pictures import curves, draw
 from compare.studies.pin.whirl_stability.study import STUDY
 
-STUDY.provides(figures=draw)
+STUDY.provides(figures=draw, curves=curves)
 
 __all__ = ["STUDY"]

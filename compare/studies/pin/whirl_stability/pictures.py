@@ -1,4 +1,4 @@
-"""Figures."""
+"""Curves and figures."""
 
 from __future__ import annotations
 
@@ -7,13 +7,37 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
+from compare.claims.linearised_flow import real_and_imaginary
+from compare.claims.parameters import CENTRED
 from compare.output.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.whirl_stability.theory import DEVIATION_TIMES, PIN, K
+from compare.studies.pin.whirl_stability.study import (
+    DAMPINGS,
+    DEVIATION_TIMES,
+    RATIOS,
+    K,
+    largest_real_parts,
+    linear_deviation,
+    pin_at,
+)
 from reference_model.formulas.pin import variational_matrix
+from reference_model.steady.stability import whirl_eigenvalues
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+def curves() -> Data:
+    speeds = K * (1.0 + np.geomspace(0.01, 6.0, 240))
+    return {
+        "speed": speeds,
+        "eigenvalue": real_and_imaginary([whirl_eigenvalues(pin_at(speed))[1:] for speed in speeds]),
+        "ratio": RATIOS,
+        "damping": DAMPINGS,
+        "largest": largest_real_parts()[0].reshape(len(DAMPINGS), len(RATIOS)) / K,
+        "deviation_time": DEVIATION_TIMES,
+        "deviation": linear_deviation(DEVIATION_TIMES),
+    }
 
 
 def draw(data: ByEngine) -> Figures:
@@ -74,7 +98,7 @@ def _draw_decay(panel: Axes, data: ByEngine) -> None:
         theory = data["theory"]
         panel.plot(theory["deviation_time"], theory["deviation"], **curve("theory", "eq. (12)"))
     times = DEVIATION_TIMES
-    values, vectors = np.linalg.eig(variational_matrix(PIN))
+    values, vectors = np.linalg.eig(variational_matrix(CENTRED))
     shares = np.abs(np.linalg.solve(vectors, np.array([1.0, K, 0.0])) * vectors[0])
     real = np.abs(values.imag) == 0.0
     middle = shares[real] * np.exp(values[real].real * times[:, np.newaxis])
@@ -90,7 +114,7 @@ def _draw_decay(panel: Axes, data: ByEngine) -> None:
         xlabel=axis("t", "s"),
         ylabel=r"$\xi\,/\,a$",
         xlim=(0.0, times[-1]),
-        title=rf"Small deviation of the radius, $\omega = {PIN.disc_speed / K:g}\,k$",
+        title=rf"Small deviation of the radius, $\omega = {CENTRED.disc_speed / K:g}\,k$",
     )
     panel.legend(loc="upper right", fontsize=9.0)
 
@@ -104,7 +128,7 @@ def draw_eigenvalues(data: ByEngine) -> Figure:
             panel.plot(theory["speed"] / K, sign * theory["eigenvalue"][:, which, part] / K, **line)
         for engine in engines_in(data):
             found = data[engine]
-            chosen = found["point"][:, 1] == PIN.damping
+            chosen = found["point"][:, 1] == CENTRED.damping
             speed = np.repeat(found["point"][chosen, 0], 4)
             panel.plot(speed / K, sign * found["eigenvalue"][chosen][..., part].ravel() / K, **points(engine))
         panel.set(xlabel=axis(r"\omega/k"), xscale="log", xlim=(1.0, 7.2))

@@ -1,18 +1,19 @@
-"""Claims."""
+"""Eq. 12 to 16 over speed and damping, and motions near the whirl."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import expm
 
-import compare.studies.pin.whirl_stability.theory as theory
 from compare.claims import TIGHTEST, WORKING, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
+from compare.claims.parameters import CENTRED
 from compare.engines import Engine
-from compare.studies.pin.whirl_stability.theory import K, linear_deviation
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
 from reference_model.formulas.pin import (
     characteristic_coefficients,
@@ -23,24 +24,69 @@ from reference_model.formulas.pin import (
     whirl_radius,
 )
 from reference_model.steady.stability import turning_frame_jacobian, whirl_eigenvalues
-from reference_model.systems import FloatArray
+from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
+SOURCE = "Fig. 4 with X0 = 0, as (11)–(16) assume; the values of ω are our choice"
+K = CENTRED.natural_frequency
+
+SPEEDS = (1.1, 1.5, 4.0)
+DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
+"""Long simulations: ω in rad/s, radius at the start relative to (11), duration in s, and its final part in s, which
+yields the estimate of the remaining transient. The slowest deviation falls to 1e-10 of its initial value."""
+
+STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
+CAUGHT = 18.0
+"""Starts on the circle (11): ω in rad/s below and above k, and the duration in s until a pin sticks if ω < k."""
+
+POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
+FLOW_DURATION = 0.5
+"""Eigenvalues: ω in rad/s and β in N s/m, and duration of the simulations in s."""
+
+DEVIATION = 1e-3
+DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
+"""Amplitude of the decaying deviation, relative to the radius (11), and times in s."""
+
+RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
+DAMPINGS = np.geomspace(0.03, 10.0, 121)
+"""ω/k and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues, including ω < k."""
+
+
+def pin_at(speed: float, damping: float = CENTRED.damping) -> PinOnDisc:
+    return replace(CENTRED, disc_speed=speed, damping=damping)
+
+
+def on_circle(pin: PinOnDisc, scale: float = 1.0) -> FloatArray:
+    """Return the state on the circle (11), enlarged by ``scale``. For ω < k, the circle is not a motion."""
+    radius = scale * pin.friction_force / (pin.damping * K)
+    return np.array([radius, 0.0, 0.0, K * radius])
+
+
+def linear_deviation(times: FloatArray) -> FloatArray:
+    """Return ξ/a by (12), shape (n,), from the start ξ = a, ξ̇ = ka, η = 0."""
+    step = expm(variational_matrix(CENTRED) * (times[1] - times[0]))
+    states = [np.array([1.0, K, 0.0])]
+    for _ in times[1:]:
+        states.append(step @ states[-1])
+    return np.array(states)[:, 0]
+
+
+@functools.cache
+def grid() -> tuple[PinOnDisc, ...]:
+    return tuple(pin_at(K * ratio, CENTRED.mass * K * damping) for damping in DAMPINGS for ratio in RATIOS)
+
+
+@functools.cache
+def largest_real_parts() -> tuple[FloatArray, FloatArray]:
+    """Return the largest real part in 1/s of the roots of (13) at each point of the grid, and its rounding error."""
+    values, rounding = eigenvalues_with_rounding([variational_matrix(pin) for pin in grid()])
+    at = np.arange(len(values)), np.argmax(values.real, axis=1)
+    return values.real[at], rounding[at]
+
+
 STUDY = Study.beside(
-    __file__,
-    "whirl-stability",
-    source=theory.SOURCE,
-    system=theory.PIN,
-    seconds=2.5,
-    quick=True,
-    contact=True,
+    __file__, "whirl-stability", source=SOURCE, system=CENTRED, seconds=2.5, quick=True, contact=True
 )
-STUDY.provides(curves=theory.curves)
-
-
-# --- Eq. 12 to 16 compared with each other
-
-BoolArray = NDArray[np.bool_]
 
 
 @STUDY.claim(
@@ -54,7 +100,7 @@ BoolArray = NDArray[np.bool_]
 )
 def same_eigenvalues() -> Measured:
     pins = [
-        theory.pin_at(float(speed), float(damping))
+        pin_at(float(speed), float(damping))
         for speed in K * (1.0 + np.geomspace(0.02, 9.0, 15))
         for damping in np.geomspace(0.03, 3.0, 9)
     ]
@@ -64,16 +110,14 @@ def same_eigenvalues() -> Measured:
     roots, roots_error = eigenvalues_with_rounding(companion)
     of_12, of_12_error = eigenvalues_with_rounding([variational_matrix(pin) for pin in pins])
     of_1, of_1_error = eigenvalues_with_rounding([turning_frame_jacobian(pin) for pin in pins])
-    predicted, measured, errors = [], [], []
-    for i in range(len(pins)):
-        predicted.append([*roots[i], *matched([0.0, *roots[i]], of_1[i])])
-        measured.append([*matched(of_12[i], roots[i]), *of_1[i]])
-        errors.append(np.max(roots_error[i]) + max(np.max(of_12_error[i]), np.max(of_1_error[i])))
+    predicted = [[*own, *matched([0.0, *own], to=of)] for own, of in zip(roots, of_1, strict=True)]
+    measured = [[*matched(one, to=own), *of] for one, own, of in zip(of_12, roots, of_1, strict=True)]
+    errors = roots_error.max(axis=1) + np.maximum(of_12_error.max(axis=1), of_1_error.max(axis=1))
     numbers = real_and_imaginary(measured)
     return Measured(
         predicted=real_and_imaginary(predicted),
         value=numbers,
-        error=np.broadcast_to(np.array(errors)[:, np.newaxis, np.newaxis], numbers.shape),
+        error=np.broadcast_to(errors[:, np.newaxis, np.newaxis], numbers.shape),
         components=PARTS,
         source="Fig. 4 with X0 = 0; a grid of ω/k = 1.02 … 10 and β = 0.03 … 3 N s/m",
     )
@@ -84,21 +128,19 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
     return answers_of(
         margins,
         errors,
-        may_be_open=len(theory.DAMPINGS) * len(theory.RATIOS) // 1000,
-        source=f"assumption: a grid of {len(theory.RATIOS)} values of ω/k = {theory.RATIOS[0]:g} … "
-        f"{theory.RATIOS[-1]:g} and {len(theory.DAMPINGS)} of β/(mk) = {theory.DAMPINGS[0]:g} … "
-        f"{theory.DAMPINGS[-1]:g}",
+        may_be_open=len(DAMPINGS) * len(RATIOS) // 1000,
+        source=f"assumption: a grid of {len(RATIOS)} values of ω/k = {RATIOS[0]:g} … {RATIOS[-1]:g} and "
+        f"{len(DAMPINGS)} of β/(mk) = {DAMPINGS[0]:g} … {DAMPINGS[-1]:g}",
     )
 
 
-def in_14() -> BoolArray:
-    """Return whether (14) holds, at each point of the grid."""
-    return np.array([min(coefficient_margins(pin)) > 0.0 for pin in theory.grid()])
+def holds(margin: Callable[[PinOnDisc], float]) -> NDArray[np.bool_]:
+    """Return whether a condition holds, which is if its ``margin`` is positive, at each point of the grid."""
+    return np.array([margin(pin) > 0.0 for pin in grid()])
 
 
-def in_16() -> BoolArray:
-    """Return whether (16) holds, at each point of the grid."""
-    return np.array([upper_branch_margin(pin) > 0.0 for pin in theory.grid()])
+def margin_of_14(pin: PinOnDisc) -> float:
+    return min(coefficient_margins(pin))
 
 
 @STUDY.claim(
@@ -109,8 +151,8 @@ def in_16() -> BoolArray:
     swept=("disc_speed", "damping"),
 )
 def hurwitz() -> Measured:
-    largest, error = theory.largest_real_parts()
-    return counted(np.where(in_16(), -largest, largest), error)
+    largest, error = largest_real_parts()
+    return counted(np.where(holds(upper_branch_margin), -largest, largest), error)
 
 
 @STUDY.claim(
@@ -121,7 +163,7 @@ def hurwitz() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def implied() -> Measured:
-    return counted(~in_16() | in_14())
+    return counted(~holds(upper_branch_margin) | holds(margin_of_14))
 
 
 @STUDY.claim(
@@ -132,16 +174,12 @@ def implied() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def incompatible() -> Measured:
-    in_15 = np.array([lower_branch_margin(pin) > 0.0 for pin in theory.grid()])
-    return counted(~(in_14() & in_15))
+    return counted(~(holds(margin_of_14) & holds(lower_branch_margin)))
 
-
-# --- Eq. 11 and 12
 
 SETTLING = (
-    f"Starts on a circle {theory.DISPLACED:g} times as large; state after {theory.DURATION:g} s. Error: the "
-    "change at a smaller tolerance, and the remaining transient according to its change in the last "
-    f"{theory.DELAY:g} s."
+    f"Starts on a circle {DISPLACED:g} times as large; state after {DURATION:g} s. Error: the change at a smaller "
+    f"tolerance, and the remaining transient according to its change in the last {DELAY:g} s."
 )
 
 
@@ -156,43 +194,36 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
     """Return radius in m and frequency in rad/s at the end of long simulations, shape (n, 2)."""
 
     def track(speed: float, times: list[float], tolerance: float) -> FloatArray:
-        pin = theory.pin_at(speed)
-        run = engine.simulate(pin, theory.on_circle(pin, theory.DISPLACED), times, tolerance=tolerance)
+        pin = pin_at(speed)
+        run = engine.simulate(pin, on_circle(pin, DISPLACED), times, tolerance=tolerance)
         return np.column_stack((run.radius, turning_speed(run.states)))[1:]
 
     ends = [
         settled(
             functools.partial(track, speed),
-            duration=theory.DURATION,
-            delay=theory.DELAY,
+            duration=DURATION,
+            delay=DELAY,
             period=np.pi / K,  # approximate period of deviations in the frame that turns with the whirl
-            rate=-whirl_eigenvalues(theory.pin_at(speed))[1].real,
-            tolerance=theory.TOLERANCE,
+            rate=-whirl_eigenvalues(pin_at(speed))[1].real,
+            tolerance=WORKING / 5,  # for a resolution of 1e-9
         )
         for speed in speeds
     ]
-    return Measurement(
-        np.array([end.value for end in ends]), np.array([end.error + end.left for end in ends])
-    )
+    value, error, left = (np.array(each) for each in zip(*ends, strict=True))
+    return Measurement(value, error + left)
 
 
 @STUDY.claim(
     "A pin that starts near the whirl approaches its radius μN/(βk) if ω > k",
     equation="(11)",
     unit="m",
-    resolution=1e-9 * whirl_radius(theory.PIN),
+    resolution=1e-9 * whirl_radius(CENTRED),
     note=SETTLING,
     swept=("disc_speed",),
     duration=1.3e4,
 )
-def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
-    found = whirls(engine, speeds)
-    return Measured(
-        predicted=np.full(len(speeds), whirl_radius(theory.PIN)),
-        value=found.value[:, 0],
-        error=found.error[:, 0],
-        at={"ω in rad/s": speeds},
-    )
+def radius(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+    return _at_end(engine, speeds, 0, whirl_radius(CENTRED))
 
 
 @STUDY.claim(
@@ -204,12 +235,16 @@ def radius(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
     swept=("disc_speed",),
     duration=1.3e4,
 )
-def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measured:
+def frequency(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
+    return _at_end(engine, speeds, 1, K)
+
+
+def _at_end(engine: Engine, speeds: Sequence[float], which: int, predicted: float) -> Measured:
     found = whirls(engine, speeds)
     return Measured(
-        predicted=np.full(len(speeds), K),
-        value=found.value[:, 1],
-        error=found.error[:, 1],
+        predicted=np.full(len(speeds), predicted),
+        value=found.value[:, which],
+        error=found.error[:, which],
         at={"ω in rad/s": speeds},
     )
 
@@ -223,25 +258,25 @@ def frequency(engine: Engine, speeds: Sequence[float] = theory.SPEEDS) -> Measur
     "tolerance and at a larger interval.",
     swept=("disc_speed",),
 )
-def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
+def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     if engine.contact_only:
         return None
+    interval = 0.01  # between the states, in s
+    fourth_order = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
+    pins = [pin_at(speed) for speed in starts]
 
-    def rates_of(interval: float, tolerance: float) -> FloatArray:
-        pins = [theory.pin_at(speed) for speed in starts]
-        runs = engine.simulate_many(
-            [(pin, theory.on_circle(pin), interval * np.arange(5)) for pin in pins], tolerance=tolerance
-        )
+    def rates_of(step: float, tolerance: float) -> FloatArray:
+        motions = [(pin, on_circle(pin), step * np.arange(5)) for pin in pins]
         found = []
-        for pin, run in zip(pins, runs, strict=True):
+        for pin, run in zip(pins, engine.simulate_many(motions, tolerance=tolerance), strict=True):
             x, y, vx, vy = run.states.T
-            moment = theory.FORWARD @ (pin.mass * (x * vy - y * vx)) / interval
-            found.append(moment / (pin.friction_force * theory.on_circle(pin)[0]))
+            moment = fourth_order @ (pin.mass * (x * vy - y * vx)) / step
+            found.append(moment / (pin.friction_force * on_circle(pin)[0]))
         return np.array(found)
 
-    found = refined(functools.partial(rates_of, theory.INTERVAL), 10.0 * TIGHTEST)
-    wide = np.abs(rates_of(2.0 * theory.INTERVAL, 10.0 * TIGHTEST) - found.value)
-    rounding = 8.0 * np.finfo(float).eps * theory.PIN.mass * K / (theory.PIN.damping * theory.INTERVAL)
+    found = refined(functools.partial(rates_of, interval), 10.0 * TIGHTEST)
+    wide = np.abs(rates_of(2.0 * interval, 10.0 * TIGHTEST) - found.value)
+    rounding = 8.0 * np.finfo(float).eps * CENTRED.mass * K / (CENTRED.damping * interval)
     return Measured(
         predicted=[0.0 if speed > K else -2.0 for speed in starts],
         value=found.value,
@@ -254,22 +289,23 @@ def balance(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured
     "If ω < k, a pin that starts on the circle (11) leaves it and finally turns with the disc",
     equation="(11)",
     resolution=1e-3,
-    note=f"Angular speed of the pin after {theory.CAUGHT:g} s, over ω.",
+    note=f"Angular speed of the pin after {CAUGHT:g} s, over ω.",
     swept=("disc_speed",),
 )
-def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured | None:
+def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     if engine.contact_only:
         return None
+
+    def leave(speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
+        pin = pin_at(speed)
+        return engine.simulate(pin, on_circle(pin), times, tolerance=tolerance)
+
+    def turning(tolerance: float) -> list[FloatArray]:
+        return [turning_speed(leave(speed, [0.0, CAUGHT], tolerance).at_end) / speed for speed in below]
+
     below = [speed for speed in starts if speed < K]
-
-    def ends(tolerance: float) -> list[FloatArray]:
-        return [
-            turning_speed(_leave(engine, speed, [0.0, theory.CAUGHT], tolerance).at_end) / speed
-            for speed in below
-        ]
-
-    found = refined(ends, theory.CAUGHT_TOLERANCE)
-    times = np.linspace(0.0, theory.CAUGHT, 181)
+    found = refined(turning, 1e-7)
+    times = np.linspace(0.0, CAUGHT, 181)
     return Measured(
         predicted=np.ones(len(below)),
         value=found.value,
@@ -278,26 +314,20 @@ def caught(engine: Engine, starts: Sequence[float] = theory.STARTS) -> Measured 
         data={
             "start": starts,
             "leaving_time": times,
-            "leaving": [_leave(engine, speed, times, theory.CAUGHT_TOLERANCE).radius for speed in starts],
+            "leaving": [leave(speed, times, 1e-7).radius for speed in starts],
         },
     )
-
-
-def _leave(engine: Engine, speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
-    """Return the motion of a pin that starts on the circle (11)."""
-    pin = theory.pin_at(speed)
-    return engine.simulate(pin, theory.on_circle(pin), times, tolerance=tolerance)
 
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     """Return the eigenvalues of the whirl at ``points``, ω in rad/s and β in N s/m."""
-    pins = [theory.pin_at(*point) for point in points]
+    pins = [pin_at(*point) for point in points]
     return measured_rates(
         engine,
-        [(pin, theory.on_circle(pin)) for pin in pins],
+        [(pin, on_circle(pin)) for pin in pins],
         [whirl_eigenvalues(pin) for pin in pins],
-        duration=theory.FLOW_DURATION,
+        duration=FLOW_DURATION,
         frame_speed=K,
     )
 
@@ -307,18 +337,18 @@ def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     equation="(12)",
     unit="1/s",
     resolution=1e-6 * K,
-    note=f"Central differences of the motion over {theory.FLOW_DURATION:g} s, in the frame that turns with the "
-    "whirl, extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
+    note=f"Central differences of the motion over {FLOW_DURATION:g} s, in the frame that turns with the whirl, "
+    "extrapolated to zero. Error: the change with larger differences, and at a smaller tolerance.",
     swept=("disc_speed", "damping"),
     duration=2.7e3,
 )
-def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
+def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
     if engine.contact_only:
         return None
     found = rates(engine, points)
     return found.compared(
         {"(ω, β)": [f"({speed:g} rad/s, {damping:g} N s/m)" for speed, damping in points]},
-        source=f"{theory.SOURCE}; β too if it is not {theory.PIN.damping:g}",
+        source=f"{SOURCE}; β too if it is not {CENTRED.damping:g}",
         data={"point": points, "eigenvalue": real_and_imaginary(found.measured)},
     )
 
@@ -331,44 +361,39 @@ def eigenvalues(engine: Engine, points: Sequence[tuple[float, float]] = theory.P
     swept=("disc_speed", "damping"),
     duration=2.7e3,
 )
-def stable(engine: Engine, points: Sequence[tuple[float, float]] = theory.POINTS) -> Measured | None:
+def stable(engine: Engine, points: Sequence[tuple[float, float]] = POINTS) -> Measured | None:
     if engine.contact_only:
         return None
-    return rates(engine, points).decaying(
-        but=1, source=f"{theory.SOURCE}; β too if it is not {theory.PIN.damping:g}"
-    )
+    return rates(engine, points).decaying(but=1, source=f"{SOURCE}; β too if it is not {CENTRED.damping:g}")
 
 
 @STUDY.claim(
     "A small deviation of the radius decays as the linear equations (12) predict",
     equation="(12)",
     resolution=1e-4,
-    note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {theory.DEVIATION:g}·ρ_c; half the difference of the "
-    "radii over a. Model error: the change at twice the amplitude a, which is three times the next order of the "
-    "deviation.",
+    note=f"Starts with ξ = ±a, ξ̇ = ±ka, η = 0 and a = {DEVIATION:g}·ρ_c; half the difference of the radii over a. "
+    "Model error: the change at twice the amplitude a, which is three times the next order of the deviation.",
     duration=2e3,
 )
 def history(engine: Engine) -> Measured | None:
     if engine.contact_only:
         return None
-    circle = whirl_radius(theory.PIN)
+    circle = whirl_radius(CENTRED)
     shift = np.array([circle, 0.0, K * circle, K * circle])
 
     def deviation(amplitude: float, tolerance: float) -> FloatArray:
-        starts = (theory.on_circle(theory.PIN) + sign * amplitude * shift for sign in (1.0, -1.0))
-        runs = engine.simulate_many(
-            [(theory.PIN, start, theory.DEVIATION_TIMES) for start in starts], tolerance=tolerance
-        )
-        outwards, inwards = (run.radius for run in runs)
+        starts = (on_circle(CENTRED) + sign * amplitude * shift for sign in (1.0, -1.0))
+        motions = [(CENTRED, start, DEVIATION_TIMES) for start in starts]
+        outwards, inwards = (run.radius for run in engine.simulate_many(motions, tolerance=tolerance))
         return np.asarray((outwards - inwards) / (2.0 * amplitude * circle))
 
-    found = refined(functools.partial(deviation, theory.DEVIATION), WORKING / 10)
-    nonlinear = np.abs(deviation(2.0 * theory.DEVIATION, WORKING / 10) - found.value)
+    found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
+    twice = deviation(2.0 * DEVIATION, WORKING / 10)
     return Measured(
-        predicted=linear_deviation(theory.DEVIATION_TIMES),
+        predicted=linear_deviation(DEVIATION_TIMES),
         value=found.value,
-        error=np.full(len(theory.DEVIATION_TIMES), found.largest),
-        model=float(np.max(nonlinear)),
-        at={"t in s": theory.DEVIATION_TIMES},
-        data={"history_time": theory.DEVIATION_TIMES, "history": found.value},
+        error=np.full(len(DEVIATION_TIMES), found.largest),
+        model=float(np.max(np.abs(twice - found.value))),
+        at={"t in s": DEVIATION_TIMES},
+        data={"history_time": DEVIATION_TIMES, "history": found.value},
     )

@@ -5,16 +5,15 @@ import pytest
 from studies_under_test import sentences
 
 from compare.claims.claim import Verdict
-from compare.studies.disc.fig08 import theory
-from compare.studies.disc.fig08.study import STUDY
-from compare.studies.disc.fig08.theory import RING
+from compare.studies.disc.fig08 import study
+from compare.studies.disc.fig08.study import RING, STUDY
 from compare.studies.toolkit.steady_motion import last_load
 from reference_model.formulas.disc import positions_by_26
 
 
 def test_the_printed_equation_26_differs(monkeypatch):
     printed = functools.partial(positions_by_26, as_printed=True)
-    monkeypatch.setattr(theory, "positions_by_26", lambda disc, as_printed=True: printed(disc))
+    monkeypatch.setattr(study, "positions_by_26", lambda disc, as_printed=True: printed(disc))
     findings = STUDY.measure_theory(only=("corrected_26", "printed_26", "end_of_26"))
     assert sentences(findings, Verdict.DIFFERS) == {
         one.sentence for one in STUDY.declared if one.function.__name__ in ("corrected_26", "printed_26")

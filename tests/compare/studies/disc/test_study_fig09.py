@@ -3,7 +3,7 @@ import pytest
 from tested_studies import FIG09
 
 from compare.claims.claim import Verdict
-from compare.studies.disc.fig09 import STUDY, of_theory, theory
+from compare.studies.disc.fig09 import STUDY, growth_and_stick, theory
 from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING
 
 
@@ -16,8 +16,8 @@ from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING
     ],
 )
 def test_a_wrong_formula_differs(formula, claim, factor, monkeypatch):
-    right = getattr(of_theory, formula)
-    monkeypatch.setattr(of_theory, formula, lambda *which: factor * right(*which))
+    right = getattr(growth_and_stick, formula)
+    monkeypatch.setattr(growth_and_stick, formula, lambda *which: factor * right(*which))
     (found,) = STUDY.measure_theory(only=(claim,)).claims
     assert found.verdict is Verdict.DIFFERS
 

@@ -7,7 +7,7 @@ import pytest
 
 from compare.engines import EVERY_KIND, Engine
 from compare.studies.disc.fig11 import STUDY, pictures, theory, whirl
-from compare.studies.disc.fig11.parameters import TIMES, UNTIL
+from compare.studies.disc.fig11.theory import TIMES, UNTIL
 from reference_model import Trajectory
 
 

@@ -5,16 +5,15 @@ import pytest
 from tested_studies import BASINS
 
 from compare.claims.claim import Verdict
-from compare.studies.pin.basins import study, theory
-from compare.studies.pin.basins.study import STUDY
-from compare.studies.pin.basins.theory import enclosed, smooth
+from compare.studies.pin.basins import study
+from compare.studies.pin.basins.study import STUDY, enclosed, smooth
 from reference_model.ensemble import EndState
 
 
 @pytest.fixture
 def fresh(monkeypatch):
     """Clear the caches of the theory before and after the test, and return a ``MonkeyPatch``."""
-    cached = (theory.ends_on_grid, theory.ends_on_finer_grid, theory.shares_over_speed)
+    cached = (study.ends_on_grid, study.ends_on_finer_grid, study.shares_over_speed)
     for each in cached:
         each.cache_clear()
     yield monkeypatch
@@ -43,34 +42,33 @@ def test_a_wrong_share_of_the_basin_differs(monkeypatch):
 
 def test_ends_of_shifted_starts_differ(fresh):
     """Shift x0 by 4 mm, the spacing of the grid."""
-    right = theory.ensemble_of
+    right = study.ensemble_of
 
     def shifted(starts, *pin, **parameters):
         return right(np.add(starts, (0.004, 0.0, 0.0, 0.0)), *pin, **parameters)
 
-    fresh.setattr(theory, "ensemble_of", shifted)
+    fresh.setattr(study, "ensemble_of", shifted)
     assert all_differ("divides", few={"divides": {"side": 200, "cells": 6}})
 
 
 def test_a_basin_that_grows_with_the_speed_differs(fresh):
-    right = theory.ensemble_of
+    right = study.ensemble_of
 
     def slower(starts, *pin, **parameters):
         return right(starts, *pin, **{name: 4.1 - values for name, values in parameters.items()})
 
-    fresh.setattr(theory, "ensemble_of", slower)
+    fresh.setattr(study, "ensemble_of", slower)
     assert all_differ("shrinks")
 
 
 def test_an_ensemble_with_swapped_ends_differs(fresh):
-    right = theory.ensemble_of
+    right = study.ensemble_of
 
     def swapped(starts, *pin, **parameters):
         found = right(starts, *pin, **parameters)
         return replace(found, end=np.where(found.end == 1, 2, 1).astype(np.uint8))
 
-    for module in (theory, study):
-        fresh.setattr(module, "ensemble_of", swapped)
+    fresh.setattr(study, "ensemble_of", swapped)
     assert all_differ("divides", "recomputes")
 
 

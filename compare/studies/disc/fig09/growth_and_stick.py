@@ -1,56 +1,43 @@
-"""Claims on the self-centred disc, on sticking, and on six contact points instead of the ring."""
+"""Claims on the growth of deviations, on sticking, on six contact points, and without an engine."""
 
 from __future__ import annotations
 
 import functools
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 import compare.studies.disc.fig09.theory as theory
-from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement, answers_of, asked, refined
+from compare.claims.error_estimates import (
+    COARSENING,
+    ROUNDING,
+    TIGHTEST,
+    Measurement,
+    extrapolated_order,
+    refined,
+)
 from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.claims.measured import Measured, answers_of, asked
 from compare.engines import Engine
-from compare.studies.disc.fig09.theory import STUDY
-from compare.studies.disc.fig09.whirls import circle, circles_of, rest, rests_of
+from compare.studies.disc.fig09.steady_motions import means, steady_motions
+from compare.studies.disc.fig09.theory import STUDY, last_stable_load, weak_damping_load
 from compare.studies.toolkit.pins import first_release
 from compare.studies.toolkit.steady_motion import mode_growth, with_load
-from reference_model import Trajectory, simulate
+from reference_model import Trajectory, simulate, smallest_load_with_whirl
+from reference_model.contact.contact_law import IsotropicContact
+from reference_model.formulas.disc import whirl_at
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- The self-centred equilibrium, and small deviations from it and from the whirl
+# --- Small deviations from the equilibrium and from the whirl
 
 FOLLOWED = (
     f"Half the difference of two simulations that start {theory.DISPLACED:g} of the distance from the axis to either "
     "side. Error: the change at a smaller tolerance, and with twice the deviation, which is three times the "
     "nonlinear part."
 )
-
-
-@STUDY.claim(
-    "Position and spin of the self-centred disc satisfy the balance of forces and moments, stable or not",
-    equation="(19), (20)",
-    resolution=1e-7,
-    note="Relative to X0 and ω. Measured: the state that repeats in the engine.",
-    basis="reference",
-    swept=("friction_force",),
-)
-def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
-    found = rests_of(engine, theory.RING, loads)
-    exact = [theory.rest_of(load) for load in loads]
-    return Measured(
-        predicted=[
-            (one.x / theory.RING.offset, one.y / theory.RING.offset, one.spin / theory.RING.disc_speed)
-            for one in exact
-        ],
-        value=found.value,
-        error=found.error,
-        at={"μN in N": loads},
-        components=("x", "y", "spin"),
-        data={"rest load": loads, "rest": found.value},
-    )
 
 
 @STUDY.claim(
@@ -65,16 +52,16 @@ def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measure
     swept=("friction_force",),
 )
 def deviations_grow(engine: Engine) -> Measured:
-    loads = [load for load, _ in theory.GROWTHS]
-    motions = [
-        (with_load(theory.RING, load), theory.rest_of(load), duration) for load, duration in theory.GROWTHS
-    ]
-    found = _growth(engine, motions, [theory.DISPLACED * theory.RING.offset * np.eye(6)[0]] * len(motions))
+    aside = theory.DISPLACED * theory.RING.offset * np.eye(6)[0]
+    rests = [(theory.rest_of(load), load, duration) for load, duration in theory.GROWTHS]
+    found = _growth(
+        engine, [(with_load(theory.RING, load), rest, aside, duration) for rest, load, duration in rests]
+    )
     return Measured(
-        predicted=real_and_imaginary([theory.rest_of(load).eigenvalues[0] for load in loads]),
+        predicted=real_and_imaginary([rest.eigenvalues[0] for rest, *_ in rests]),
         value=found.value,
         error=found.error,
-        at={"μN in N": loads},
+        at={"μN in N": [load for load, _ in theory.GROWTHS]},
         components=("real part", "imaginary part"),
     )
 
@@ -92,7 +79,7 @@ def whirl_attracts(engine: Engine) -> Measured:
     load, duration = theory.DECAY
     circle = theory.circle_of(load, 0)
     larger = theory.DISPLACED * np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) * circle.state
-    found = _growth(engine, [(with_load(theory.CENTRED, load), circle, duration)], [larger])
+    found = _growth(engine, [(with_load(theory.CENTRED, load), circle, larger, duration)])
     return Measured(
         predicted=real_and_imaginary([circle.eigenvalues[1]]),  # the first belongs to rotation about the axis
         value=found.value,
@@ -105,25 +92,24 @@ def whirl_attracts(engine: Engine) -> Measured:
 
 def _growth(
     engine: Engine,
-    motions: Sequence[tuple[DiscOnDisc, SpinningEquilibrium | SpinningWhirl, float]],
-    displacements: Sequence[FloatArray],
+    motions: Sequence[tuple[DiscOnDisc, SpinningEquilibrium | SpinningWhirl, FloatArray, float]],
 ) -> Measurement:
-    """Return real and imaginary part of each displacement's growth rate in 1/s, shape (n, 2).
+    """Return real and imaginary part of the growth rate in 1/s of small deviations, shape (n, 2).
 
-    ``motions`` contains disc, steady motion and duration in s.
+    ``motions`` contains disc, steady motion, displacement from it and duration in s.
     """
 
     def rates(tolerance: float, scale: float = 1.0) -> FloatArray:
         return real_and_imaginary(
             [
                 mode_growth(engine, disc, motion, scale * displacement, duration, tolerance)
-                for (disc, motion, duration), displacement in zip(motions, displacements, strict=True)
+                for disc, motion, displacement, duration in motions
             ]
         )
 
     found = refined(rates, theory.ORBIT_TOLERANCE)
     # Two flows that agree to within the tolerance may hide an error of the deviation of that size.
-    unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for _, _, duration in motions]
+    unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for *_, duration in motions]
     with_larger = found.plus(np.abs(rates(theory.ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)
 
@@ -236,6 +222,8 @@ def coexist(engine: Engine) -> Measured:
 
 # --- The disc on six points, as the paper simulated it
 
+SIX = replace(theory.RING, contact_points=6)
+
 REFERENCE = Engine("reference", simulate, ("points",))
 
 BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
@@ -250,8 +238,8 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
     swept=("friction_force",),
 )
 def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.CIRCLES) -> Measured:
-    found = circles_of(engine, theory.on_six_points(theory.CENTRED), circles)
-    predicted = np.array([_circle_of_reference(*one) for one in circles])
+    found = steady_motions(engine, circles, 6)
+    predicted = np.array([_of_reference(*one) for one in circles])
     beside = np.abs(
         predicted[:, 0] - [theory.circle_of(*one).radius / theory.radius_of_pin(one[0]) for one in circles]
     )
@@ -262,7 +250,7 @@ def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.
         error=found.error,
         at={"μN in N": loads},
         components=("radius", "frequency", "spin"),
-        system=theory.on_six_points(theory.CENTRED),
+        system=replace(theory.CENTRED, contact_points=6),
         source=theory.SOURCE_CENTRED,
         note=f"Its radius differs from that on the ring by {np.max(beside):.1g} near the fold, and by less than "
         "1e-9 from 0.001 N on, where all points slip along the circle.",
@@ -271,8 +259,8 @@ def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.
 
 
 @functools.cache
-def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
-    return tuple(circle(REFERENCE, theory.on_six_points(theory.CENTRED), load, which, TIGHTEST))
+def _of_reference(load: float, which: int | None) -> tuple[float, ...]:
+    return tuple(means(REFERENCE, load, which, 6, TIGHTEST))
 
 
 @STUDY.claim(
@@ -284,21 +272,16 @@ def _circle_of_reference(load: float, which: int) -> tuple[float, ...]:
     swept=("friction_force",),
 )
 def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
-    found = rests_of(engine, theory.on_six_points(theory.RING), loads)
+    found = steady_motions(engine, tuple((load, None) for load in loads), 6)
     return Measured(
-        predicted=[_rest_of_reference(load) for load in loads],
+        predicted=[_of_reference(load, None) for load in loads],
         value=found.value,
         error=found.error,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
-        system=theory.on_six_points(theory.RING),
+        system=SIX,
         data={"rest load": loads, "six rest": found.value},
     )
-
-
-@functools.cache
-def _rest_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(rest(REFERENCE, theory.on_six_points(theory.RING), load, TIGHTEST))
 
 
 @STUDY.claim(
@@ -311,10 +294,11 @@ def _rest_of_reference(load: float) -> tuple[float, ...]:
     f"{BY_REFERENCE}",
     swept=("friction_force",),
 )
-def six_releases(
-    engine: Engine, loads: Sequence[float] = theory.STICK_LOADS, tolerance: float = theory.TOLERANCE
-) -> Measured:
-    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], tolerance)
+def six_releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
+    def slipped(tolerance: float) -> list[FloatArray]:
+        return [_slipped(engine, load, tolerance) for load in loads]
+
+    found = refined(slipped, theory.TOLERANCE)
     predicted = [_slipped_in_reference(load) for load in loads]
     return Measured(
         predicted=predicted,
@@ -322,14 +306,14 @@ def six_releases(
         error=found.rows,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
-        system=theory.on_six_points(theory.RING),
+        system=SIX,
         note=f"By then the disc has slipped by {', '.join(f'{math.hypot(*one[:2]):.2g}' for one in predicted)} of "
         "the radius.",
     )
 
 
 def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
-    disc = theory.on_six_points(with_load(theory.RING, load))
+    disc = with_load(SIX, load)
     start, release = theory.stuck_at(disc, theory.OUTSIDE[-1])
     end = 1.5 * release
     run = engine.simulate(disc, start, [0.0, end], tolerance=tolerance)
@@ -340,3 +324,74 @@ def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
 @functools.cache
 def _slipped_in_reference(load: float) -> tuple[float, ...]:
     return tuple(_slipped(REFERENCE, load, TIGHTEST))
+
+
+# --- Ends of whirl and equilibrium by formulas and by the reference's orbits
+
+
+@STUDY.claim(
+    "Without offset, the whirl ends in a fold: at its smallest friction force, one of its eigenvalues passes zero",
+    equation="(20), (23)",
+    unit="N",
+    note="Predicted: the minimum of μN over the ratio of the slip speeds of rim and centre. Measured: μN "
+    "where the eigenvalue is zero, to 1e-6 of that ratio; μN is stationary there.",
+    swept=("friction_force",),
+)
+def fold() -> Measured:
+    laws: Sequence[IsotropicContact | None] = (None, theory.PAPER_LAW)
+    measured = [whirl_at(theory.CENTRED, theory.marginal_ratio(law), law).load for law in laws]
+    return Measured(
+        predicted=[smallest_load_with_whirl(theory.CENTRED, law) for law in laws],
+        value=measured,
+        error=1e-12 * max(measured),
+        resolution=1e-9 * max(measured),
+        components=("continuous ring", "(23)"),
+        system=theory.CENTRED,
+    )
+
+
+@STUDY.claim(
+    "As β → 0, the equilibrium loses its stability where friction excites a circular motion as much as β damps it",
+    resolution=0.05,
+    note=f"Order in β of the error, for β = {', '.join(f'{damping:g}' for damping in theory.DAMPINGS)} N s/m, "
+    "extrapolated. This is not in the paper, which states that the equilibrium is stable.",
+    swept=("friction_force", "damping"),
+)
+def weak_damping() -> Measured:
+    discs = [replace(theory.RING, damping=float(damping)) for damping in theory.DAMPINGS]
+    errors = np.array([abs(weak_damping_load(one) / last_stable_load(one) - 1.0) for one in discs])
+    order, numerical, model = extrapolated_order(errors, 1e-12)
+    return Measured(
+        predicted=1.0,
+        value=order,
+        error=numerical,
+        model=model,
+        source=f"{theory.SOURCE}; the decreasing β are our choice",
+        note=f"For the β of Fig. 9, it loses its stability at {last_stable_load(theory.RING):.6f} N, or at "
+        f"{weak_damping_load(theory.RING):.6f} N by this formula, far below C·X0, where stick begins.",
+    )
+
+
+@STUDY.claim(
+    "The inner, unstable whirl shrinks onto the equilibrium at the μN at which the equilibrium loses its stability",
+    unit="N",
+    note="This is not in the paper. Predicted: the zero of the real part of an eigenvalue of the equilibrium. "
+    "Measured: μN of the reference's inner whirls by shooting, as a polynomial in the square of their size (root "
+    "of the mean square distance from the centre), at zero. Model error: the change with one orbit less. The "
+    "basin of the equilibrium therefore shrinks to nothing there.",
+    basis="reference",
+    named={"last stable load": 0},
+    swept=("friction_force",),
+)
+def merges() -> Measured:
+    load = np.array([orbit.system.friction_force for orbit in theory.orbits()])
+    square = np.array([np.var(orbit.trajectory.states[:-1, :2], axis=0).sum() for orbit in theory.orbits()])
+    near, far = (float(np.polyfit(square[-n:], load[-n:], n - 1)[-1]) for n in (4, 3))
+    return Measured(
+        predicted=last_stable_load(theory.RING),
+        value=near,
+        error=1e-9 * near,
+        model=abs(near - far),
+        resolution=0.01 * near,
+        note=f"Sizes: {math.sqrt(square[-4]):.2g} to {math.sqrt(square[-1]):.2g} m.",
+    )

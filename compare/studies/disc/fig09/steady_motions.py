@@ -1,4 +1,4 @@
-"""Claims on the whirls of Figs. 9 and 10: circles without offset, periodic orbits with one."""
+"""Claims on whirls without and with offset, and on the self-centred equilibrium."""
 
 from __future__ import annotations
 
@@ -22,45 +22,36 @@ from reference_model.systems import DiscOnDisc, FloatArray
 # --- Steady motions found with an engine, on the ring or on points, and orders of small gaps
 
 
-@functools.lru_cache(maxsize=4)
-def circles_of(
-    engine: Engine, disc: DiscOnDisc, circles: tuple[tuple[float, int], ...] = theory.CIRCLES
-) -> Measurement:
-    """Return mean radius, frequency and spin of ``circles`` in units of μN/(βk), k and ω, shape (n, 3)."""
+Cases = tuple[tuple[float, int | None], ...]
+"""Steady motions: μN in N, and the number of a whirl without offset or None for the equilibrium with the offset."""
+
+
+@functools.lru_cache(maxsize=8)
+def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> Measurement:
+    """Return ``means`` of all ``cases``, shape (n, 3)."""
     found = refined(
-        lambda tolerance: [circle(engine, disc, *one, tolerance) for one in circles], theory.ORBIT_TOLERANCE
+        lambda tolerance: [means(engine, *case, points, tolerance) for case in cases], theory.ORBIT_TOLERANCE
     )
-    return with_tolerance(found, [sharpness(disc, theory.circle_of(*one)) for one in circles])
+    return with_tolerance(
+        found, [sharpness(theory.disc_of(*case, points), theory.exact_motion(*case)) for case in cases]
+    )
 
 
-def circle(engine: Engine, disc: DiscOnDisc, load: float, which: int, tolerance: float) -> FloatArray:
-    """Return mean radius, frequency and spin of one circle as ``circles_of`` does, NaN if none is found."""
-    motion = steady_motion(engine, with_load(disc, load), theory.circle_of(load, which).state, tolerance)
+def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
+    """Return the means over one steady motion on a ring or ``points``, NaN if none is found.
+
+    They are radius, frequency and spin of a whirl in units of μN/(βk), k and ω, or x, y and spin of the equilibrium
+    in units of X0 and ω.
+    """
+    disc = theory.disc_of(load, which, points)
+    motion = steady_motion(engine, disc, theory.exact_motion(load, which).state, tolerance)
     if motion is None:
         return np.full(3, np.nan)
-    return np.array(
-        [
-            float(np.hypot(*motion.mean)) / theory.radius_of_pin(load),
-            motion.frequency / disc.natural_frequency,
-            motion.spin / disc.disc_speed,
-        ]
-    )
-
-
-def rests_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
-    """Return the means of x, y and spin at the equilibrium in units of X0 and ω, shape (n, 3)."""
-    found = refined(
-        lambda tolerance: [rest(engine, disc, load, tolerance) for load in loads], theory.ORBIT_TOLERANCE
-    )
-    return with_tolerance(found, [sharpness(disc, theory.rest_of(load)) for load in loads])
-
-
-def rest(engine: Engine, disc: DiscOnDisc, load: float, tolerance: float) -> FloatArray:
-    """Return the means at one friction force as ``rests_of`` does, NaN if no equilibrium is found."""
-    motion = steady_motion(engine, with_load(disc, load), theory.rest_of(load).state, tolerance)
-    if motion is None:
-        return np.full(3, np.nan)
-    return np.array([*motion.mean / disc.offset, motion.spin / disc.disc_speed])
+    place, spin = motion.mean, motion.spin / disc.disc_speed
+    if which is None:
+        return np.array([*place / disc.offset, spin])
+    frequency = motion.frequency / disc.natural_frequency
+    return np.array([float(np.hypot(*place)) / theory.radius_of_pin(load), frequency, spin])
 
 
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
@@ -112,7 +103,7 @@ OBSERVED = (
     swept=("friction_force",),
 )
 def circles(engine: Engine) -> Measured:
-    found = circles_of(engine, theory.CENTRED)
+    found = steady_motions(engine, theory.CIRCLES)
     exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
     return Measured(
         predicted=[
@@ -146,7 +137,7 @@ def error_of_23(engine: Engine) -> Measured:
     by_23 = [
         (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
     ]
-    return _orders(
+    return _orders_of_loads(
         engine,
         [(one.radius / theory.radius_of_pin(load), one.spin / theory.RING.disc_speed) for load, one in by_23],
         (-4.0, -2.0),
@@ -164,22 +155,37 @@ def error_of_23(engine: Engine) -> Measured:
 )
 def limit_of_large_loads(engine: Engine) -> Measured:
     limit = (1.0, theory.spin_of_large_whirl(theory.RING) / theory.RING.disc_speed)
-    return _orders(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
+    return _orders_of_loads(engine, [limit] * len(LOADS[theory.ORDERS]), (-2.0, -2.0))
 
 
-def _orders(engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]) -> Measured:
+def _orders_of_loads(
+    engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]
+) -> Measured:
     """Compare the orders of convergence of radius and spin to ``others`` in the friction force with ``orders``."""
-    found = circles_of(engine, theory.CENTRED)
+    found = steady_motions(engine, theory.CIRCLES)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
-    observed, numerical, model = extrapolated(gaps, found.error[theory.ORDERS][:, :1])
+    noise = found.error[theory.ORDERS][:, :1]
+    return replace(
+        _orders(gaps, noise, orders, ("radius", "spin"), theory.CENTRED), source=theory.SOURCE_CENTRED
+    )
+
+
+def _orders(
+    gaps: FloatArray,
+    noise: FloatArray,
+    orders: Sequence[float],
+    components: Sequence[str],
+    system: DiscOnDisc,
+) -> Measured:
+    """Compare ``orders`` with those of ``gaps`` at a variable that is halved, or doubled if they are negative."""
+    observed, numerical, model = extrapolated(gaps, noise)
     return Measured(
         predicted=orders,
-        value=-observed,
+        value=np.sign(orders) * observed,
         error=numerical,
         model=model,
-        components=("radius", "spin"),
-        system=theory.CENTRED,
-        source=theory.SOURCE_CENTRED,
+        components=components,
+        system=system,
     )
 
 
@@ -256,19 +262,14 @@ def parts(engine: Engine) -> Measurement:
     """Return x, y of the centre, amplitude of the first harmonic, mean spin at ``HALVED_OFFSETS``, shape (3, 4)."""
 
     def found(tolerance: float) -> FloatArray:
-        whirls = [
-            orbit_of(engine, theory.OFFSET_LOAD, 0, tolerance, offset) for offset in theory.HALVED_OFFSETS
-        ]
-        return np.array([(*orbit.mean, *circle_in(orbit)) for orbit in whirls])
+        rows = []
+        for offset in theory.HALVED_OFFSETS:
+            whirl = orbit_of(engine, theory.OFFSET_LOAD, 0, tolerance, offset)
+            x, y, *_, spin = whirl.trajectory.states[:-1].T
+            rows.append((*whirl.mean, np.abs(np.fft.fft(x + 1j * y) / len(x))[1], np.mean(spin)))
+        return np.array(rows)
 
     return refined(found, theory.ORBIT_TOLERANCE, alike=False)
-
-
-def circle_in(orbit: Orbit) -> tuple[float, float]:
-    """Return the amplitude of the first harmonic of x + iy in m, and the mean spin in rad/s."""
-    states = orbit.trajectory.states[:-1]
-    harmonics = np.fft.fft(states[:, 0] + 1j * states[:, 1]) / len(states)
-    return float(np.abs(harmonics[1])), float(np.mean(states[:, -1]))
 
 
 @STUDY.claim(
@@ -283,14 +284,11 @@ def circle_in(orbit: Orbit) -> tuple[float, float]:
 )
 def offset_shifts(engine: Engine) -> Measured:
     found = parts(engine)
-    discs = [
-        with_load(replace(theory.RING, offset=offset), theory.OFFSET_LOAD) for offset in theory.HALVED_OFFSETS
-    ]
-    response = [theory.first_order_shift(disc) for disc in discs]
+    disc = with_load(theory.RING, theory.OFFSET_LOAD)
+    response = [theory.first_order_shift(replace(disc, offset=offset)) for offset in theory.HALVED_OFFSETS]
     gaps = np.abs(found.value[:, 0] + 1j * found.value[:, 1] - response)[:, np.newaxis]
-    return _orders_of_shift(
-        gaps, np.hypot(found.error[:, 0], found.error[:, 1])[:, np.newaxis], 3.0, ("shift",)
-    )
+    noise = np.hypot(found.error[:, 0], found.error[:, 1])[:, np.newaxis]
+    return _orders(gaps, noise, (3.0,), ("shift",), disc)
 
 
 @STUDY.claim(
@@ -304,27 +302,37 @@ def offset_shifts(engine: Engine) -> Measured:
 def offset_changes_size(engine: Engine) -> Measured:
     found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
     _, _, radius, spin = found.value[1]
+    gaps = np.abs(found.value[:, 2:] - [circle.radius, circle.spin])
+    disc = with_load(theory.RING, theory.OFFSET_LOAD)
     return replace(
-        _orders_of_shift(
-            np.abs(found.value[:, 2:] - [circle.radius, circle.spin]),
-            found.error[:, 2:],
-            2.0,
-            ("radius", "spin"),
-        ),
+        _orders(gaps, found.error[:, 2:], (2.0, 2.0), ("radius", "spin"), disc),
         note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m, the radius changes by {radius / circle.radius - 1.0:.2g} of "
         f"itself and the spin by {spin - circle.spin:.2g} rad/s.",
     )
 
 
-def _orders_of_shift(
-    gaps: FloatArray, noise: FloatArray, order: float, components: tuple[str, ...]
-) -> Measured:
-    observed, numerical, model = extrapolated(gaps, noise)
+# --- The self-centred equilibrium
+
+
+@STUDY.claim(
+    "Position and spin of the self-centred disc satisfy the balance of forces and moments, stable or not",
+    equation="(19), (20)",
+    resolution=1e-7,
+    note="Relative to X0 and ω. Measured: the state that repeats in the engine.",
+    basis="reference",
+    swept=("friction_force",),
+)
+def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
+    found = steady_motions(engine, tuple((load, None) for load in loads))
+    exact = [theory.rest_of(load) for load in loads]
     return Measured(
-        predicted=np.full(len(observed), order),
-        value=observed,
-        error=numerical,
-        model=model,
-        components=components,
-        system=with_load(theory.RING, theory.OFFSET_LOAD),
+        predicted=[
+            (one.x / theory.RING.offset, one.y / theory.RING.offset, one.spin / theory.RING.disc_speed)
+            for one in exact
+        ],
+        value=found.value,
+        error=found.error,
+        at={"μN in N": loads},
+        components=("x", "y", "spin"),
+        data={"rest load": loads, "rest": found.value},
     )
