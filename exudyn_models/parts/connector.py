@@ -45,13 +45,13 @@ def add_connector(
 
 def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> Any:
     """Add the connector of a contact over ``nodes`` and register the contact; return its ``ObjectIndex``."""
-    name = register(mbs, contact)
+    register(mbs, contact)
     if not contact.built_in:
-        return add_connector(mbs, nodes, contact.functions["force"], contact.functions["jacobian"], name)
+        return add_connector(mbs, nodes, contact.functions["force"], contact.functions["jacobian"], contact.name)
     markers = rotor_markers(mbs, nodes)
     item = mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamperExt(
-            name=name, markerNumbers=markers, frictionProportionalZone=1.0
+            name=contact.name, markerNumbers=markers, frictionProportionalZone=1.0
         )
     )
     renew_friction(mbs, item, contact)

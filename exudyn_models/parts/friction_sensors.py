@@ -16,15 +16,11 @@ import numpy as np
 from exudyn_models.forces.axial_pairs import on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import (
-    SIZES,
-    Axes,
-    slip_and_place_of_nodes,
-)
+from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
-from exudyn_models.solver.contacts import Contact
+from exudyn_models.solver.contacts import Contact, present_item
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.stick.planar_stick import PlanarStick
@@ -115,7 +111,7 @@ class RingFriction:
             return
         force, jacobian = force_and_jacobian(contact.kinds, contact.reference, factors)
         contact.functions.update(force=force, jacobian=jacobian)
-        renew_friction(self.mbs, self.item, contact)
+        renew_friction(self.mbs, present_item(self.mbs, contact, self.item), contact)
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
         """Add a sensor to the model, before it is assembled; return its ``SensorIndex``.
@@ -249,14 +245,10 @@ class RingFriction:
     @cached_property  # later nodes are added behind them
     def _places(self) -> list[Any]:
         """Slices of the nodes' coordinates among those of the assembled model."""
-        kinds = self._contact.kinds[:2][-len(self.nodes) :]
-        places: list[slice] = []
-        for node, kind in zip(self.nodes, kinds, strict=True):
-            start = self.mbs.GetNodeODE2Index(node)
-            if places and places[-1].stop == start:
-                start = places.pop().start
-            places.append(slice(start, self.mbs.GetNodeODE2Index(node) + SIZES[kind]))
-        return places
+        item = present_item(self.mbs, self._contact, self.item)
+        places = np.array(self.mbs.systemData.GetObjectLTGODE2(item))
+        runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
+        return [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""

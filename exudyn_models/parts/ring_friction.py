@@ -167,7 +167,7 @@ def _add_friction(
     contact = (_sticking if sticks else _regularised)(kinds, reference, factors)
     item = add_friction_connector(mbs, nodes, contact)
     if contact.stick is not None:
-        contact.stick.locks = _add_locks(mbs, nodes, contact.stick)
+        contact.stick.locks = _add_locks(mbs, nodes, contact, contact.stick)
     friction = RingFriction(mbs, item, nodes, contact, thermal)
     if thermal is not None:
         thermal.heated_by(friction.power)
@@ -197,11 +197,14 @@ def _sticking(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) 
     )
 
 
-def _add_locks(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> tuple[int, ...]:
+def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialStick) -> tuple[int, ...]:
     """Add the inactive constraints on the slip of both nodes, one for each direction; return their object numbers."""
     if not isinstance(stick, PlanarStick):
         lock = items.ObjectConnectorCoordinate(
-            markerNumbers=rotor_markers(mbs, nodes), velocityLevel=True, activeConnector=False
+            name=contact.lock_name(0),
+            markerNumbers=rotor_markers(mbs, nodes),
+            velocityLevel=True,
+            activeConnector=False,
         )
         return (int(mbs.AddObject(lock)),)
     if len(nodes) == 1:
@@ -209,6 +212,7 @@ def _add_locks(mbs: Any, nodes: Sequence[Any], stick: AxialStick) -> tuple[int, 
     markers = [mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
     locks = (
         items.ObjectConnectorCoordinateVector(
+            name=contact.lock_name(i),
             markerNumbers=markers,
             scalingMarker0=np.zeros((1, 1)),  # one equation
             velocityLevel=True,

@@ -18,7 +18,7 @@ from reference_model.systems import FloatArray
 _CONTACTS = "friction contacts"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Contact:
     """A friction contact between two nodes.
 
@@ -36,6 +36,8 @@ class Contact:
         Its exact stick, None if it is regularised.
     built_in : bool
         Whether its connector is Exudyn's ``ObjectConnectorCoordinateSpringDamperExt``.
+    name : str
+        Name of its connector, set by ``register``.
 
     """
 
@@ -45,6 +47,7 @@ class Contact:
     functions: dict[str, Any]
     stick: AxialStick | None
     built_in: bool
+    name: str = ""
 
     @property
     def dampers(self) -> StickDampers:
@@ -52,18 +55,56 @@ class Contact:
         return StickDampers(self.kinds, self.reference, self.factors)
 
 
-def register(mbs: Any, contact: Contact) -> str:
-    """Store a contact in its model; return the name that its connector must have."""
+    def lock_name(self, direction: int) -> str:
+        """Return the name of the constraint that locks a direction of slip."""
+        return f"{self.name}, lock {direction}"
+
+
+def register(mbs: Any, contact: Contact) -> None:
+    """Store a contact in its model, and choose the name that its connector must have."""
     known = mbs.sys.setdefault(_CONTACTS, {})
-    name = f"friction contact {len(known)}"
-    known[name] = contact
-    return name
+    contact.name = f"friction contact {len(known)}"
+    known[contact.name] = contact
 
 
 def contacts_of(mbs: Any) -> dict[int, Contact]:
-    """Return all contacts of a model by the object numbers of their connectors."""
-    known = mbs.sys.get(_CONTACTS)
+    """Return all contacts of a model by the present object numbers of their connectors.
+
+    Locks of exact stick also get their present numbers. Those of a deleted contact become inactive. Raises
+    ``ValueError`` if a contact has lost its locks.
+    """
+    known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
     if not known:
         return {}
-    names = [mbs.GetObject(item)["name"] for item in range(mbs.systemData.NumberOfObjects())]
-    return {item: known[name] for item, name in enumerate(names) if name in known}
+    numbers = {mbs.GetObject(item)["name"]: item for item in range(mbs.systemData.NumberOfObjects())}
+    for contact in known.values():
+        if contact.stick is not None:
+            _renew_locks(mbs, contact, contact.stick, numbers)
+    return {numbers[name]: contact for name, contact in known.items() if name in numbers}
+
+
+def present_item(mbs: Any, contact: Contact, item: Any) -> Any:
+    """Return the object number of a contact's connector, which was ``item`` when it was added.
+
+    Raises ``ValueError`` if it was deleted.
+    """
+    count = mbs.systemData.NumberOfObjects()
+    for number in (item, *range(count)):  # mostly the first
+        if int(number) < count and mbs.GetObjectParameter(number, "name") == contact.name:
+            return number
+    raise ValueError(f"{contact.name!r} was deleted: it cannot be changed or measured")
+
+
+def _renew_locks(mbs: Any, contact: Contact, stick: AxialStick, numbers: dict[str, int]) -> None:
+    names = [contact.lock_name(direction) for direction in range(len(stick.locks))]
+    found = tuple(numbers[name] for name in names if name in numbers)
+    if contact.name not in numbers:
+        for lock in found:
+            mbs.SetObjectParameter(lock, "activeConnector", False)
+    elif len(found) < len(names):
+        raise ValueError(
+            f"object {numbers[contact.name]}, {contact.name!r}: constraints that let it stick exactly were deleted; "
+            "delete the contact as well, or keep the objects that add_ring_friction has added"
+        )
+    else:
+        stick.locks = found

@@ -75,6 +75,15 @@ def test_error_of_creep_is_of_first_order_in_epsilon_at_constant_cost(
     assert order == pytest.approx(1.0, abs=0.25 if system is FIG5 else 0.1), errors
 
 
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_held_pin_creeps_by_default_at_the_share_of_its_capacity_in_micrometres_per_second(instance, share):
+    """At 0.9 of the capacity that is 3.2 mm per hour."""
+    pin = instance("pin", exact=0.0, damping=0.0, disc_speed=0.0, offset=0.0, x=share * 0.09, vx=0.0, vy=0.0)
+    pin.started().to(10.0)
+    assert pin["slip_speed"] == pytest.approx(share * 1e-6, rel=1e-3)
+    assert share * 0.09 - pin["x"] == pytest.approx(share * 1e-5, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     "contact", [{"inner_radius": 0.06}, {"contact_points": 5.0}], ids=["annulus", "points"]
 )

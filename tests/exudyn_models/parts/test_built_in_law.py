@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import drive, items, new_model, rate_of, rotor, settings_of
+from free_bodies import drive, new_model, rate_of, rotor, settings_of
 
 from exudyn_models import add_ring_friction, largest_stable_step, solve_dynamic
 from exudyn_models.solver.linear_matrices import matrices_of_model
@@ -141,13 +141,3 @@ def test_contacts_of_a_model_that_was_reset_are_forgotten():
     assert solve_dynamic(mbs, settings_of(0.1, 100), SOLVERS.RK44) == []
     assert rate_of(mbs, disc) == 20.0
     assert largest_stable_step(mbs, SOLVERS.RK44) == np.inf
-
-
-def test_a_contact_is_found_after_an_earlier_object_was_deleted():
-    mbs = new_model()
-    ground = mbs.AddObject(items.ObjectGround())
-    friction = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": LOAD}
-    add_ring_friction(mbs, None, rotor(mbs, 0.9, 20.0), regularisation=EPSILON, **friction)
-    mbs.DeleteObject(ground)
-    limit = 2.7852935 * 0.9 * EPSILON / (0.3 * LOAD * 0.12**2)
-    assert largest_stable_step(mbs, SOLVERS.RK44) == pytest.approx(limit, rel=1e-9)

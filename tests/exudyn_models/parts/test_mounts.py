@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from exudyn.utilities import RigidBodyInertia
 from free_bodies import (
-    all_states,
     items,
     new_model,
     planar_body,
@@ -41,7 +40,7 @@ def random_rotation():
     return rotations.EulerParameters2RotationMatrix((e := RANDOM.normal(size=4)) / np.linalg.norm(e))
 
 
-RANDOM_AXES = [random_rotation() for _ in range(200)]
+RANDOM_AXES = [random_rotation() for _ in range(50)]
 
 
 def body_of(mbs, kind, axes, place, velocity=NONE, spin=NONE, mass=1.0, inertia=0.02):
@@ -113,10 +112,12 @@ def motion(kinds, turned, own):
 @pytest.mark.parametrize(
     "kinds", [kinds for kinds in PAIRS if {*kinds} != {"Tait-Bryan", "Euler parameters"}], ids=" on ".join
 )
-def test_contacts_move_alike_in_all_24_orientations_and_200_random_ones(kinds):
+def test_contacts_move_alike_in_all_24_orientations_and_20_random_ones(kinds):
     expected = motion(kinds, np.eye(3), (np.eye(3), np.eye(3)))
     cases = [(turned, (AXES[i - 5], AXES[i - 11])) for i, turned in enumerate(AXES)]
-    cases += [(turned, (RANDOM_AXES[i - 5], RANDOM_AXES[i - 11])) for i, turned in enumerate(RANDOM_AXES)]
+    cases += [
+        (turned, (RANDOM_AXES[i - 5], RANDOM_AXES[i - 11])) for i, turned in enumerate(RANDOM_AXES[:20])
+    ]
     found = [
         motion(kinds, turned, own)
         for turned, own in cases
@@ -189,8 +190,8 @@ def assert_forces_are_those_of_exudyn(mbs, friction, contact):
 
 
 @pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
-def test_forces_on_200_random_mounts_are_those_of_exudyns_velocities(kinds):
-    for i in range(200):
+def test_forces_on_50_random_mounts_are_those_of_exudyns_velocities(kinds):
+    for i in range(50):
         assert_forces_are_those_of_exudyn(*mounted_at_random(kinds, i))
 
 
@@ -211,37 +212,6 @@ def test_a_mounted_contact_has_the_jacobian_that_exudyn_finds_by_differences(kin
         rates = RANDOM.normal(size=len(mbs.GetNodeParameter(node, "initialVelocities")))
         mbs.SetNodeParameter(node, "initialVelocities", rates)
     assert_jacobian_is_that_of_exudyn(mbs, friction.item)
-
-
-def test_a_marker_away_from_the_node_is_the_same_contact_as_a_node_there():
-    """The body's centre of mass is 50 mm from the contact; its node is there, or at the contact."""
-    ends, arm = [], np.array([0.05, -0.02, 0.0])
-    turned = rotations.RotationMatrixZ(0.4)
-    for node_at_contact in (False, True):
-        mbs = new_model()
-        master = body_of(mbs, "rotor", np.eye(3), [0.0, 0.0, 0.0], spin=[0.0, 0.0, 30.0])
-        inertia = RigidBodyInertia(mass=1.0, inertiaTensor=0.02 * np.eye(3))
-        node_place = np.array([0.3, 0.1, 0.0])
-        if node_at_contact:
-            inertia, node_place = inertia.Translated(-arm), node_place + turned @ arm
-        disc = mbs.CreateRigidBody(
-            inertia=inertia,
-            nodeType=SPATIAL["rotation vector"],
-            referencePosition=node_place,
-            referenceRotationMatrix=turned,
-        )
-        at = disc if node_at_contact else marker_on(mbs, disc, arm)
-        friction = add_ring_friction(mbs, master, at, **THREE)
-        assert (friction.compiled, len(friction.nodes)) == (True, 2)
-        mbs.Assemble()
-        run_explicitly(mbs, 0.2, 200)
-        ends.append(
-            [
-                mbs.GetObjectOutputBody(disc, OUT.Position, -arm * node_at_contact),
-                all_states(mbs)[[0, 4, 5, 6]],
-            ]
-        )
-    np.testing.assert_allclose(*map(np.hstack, ends), rtol=0.0, atol=1e-9)
 
 
 PIVOT = {"contact_radius": 0.01, "friction_coefficient": 0.2, "normal_load": 500.0}
@@ -334,27 +304,6 @@ def test_rotors_of_same_and_opposite_axes_lock_at_their_common_speed(turned, reg
         ]
 
 
-def test_rotors_about_parallel_axes_rub_like_a_rotor_and_a_disc_beside_it():
-    """Their bearings take up the forces; the moments are those of a disc in the plane at the same place."""
-    moments = []
-    for kind in ("rotor", "planar"):
-        mbs = new_model()
-        master = body_of(mbs, "rotor", np.eye(3), NONE, spin=[0.0, 0.0, 3.0])
-        if kind == "rotor":
-            disc = body_of(mbs, "rotor", np.eye(3), [0.1, 0.05, 0.4], spin=[0.0, 0.0, -2.0])
-        else:
-            disc = planar_body(mbs, 1.0, 0.02, [0.1, 0.05, 0.0], [0.0, 0.0, -2.0])
-        friction = add_ring_friction(mbs, master, disc, **THREE)
-        mbs.Assemble()
-        data = mbs.systemData
-        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t(exu.ConfigurationType.Initial))
-        data.SetODE2Coordinates(data.GetODE2Coordinates(exu.ConfigurationType.Initial))
-        forces = np.array(mbs.ComputeItem(friction.item, exu.ComputeItemType.ODE2LHS))
-        moments.append(forces[[0, -1]])
-    assert min(abs(moments[0])) > 1e-3
-    np.testing.assert_allclose(*moments, rtol=1e-13)
-
-
 @pytest.mark.parametrize("hardening", [0.0, 50.0])
 @pytest.mark.parametrize("kind", ["ground", "rotor"])
 def test_a_support_on_a_base_of_any_axis_holds_a_disc_as_on_the_global_one(kind, hardening):
@@ -371,7 +320,7 @@ def test_a_support_on_a_base_of_any_axis_holds_a_disc_as_on_the_global_one(kind,
             support.add_sensor(quantity) for quantity in ("deflection", "stored_energy", "power", "force")
         ]
         mbs.Assemble()
-        run_explicitly(mbs, 0.3, 300)
+        run_explicitly(mbs, 0.3, 60)
         *values, force = (mbs.GetSensorValues(sensor) for sensor in sensors)
         end = mbs.GetObjectOutputBody(disc, OUT.Position) - shift
         ends.append(np.hstack([turned.T @ end, turned.T @ force, *values, support.power(mbs, 0.3)]))

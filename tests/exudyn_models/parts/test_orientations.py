@@ -32,7 +32,7 @@ def ball(mbs, node, axes, mass, inertia, *motion):
     return mbs.CreateRigidBody(inertia=whole, nodeType=node, referenceRotationMatrix=axes, **moving)
 
 
-def motion(node, master_axes, disc_axes, points):
+def motion(node, master_axes, disc_axes):
     """Return positions, velocities and angular velocities of both bodies at 0.1 s, in the master's first axes."""
     mbs = new_model()
     master = [0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0]
@@ -44,8 +44,8 @@ def motion(node, master_axes, disc_axes, points):
             (master_axes @ disc_axes, (1.0, 0.02), disc),
         )
     ]
-    add_ring_friction(mbs, *bodies, **POINTS | {"contact_points": points})
-    settings = settings_of(0.1, 20, newton=1e-12)
+    add_ring_friction(mbs, *bodies, **POINTS)
+    settings = settings_of(0.1, 10, newton=1e-12)
     solve_dynamic(mbs, settings, exu.DynamicSolverType.TrapezoidalIndex2)
     kinds = exu.OutputVariableType
     quantities = kinds.Position, kinds.Velocity, kinds.AngularVelocity
@@ -54,12 +54,11 @@ def motion(node, master_axes, disc_axes, points):
     )
 
 
-@pytest.mark.parametrize("points", [None, 4])
 @NODES
-def test_all_orientations_of_both_bodies_give_the_same_motion(node, points):
+def test_all_orientations_of_both_bodies_give_the_same_motion(node):
     """No smaller sample would do: a fault of rotations once spoilt 46 of these pairs, scattered over all of them."""
-    expected = motion(node, np.eye(3), np.eye(3), points)
-    found = [motion(node, *axes, points) for axes in product(AXES, AXES)]
+    expected = motion(node, np.eye(3), np.eye(3))
+    found = [motion(node, *axes) for axes in product(AXES, AXES)]
     np.testing.assert_allclose(found, np.broadcast_to(expected, (576, 18)), rtol=0.0, atol=1e-12)
 
 
