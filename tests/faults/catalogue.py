@@ -1,11 +1,7 @@
 """Catalogue of sound engines, and of variants with one typical mistake of users or developers each."""
 
-from __future__ import annotations
-
 import functools
 import math
-from collections.abc import Callable
-from typing import Any
 
 from compare.engines import EVERY_KIND, Engine, reference
 from faults.around_reference import (
@@ -34,29 +30,27 @@ from faults.wrong_parameters import (
     weaker_backwards,
     with_parameters,
 )
-from reference_model.systems import FloatArray, System
-from reference_model.trajectory import Trajectory
 
-SOUND: tuple[Engine, ...] = (reference, Engine("plain", simulate_plainly, EVERY_KIND))
+SOUND = (reference, Engine("plain", simulate_plainly, EVERY_KIND))
 """Engines to insert faults into. A claim that fails for one of them is itself wrong."""
 
 
-def made(name: str, kinds: tuple[str, ...] = EVERY_KIND, **make: Any) -> Engine:
+def made(name, kinds=EVERY_KIND, **make):
     """Return the plain engine with one wrong part."""
     return Engine(name, functools.partial(simulate_plainly, make=Make(**make)), kinds)
 
 
-def mistaken(name: str, change: Callable[[System], dict[str, Any]]) -> Engine:
+def mistaken(name, change):
     """Return the reference with wrong parameters."""
     return Engine(name, functools.partial(with_parameters, change), EVERY_KIND)
 
 
-def spoilt(name: str, change: Callable[[Trajectory], FloatArray]) -> Engine:
+def spoilt(name, change):
     """Return the reference with wrong output."""
     return Engine(name, functools.partial(with_output, change), EVERY_KIND)
 
 
-def around(name: str, simulate: Any) -> Engine:
+def around(name, simulate):
     """Return an engine that calls the reference wrongly."""
     return Engine(name, simulate, EVERY_KIND)
 
@@ -67,7 +61,7 @@ POINTS_ONLY = ("pin", "points")
 CORNERS = 1e-4
 """ε in m/s of polygons; a smaller one is too costly because motions follow the corners for a long time."""
 
-FORCE: tuple[Engine, ...] = (
+FORCE = (
     made("friction-along-slip", friction=-1.0),
     made("pyramid-of-8-sides", POINTS_ONLY, sides=8, first_side=math.pi / 8.0, slip_width=CORNERS),
     made("box-friction", POINTS_ONLY, sides=4, circumscribed=True, slip_width=CORNERS),
@@ -85,7 +79,7 @@ FORCE: tuple[Engine, ...] = (
     mistaken("friction-weaker-backwards", weaker_backwards),
 )
 
-MOMENT: tuple[Engine, ...] = (
+MOMENT = (
     made("moment-of-wrong-sign", moment=-1.0),
     made("no-moment-of-eccentric-force", moment=0.0),
     made("no-spin-in-slip", spin_in_slip=0.0),
@@ -99,7 +93,7 @@ MOMENT: tuple[Engine, ...] = (
     mistaken("load-not-shared", load_not_shared),
 )
 
-SUPPORT: tuple[Engine, ...] = (
+SUPPORT = (
     made("damping-on-slip", damping_on_slip=True),
     made("offset-of-wrong-sign", anchor=-1.0 + 0.0j),
     made("springs-turn", anchor_turns=True),
@@ -110,7 +104,7 @@ SUPPORT: tuple[Engine, ...] = (
     mistaken("disc-backwards", disc_backwards),
 )
 
-NUMERICS: tuple[Engine, ...] = (
+NUMERICS = (
     made("no-coriolis", coriolis=0.0),
     made("energy-creeps-in", energy_gain=1e-6),
     made("first-order", order=1, step=1e-3),
@@ -134,9 +128,9 @@ PARAMETERS = (
     "stop_stiffness", "polar_inertia", "contact_radius", "shaft_damping", "shaft_speed",
 )  # fmt: skip
 
-WRONG_PARAMETERS: tuple[Engine, ...] = tuple(
+WRONG_PARAMETERS = tuple(
     mistaken(f"{name.replace('_', '-')}-off-by-{SIZE}", functools.partial(off_by, name, float(SIZE)))
     for name in PARAMETERS
 )
 
-FAULTS: tuple[Engine, ...] = (*FORCE, *MOMENT, *SUPPORT, *NUMERICS, *WRONG_PARAMETERS)
+FAULTS = (*FORCE, *MOMENT, *SUPPORT, *NUMERICS, *WRONG_PARAMETERS)

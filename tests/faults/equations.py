@@ -1,19 +1,15 @@
 """Equations of motion of the plain engine: eqs. 1 and 19 for velocities relative to the master disc."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
 from faults.friction import contact
 from faults.jit import compiled
-from faults.make import Make, Numbers
-from reference_model.systems import FloatArray
 
 
 @compiled
-def slip_of(y: FloatArray, numbers: Numbers, make: Make) -> tuple[complex, float]:
+def slip_of(y, numbers, make):
     """Return the velocity of the centre and the spin that friction opposes."""
     half = len(y) // 2
     slip = complex(y[half], y[half + 1])
@@ -27,7 +23,7 @@ def slip_of(y: FloatArray, numbers: Numbers, make: Make) -> tuple[complex, float
 
 
 @compiled
-def support(t: float, z: complex, v: complex, numbers: Numbers, make: Make) -> complex:
+def support(t, z, v, numbers, make):
     """Return the force of springs, stop and dampers."""
     anchor = numbers.offset * make.anchor
     if make.anchor_turns:
@@ -47,7 +43,7 @@ def support(t: float, z: complex, v: complex, numbers: Numbers, make: Make) -> c
 
 
 @compiled
-def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbers, make: Make) -> FloatArray:
+def rates(t, y, width, strength, numbers, make):
     """Return the right-hand side of (1) or (19) for x, y, (φ,) and the velocities relative to the master disc."""
     half = len(y) // 2
     z, u = complex(y[0], y[1]), complex(y[half], y[half + 1])
@@ -77,7 +73,7 @@ def rates(t: float, y: FloatArray, width: float, strength: float, numbers: Numbe
 
 
 @compiled
-def rotated(x: FloatArray, turn: float, base: FloatArray) -> FloatArray:
+def rotated(x, turn, base):
     """Return the unknowns from the displacement ``x`` since ``base``, given in axes that rotated by ``turn``."""
     half = len(x) // 2
     e = complex(math.cos(turn), math.sin(turn))
@@ -90,16 +86,7 @@ def rotated(x: FloatArray, turn: float, base: FloatArray) -> FloatArray:
 
 
 @compiled
-def turning_rates(
-    t: float,
-    x: FloatArray,
-    start: float,
-    base: FloatArray,
-    width: float,
-    strength: float,
-    numbers: Numbers,
-    make: Make,
-) -> FloatArray:
+def turning_rates(t, x, start, base, width, strength, numbers, make):
     """Return the rates of ``x`` in ``rotated``, which are small during stick."""
     half, turn = len(x) // 2, numbers.omega * (t - start)
     result = rates(t, rotated(x, turn, base), width, strength, numbers, make)
@@ -111,13 +98,13 @@ def turning_rates(
 
 
 @compiled
-def slip_speed(y: FloatArray, numbers: Numbers, make: Make) -> float:
+def slip_speed(y, numbers, make):
     """Return the slip speed of the contact."""
     slip, turning = slip_of(y, numbers, make)
     return contact(slip, turning, y[2] if len(y) == 6 else 0.0, 1.0, 1.0, numbers, make)[2]
 
 
-def carried(places: FloatArray, omega: float) -> FloatArray:
+def carried(places, omega):
     """Return the velocities of a body that turns with the master disc; ``places`` has shape (..., 2) or (..., 3)."""
     velocities = np.full_like(places, omega)
     velocities[..., 0], velocities[..., 1] = -omega * places[..., 1], omega * places[..., 0]
@@ -125,9 +112,7 @@ def carried(places: FloatArray, omega: float) -> FloatArray:
 
 
 @compiled
-def fixed_steps(
-    times: FloatArray, start: FloatArray, width: float, numbers: Numbers, make: Make
-) -> FloatArray:
+def fixed_steps(times, start, width, numbers, make):
     """Return the states at ``times`` by Euler's method or the classical Runge-Kutta method."""
     states = np.empty((len(times), len(start)))
     states[0] = start

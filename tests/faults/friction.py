@@ -1,15 +1,12 @@
 """Friction of the plain engine: at a point, on points, and on a continuous ring."""
 
-from __future__ import annotations
-
 import math
 
 from faults.jit import compiled
-from faults.make import Make, Numbers
 
 
 @compiled
-def on_polygon(force: complex, make: Make) -> complex:
+def on_polygon(force, make):
     """Return the point of the polygon nearest to ``force``."""
     half = math.pi / make.sides
     apothem = 1.0 if make.circumscribed else math.cos(half)
@@ -24,7 +21,7 @@ def on_polygon(force: complex, make: Make) -> complex:
 
 
 @compiled
-def at_point(slip: complex, width: float, strength: float, make: Make) -> complex:
+def at_point(slip, width, strength, make):
     """Return the friction of a slipping point per newton of its load, viscous up to the limit ``strength``."""
     wanted = -slip / width
     if make.sides > 0:
@@ -37,7 +34,7 @@ def at_point(slip: complex, width: float, strength: float, make: Make) -> comple
 
 
 @compiled
-def mean_slip(u: float, w: float) -> tuple[float, float, float]:
+def mean_slip(u, w):
     """Return the mean slip speed P(U, W) on a circle, ∂P/∂U and ∂P/∂W, from elliptic integrals by Gauss's AGM."""
     if u == 0.0 or w == 0.0:
         return u + w, 1.0 if u > 0.0 else 0.0, 1.0 if w > 0.0 else 0.0
@@ -58,9 +55,7 @@ def mean_slip(u: float, w: float) -> tuple[float, float, float]:
 
 
 @compiled
-def contact(
-    slip: complex, spin: float, angle: float, width: float, strength: float, numbers: Numbers, make: Make
-) -> tuple[complex, float, float]:
+def contact(slip, spin, angle, width, strength, numbers, make):
     """Return force (N per N of μN), moment (m) and slip speed of a contact whose disc turns with ``spin``.
 
     ``slip`` and ``spin`` are relative to the master disc. The slip speed is the largest over the points, or the mean

@@ -6,22 +6,18 @@ friction is below the limit. ε falls with the tolerance, so one estimate covers
 parameters, results and the disk cache with the two engines of the project.
 """
 
-from __future__ import annotations
-
 import math
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.integrate import LSODA
 from scipy.optimize import brentq
 
 from faults.equations import carried, fixed_steps, rates, rotated, slip_speed, turning_rates
 from faults.make import RIGHT, Make, Numbers, steepest
-from reference_model.systems import FloatArray, System, checked_state, checked_times, checked_tolerance
+from reference_model.systems import FloatArray, checked_state, checked_times, checked_tolerance
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 TIGHTEST = 1e-13
@@ -44,7 +40,7 @@ ACCURACY_IN_STICK = 1e-7
 """Error of the slip relative to ε, and so of the friction force, during stick."""
 
 
-def anywhere(_: FloatArray) -> float:
+def anywhere(_):
     """Return infinity: the phase has no bound."""
     return math.inf
 
@@ -64,17 +60,17 @@ class _Run:
     steps: int = 0
     phases: list[tuple[Literal["slip", "stick"], float, FloatArray]] = field(default_factory=list)
 
-    def speed(self, y: FloatArray) -> float:
+    def speed(self, y):
         """Return the slip speed."""
         return float(slip_speed(y, self.numbers, self.make))
 
     @property
-    def glance(self) -> float:
+    def glance(self):
         """Return the longest step in s during stick; the load on friction changes little in it."""
         frequency = math.sqrt(self.numbers.stiffness / self.numbers.mass)
         return 0.02 / max(frequency, abs(self.numbers.omega), 1e-3)
 
-    def time_to_rest(self, t: float, y: FloatArray) -> float:
+    def time_to_rest(self, t, y):
         """Return the time in s until slip at the speed ε would end under full friction."""
         numbers, make, speed = self.numbers, self.make, self.speed(y)
         least = self.epsilon / steepest(numbers)
@@ -83,7 +79,7 @@ class _Run:
         slowest = 1e-3 * speed / least  # if friction can hardly hold
         return speed / max((speed - moved) / step, slowest)
 
-    def go(self) -> None:
+    def go(self):
         """Simulate the motion to its end."""
         make, t, y, end = self.make, float(self.times[0]), self.unknowns[0].copy(), float(self.times[-1])
         creep = max(self.epsilon, make.creep_speed)
@@ -109,16 +105,7 @@ class _Run:
                 return
             stuck = not stuck
 
-    def follow(
-        self,
-        t: float,
-        y: FloatArray,
-        end: float,
-        width: float,
-        strength: float,
-        inside: Callable[[FloatArray], float] = anywhere,
-        longest: float = math.inf,
-    ) -> tuple[float, FloatArray]:
+    def follow(self, t, y, end, width, strength, inside=anywhere, longest=math.inf):
         """Integrate until ``inside`` falls below zero, or to ``end``; return the time and the unknowns there.
 
         Steps are at most ``longest``.
@@ -132,7 +119,7 @@ class _Run:
         law = (start, base, width, strength, self.numbers, self.make)
         slipping = law[2:]
 
-        def started(t: float, x: FloatArray) -> LSODA:
+        def started(t, x):
             return LSODA(
                 (lambda t, x: turning_rates(t, x, *law))
                 if turning
@@ -146,7 +133,7 @@ class _Run:
                 max_step=longest,
             )
 
-        def at(t: float, x: FloatArray) -> FloatArray:
+        def at(t, x):
             return rotated(x, omega * (t - start), base)
 
         left = False
@@ -168,7 +155,7 @@ class _Run:
         self.evaluations += solver.nfev
         return t, y
 
-    def step(self, solver: LSODA) -> None:
+    def step(self, solver):
         """Take a step; raise ``SimulationError`` if it fails."""
         message = solver.step()
         self.steps += 1
@@ -177,7 +164,7 @@ class _Run:
         if solver.status == "failed" or not all(map(math.isfinite, solver.y.tolist())):
             raise SimulationError(f"LSODA gave up at t = {solver.t:g} s: {message}")
 
-    def record(self, until: float, at: Callable[[float], FloatArray]) -> None:
+    def record(self, until, at):
         """Store the unknowns at the requested times up to ``until``."""
         stop = int(np.searchsorted(self.times, until, side="right"))
         for i in range(self.recorded, stop):
@@ -185,34 +172,27 @@ class _Run:
         self.recorded = max(self.recorded, stop)
 
     @staticmethod
-    def crossing(
-        at: Callable[[float], FloatArray], before: float, after: float, inside: Callable[[FloatArray], float]
-    ) -> tuple[float, FloatArray]:
+    def crossing(at, before, after, inside):
         """Return time and unknowns at the sign change of ``inside``; without one, at the end of the step."""
         t = after
         if inside(at(before)) > 0.0 > inside(at(after)):
-            t = float(brentq(lambda t: inside(at(t)), before, after, xtol=1e-15, rtol=1e-14))
+            t = brentq(lambda t: inside(at(t)), before, after, xtol=1e-15, rtol=1e-14)
         return t, at(t)
 
-    def pending(self, t: float) -> bool:
+    def pending(self, t):
         """Return whether a requested time up to ``t`` is not yet recorded."""
         return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
 
-def simulate(
-    system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9, make: Make = RIGHT
-) -> Trajectory:
+def simulate(system, initial_state, times, *, tolerance=1e-9, make=RIGHT):
     """Return the motion of a pin or a disc from ``initial_state`` at all ``times``.
 
     ``make`` selects the fault of the engine. Raises ``ValueError`` for an invalid system, state or times, and
     ``SimulationError`` if LSODA fails.
     """
     clock = time.perf_counter()
-    start, times, tolerance = (
-        checked_state(system, initial_state),
-        checked_times(times),
-        checked_tolerance(tolerance),
-    )
+    start, times = checked_state(system, initial_state), checked_times(times)
+    tolerance = checked_tolerance(tolerance)
     numbers = Numbers.of(system)
     # An explicit method cannot resolve the end of slip within a step.
     epsilon = max(10.0 * tolerance, make.slip_width, make.step * steepest(numbers))
@@ -227,7 +207,7 @@ def simulate(
     else:
         run.go()
 
-    def state_of(unknowns: FloatArray) -> FloatArray:
+    def state_of(unknowns):
         places, relative = np.split(unknowns, 2, axis=-1)
         return np.concatenate((places, relative + carried(places, numbers.omega)), axis=-1)
 
@@ -247,6 +227,3 @@ def simulate(
         epsilon,
     )
     return Trajectory(system, times, states, phases, solution)
-
-
-simulate.kinds = ("pin", "points", "ring")  # type: ignore[attr-defined]

@@ -4,14 +4,8 @@ Plain and compiled runs implement the same physics and agree within the toleranc
 so they get a smaller tolerance: the effect of a fault must exceed the error.
 """
 
-from __future__ import annotations
-
-from numpy.typing import ArrayLike
-
 import reference_model
-from reference_model.contact.contact_law import Contact
-from reference_model.systems import SMALLEST_TOLERANCE, System
-from reference_model.trajectory import Trajectory
+from reference_model.systems import SMALLEST_TOLERANCE
 
 SHARE = 0.1
 """Fraction of the tolerance for runs that may be compiled."""
@@ -20,18 +14,11 @@ POINTS = (None, 6)
 """Numbers of contact points with compiled kernels; for other numbers compilation takes longer than it saves."""
 
 
-def simulate(
-    system: System,
-    initial_state: ArrayLike,
-    times: ArrayLike,
-    *,
-    tolerance: float = 1e-9,
-    contact: Contact | None = None,
-) -> Trajectory:
+def simulate(system, start, times, *, tolerance=1e-9, contact=None):
     """Return the motion like :func:`reference_model.simulate`."""
     if contact is None:
         tolerance = max(SHARE * tolerance, SMALLEST_TOLERANCE)
     compiled = None if getattr(system, "contact_points", None) in POINTS else False
     return reference_model.simulate(
-        system, initial_state, times, tolerance=tolerance, contact=contact, compiled=compiled
+        system, start, times, tolerance=tolerance, contact=contact, compiled=compiled
     )

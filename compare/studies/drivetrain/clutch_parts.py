@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from compare.claims import COARSENING, ByEngine, Data, Figures, Measured, Study, change_as_error
 from compare.engines import Engine
 from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figure, points
+from compare.studies.toolkit.rotors import Rotors
 from reference_model.systems import FloatArray
 
 # Judder: a drive drags a clutch disc on a torsional spring, and the friction coefficient falls with slip speed.
@@ -105,57 +104,13 @@ def held(times: FloatArray) -> FloatArray:
     return SURROUNDINGS + power / rate * (1.0 - np.exp(-rate / CAPACITY * times))
 
 
-class Rotors:
-    """Two rotors about one axis in Exudyn, with a speed sensor on each."""
-
-    def __init__(
-        self, inertias: tuple[float, float], speeds: tuple[float, float], second_angle: float = 0.0
-    ) -> None:
-        import exudyn as exu
-        import exudyn.itemInterface
-
-        self.items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # must live as long as its model
-        self.mbs: Any = self.container.AddSystem()
-        self.nodes, self.sensors = [], []
-        of_speed = exu.OutputVariableType.Coordinates_t
-        for inertia, speed, angle in zip(inertias, speeds, (0.0, second_angle), strict=True):
-            node = self.mbs.AddNode(self.items.Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
-            self.mbs.AddObject(self.items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-            sensor = self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
-            self.sensors.append(self.mbs.AddSensor(sensor))
-            self.nodes.append(node)
-
-    def run(self, until: float, steps: int, tolerance: float, breaks: Sequence[float] = ()) -> FloatArray:
-        """Return times in s and the sensor values after each step, one column each.
-
-        The run stops and continues at the ``breaks``, so the times contain them.
-        """
-        import exudyn as exu
-
-        from exudyn_models import solve_dynamic
-
-        settings = exu.SimulationSettings()
-        settings.solution.file.write = False
-        settings.solution.sensors.writePeriod = 0.0  # every step
-        numerical = settings.timeIntegration
-        numerical.endTime, numerical.numberOfSteps, numerical.verboseMode = until, steps, 0
-        numerical.absoluteTolerance, numerical.relativeTolerance = tolerance, 0.0
-        solve_dynamic(self.mbs, settings, exu.DynamicSolverType.DOPRI5, breaks=breaks)
-        stored = [self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors]
-        return np.column_stack((stored[0][:, 0], *(values[:, 1:] for values in stored)))
-
-
 def juddering(gradient: float) -> Rotors:
     """Return a drive and a disc on its shaft, with a friction coefficient of slope −``gradient`` in s/m."""
     from exudyn_models import add_ring_friction
 
     rotors = Rotors((DRIVE_INERTIA, INERTIA), (SPEED, PERTURBED), STEADY_MOMENT / STIFFNESS)
     items, mbs = rotors.items, rotors.mbs
-    ends = [
-        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
-        for node in (mbs.AddNode(items.NodePointGround()), rotors.nodes[1])
-    ]
+    ends = [rotors.marker(node) for node in (mbs.AddNode(items.NodePointGround()), rotors.nodes[1])]
     shaft = items.CoordinateSpringDamper(markerNumbers=ends, stiffness=STIFFNESS, damping=DAMPING)
     mbs.AddObject(shaft)
     add_ring_friction(
@@ -198,7 +153,7 @@ def heating(
         thermal_node=lining,
     )
     rotors.sensors.append(lining.add_sensor())
-    return rotors.run(float(times[-1]), 100, tolerance, times[:-1].tolist())
+    return rotors.run(float(times[-1]), 100, tolerance=tolerance, breaks=times[:-1].tolist())
 
 
 def curves() -> Data:
@@ -249,7 +204,9 @@ def _growth(gradient: float, tolerance: float) -> float:
     Speeds of a linear vibration at equal intervals Δ satisfy v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
     """
     until = float(TIMES[-1])
-    run = juddering(gradient).run(until, round(until / 1e-3), tolerance, TIMES[1:-1].tolist())
+    run = juddering(gradient).run(
+        until, round(until / 1e-3), tolerance=tolerance, breaks=TIMES[1:-1].tolist()
+    )
     v = run[np.searchsorted(run[:, 0], TIMES - 1e-12), 2]
     (_, last), *_ = np.linalg.lstsq(np.column_stack((v[1:-1], v[:-2])), v[2:], rcond=None)
     return math.log(-last) / (2.0 * float(TIMES[1] - TIMES[0]))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 
 import numpy as np
@@ -18,7 +17,6 @@ from compare.output.figures import (
     ORANGE,
     PURPLE,
     Axes,
-    Figure,
     axis,
     engine_style,
     engines_in,
@@ -84,23 +82,27 @@ def _speeds(t: FloatArray) -> FloatArray:
     return exact().states(t)[1]
 
 
-@functools.lru_cache(maxsize=1)
-def _explicit(engine: Engine) -> list[Run]:
+def _is_native(engine: Engine) -> bool:
+    return engine.kin == "exudyn"
+
+
+@functools.lru_cache(maxsize=2)
+def _runs(engine: Engine) -> list[Run]:
+    """Return the runs with Exudyn's own connector or with explicit steps, each twice as coarse as the one before."""
+    if _is_native(engine):
+        return [with_bristles(*of_one) for of_one in BRISTLES]
     return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
+
+
+def _explicit(engine: Engine) -> list[Run]:
+    _check_has_epsilon(engine)
+    return _runs(engine)
 
 
 @functools.lru_cache(maxsize=len(STEPS))
 def _implicit(engine: Engine, step: float) -> Run:
+    _check_has_epsilon(engine)
     return with_our_contact(SMALL_EPSILON, step, until=UNTIL if step in FOLLOWED else ALL_SLIP_UNTIL)
-
-
-@functools.lru_cache(maxsize=1)
-def _bristles(engine: Engine) -> list[Run]:
-    return [with_bristles(*of_one) for of_one in BRISTLES]
-
-
-def _is_native(engine: Engine) -> bool:
-    return engine.kin == "exudyn"
 
 
 def _check_has_epsilon(engine: Engine) -> None:
@@ -127,7 +129,7 @@ def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
     note=HALVED,
 )
 def moves(engine: Engine) -> Measured:
-    runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
+    runs = _runs(engine)
     found, error = _finest([run.at(SHOWN) for run in runs])
     note = (
         f"Exudyn's CoordinateSpringDamperExt with bristles of {BRISTLES[0][1]:g} N m/rad and implicit steps of "
@@ -154,7 +156,6 @@ def moves(engine: Engine) -> Measured:
     note=f"Times when the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
 )
 def switches_on_time(engine: Engine) -> Measured:
-    _check_has_epsilon(engine)
     times, error = _finest(
         [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
     )
@@ -165,15 +166,16 @@ def _passings(run: Run, epsilon: float) -> FloatArray:
     """Return for each event the nearest time (s) when the slip passes ``epsilon`` (rad/s), or NaN."""
     found = []
     for time, clutch, mode in switches():
-        above = np.abs(run.slips[:, clutch]) - epsilon
-        falls = mode == STUCK
-        first = np.flatnonzero(
-            (above[:-1] > 0.0) & (above[1:] <= 0.0) if falls else (above[:-1] <= 0.0) & (above[1:] > 0.0)
-        )
+        above = (np.abs(run.slips[:, clutch]) - epsilon) * (1.0 if mode == STUCK else -1.0)
+        first = np.flatnonzero((above[:-1] > 0.0) & (above[1:] <= 0.0))
         share = above[first] / (above[first] - above[first + 1])
         passed = run.times[first] + share * (run.times[first + 1] - run.times[first])
-        found.append(float(passed[np.argmin(np.abs(passed - time))]) if passed.size else np.nan)
+        found.append(_nearest(passed, time))
     return np.array(found)
+
+
+def _nearest(times: FloatArray, time: float) -> float:
+    return float(times[np.argmin(np.abs(times - time))]) if times.size else math.nan
 
 
 @STUDY.claim(
@@ -189,7 +191,7 @@ def momentum(engine: Engine) -> Measured:
     from exudyn_models.solver.breaks import GAP
 
     gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # in s
-    runs = _bristles(engine) if _is_native(engine) else _explicit(engine)
+    runs = _runs(engine)
     found = [float(np.dot(INERTIAS, run.speeds[-1])) for run in runs]
     return Measured(
         predicted=float(np.dot(INERTIAS, _speeds(np.array([UNTIL]))[0])),
@@ -208,7 +210,6 @@ def momentum(engine: Engine) -> Measured:
     "with four times the step, because errors scatter with the position of an event within its step.",
 )
 def implicit(engine: Engine) -> Measured:
-    _check_has_epsilon(engine)
     fine, coarse = (_implicit(engine, float(step)).at(SHOWN) for step in FOLLOWED)
     return Measured(
         predicted=_speeds(SHOWN),
@@ -227,9 +228,8 @@ def implicit(engine: Engine) -> Measured:
 )
 def order_in_epsilon(engine: Engine) -> Measured:
     """Measure before the first release, whose delay contains a logarithm of ε."""
-    _check_has_epsilon(engine)
     times = SHOWN[(SHOWN > ALL_SLIP_UNTIL + 0.01) & (SHOWN < LETS_GO_FROM)]
-    return _order(EPSILONS, _explicit(engine), times, next_term=1.0)
+    return _order(EPSILONS, _explicit(engine), times, predicted=1.0)
 
 
 @STUDY.claim(
@@ -239,16 +239,13 @@ def order_in_epsilon(engine: Engine) -> Measured:
     note=f"{at_each('step in s', STEPS)}; ε = {SMALL_EPSILON:g} m/s. {OF_ORDER}",
 )
 def order_in_step(engine: Engine) -> Measured:
-    _check_has_epsilon(engine)
     runs = [_implicit(engine, float(step)) for step in STEPS]
-    return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], next_term=1.0, predicted=2.0)
+    return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], predicted=2.0)
 
 
-def _order(
-    lengths: FloatArray, runs: list[Run], times: FloatArray, *, next_term: float, predicted: float = 1.0
-) -> Measured:
+def _order(lengths: FloatArray, runs: list[Run], times: FloatArray, *, predicted: float) -> Measured:
     errors = np.array([np.max(np.abs(run.at(times) - _speeds(times))) for run in runs])
-    exponent, numerical, model = observed_exponent(lengths, errors, next_term=next_term)
+    exponent, numerical, model = observed_exponent(lengths, errors, next_term=1.0)
     words = ", ".join(f"{error:.3g} rad/s" for error in errors)
     return Measured(
         predicted=predicted,
@@ -312,12 +309,8 @@ def published_switches() -> Measured:
     times, modes = published().times, published().modes
     found = []
     for time, clutch, mode in switches():
-        changes = [
-            at
-            for at, (one, two) in zip(times[1:], itertools.pairwise(modes[:, clutch]), strict=True)
-            if one != two and two == mode
-        ]
-        found.append(min(changes, key=lambda at: abs(at - time), default=np.nan))
+        begins = (modes[1:, clutch] == mode) & (modes[:-1, clutch] != mode)
+        found.append(_nearest(times[1:][begins], time))
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
@@ -328,10 +321,8 @@ EXACT = 1e-7
 
 
 def draw(data: ByEngine) -> Figures:
-    return {"coupled-clutches": _draw(data)} if data else {}
-
-
-def _draw(data: ByEngine) -> Figure:
+    if not data:
+        return {}
     figure, (speeds, errors) = new_figure(nrows=2, width=9.0, height=6.4, sharex=True, height_ratios=(3, 2))
     theory = data.get("theory", {})
     if "t" in theory:
@@ -360,7 +351,7 @@ def _draw(data: ByEngine) -> Figure:
     )
     if errors.get_legend_handles_labels()[0]:
         errors.legend(loc="upper left", ncols=3, fontsize=9.0)
-    return figure
+    return {"coupled-clutches": figure}
 
 
 def _error(panel: Axes, t: np.ndarray, off: np.ndarray, label: str, colour: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from compare.studies.toolkit.rotors import Rotors
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
@@ -61,9 +63,6 @@ ALL_SLIP_UNTIL = 0.7
 LETS_GO_FROM = 0.82
 """In s, a time while the first and the second clutch stick, before the first one releases."""
 
-NUMERICAL_DAMPING = 0.8
-"""Spectral radius of generalised-α, below 1 to damp out vibrations that a jump of friction excites."""
-
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
 """Step in s and bristle stiffness in N m/rad of Exudyn's own connector. All errors double from each to the next.
 
@@ -81,21 +80,15 @@ ACCUMULATED = 10.0
 
 
 def first_load(time: float) -> float:
-    """Return the load of the first clutch in N."""
     return LOAD * max(0.0, math.cos(2.0 * math.pi * OPENS * time)) if time < OPEN_FROM else 0.0
 
 
-def second_load(time: float) -> float:
-    """Return the load of the second clutch in N."""
-    return LOAD if time >= ENGAGED_FROM[0] else 0.0
+def _engaged_from(begin: float) -> Callable[[float], float]:
+    return lambda time: LOAD if time >= begin else 0.0
 
 
-def third_load(time: float) -> float:
-    """Return the load of the third clutch in N."""
-    return LOAD if time >= ENGAGED_FROM[1] else 0.0
-
-
-LOADS = (first_load, second_load, third_load)
+LOADS = (first_load, *map(_engaged_from, ENGAGED_FROM))
+"""Loads of the clutches in N."""
 
 
 def torque(time: float) -> float:
@@ -197,54 +190,14 @@ class Run:
         return np.diff(self.speeds, axis=1)
 
 
-class _Rotors:
-    """The rotors with a speed sensor on each, and the torque on the first one."""
-
-    def __init__(self) -> None:
-        import exudyn as exu
-        import exudyn.itemInterface
-
-        items: Any = exudyn.itemInterface
-        self.container = exu.SystemContainer()  # must live as long as its model
-        self.mbs: Any = self.container.AddSystem()
-        self.nodes, self.markers, self.sensors = [], [], []
-        for inertia, speed in zip(INERTIAS, (SPEED, 0.0, 0.0, 0.0), strict=True):
-            node = self.mbs.AddNode(items.Node1D(initialVelocities=[speed]))
-            self.mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-            self.nodes.append(node)
-            self.markers.append(self.mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)))
-            of_speed = exu.OutputVariableType.Coordinates_t
-            self.sensors.append(
-                self.mbs.AddSensor(
-                    items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
-                )
-            )
-        drive = items.LoadCoordinate(
-            markerNumber=self.markers[0], load=1.0, loadUserFunction=lambda mbs, t, load: torque(t)
-        )
-        self.mbs.AddLoad(drive)
-
-    def settings(self, step: float, begin: float = 0.0, end: float = UNTIL) -> Any:
-        """Return the settings of a run with this ``step`` in s."""
-        import exudyn as exu
-
-        settings = exu.SimulationSettings()
-        settings.solution.file.write = False
-        settings.solution.sensors.writePeriod = 0.0  # every step
-        run = settings.timeIntegration
-        run.startTime, run.endTime, run.numberOfSteps, run.verboseMode = (
-            begin,
-            end,
-            round((end - begin) / step),
-            0,
-        )
-        run.generalizedAlpha.spectralRadius = NUMERICAL_DAMPING
-        return settings
-
-    def recorded(self) -> FloatArray:
-        """Return times and speeds of the last run, shape (n, 5)."""
-        data = [self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors]
-        return np.column_stack((data[0], *(of_one[:, 1] for of_one in data[1:])))
+def _rotors() -> Rotors:
+    """Return the rotors with the torque on the first one."""
+    rotors = Rotors(INERTIAS, (SPEED, 0.0, 0.0, 0.0))
+    drive = rotors.items.LoadCoordinate(
+        markerNumber=rotors.marker(rotors.nodes[0]), load=1.0, loadUserFunction=lambda mbs, t, load: torque(t)
+    )
+    rotors.mbs.AddLoad(drive)
+    return rotors
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
@@ -253,12 +206,9 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
     The run takes implicit steps of ``step`` in s, or explicit steps if there is no ``step``. It also stops at the
     times ``SHOWN``, so speeds there are not interpolated.
     """
-    import exudyn as exu
+    from exudyn_models import add_ring_friction
 
-    from exudyn_models import add_ring_friction, solve_dynamic
-    from exudyn_models.solver.solver_run import quiet
-
-    rotors = _Rotors()
+    rotors = _rotors()
     for *pair, load in zip(rotors.nodes, rotors.nodes[1:], LOADS, strict=False):
         add_ring_friction(
             rotors.mbs,
@@ -269,13 +219,13 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
             static_ratio=STATIC_RATIO,
             regularisation=epsilon,
         )
-    settings = rotors.settings(step or 1e-3, end=until)
-    settings.timeIntegration.absoluteTolerance, settings.timeIntegration.relativeTolerance = TOLERANCE, 0.0
-    solver = exu.DynamicSolverType.GeneralizedAlpha if step else exu.DynamicSolverType.DOPRI5
-    breaks = sorted(time for time in {*BREAKS, *SHOWN.tolist()} if time < until)
-    with quiet():
-        solve_dynamic(rotors.mbs, settings, solver, breaks=breaks)
-    found = rotors.recorded()
+    found = rotors.run(
+        until,
+        round(until / (step or 1e-3)),
+        solver="GeneralizedAlpha" if step else "DOPRI5",
+        tolerance=TOLERANCE,
+        breaks=sorted(time for time in {*BREAKS, *SHOWN.tolist()} if time < until),
+    )
     return Run(found[:, 0], found[:, 1:])
 
 
@@ -285,20 +235,13 @@ def with_bristles(step: float, stiffness: float) -> Run:
     The connector has no input for the load, so a function sets its torques before each step. The resulting slip is
     of second order in the step. A clutch without load is switched off, because its bristle would keep its grip.
     """
-    import exudyn as exu
-    import exudyn.itemInterface
-
-    from exudyn_models import solve_dynamic
-    from exudyn_models.solver.solver_run import quiet
-
-    items: Any = exudyn.itemInterface
-    rotors = _Rotors()
-    mbs, sliding = rotors.mbs, COEFFICIENT * RADIUS
+    rotors = _rotors()
+    mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS
     clutches = []
-    for *markers, begins in zip(rotors.markers, rotors.markers[1:], (0.0, *ENGAGED_FROM), strict=False):
+    for *pair, begins in zip(rotors.nodes, rotors.nodes[1:], (0.0, *ENGAGED_FROM), strict=False):
         slipping = [-sliding * LOAD, 0.0, 0.0]  # backward
         connector = items.ObjectConnectorCoordinateSpringDamperExt(
-            markerNumbers=markers,
+            markerNumbers=[rotors.marker(node) for node in pair],
             nodeNumber=mbs.AddNode(
                 items.NodeGenericData(initialCoordinates=slipping, numberOfDataCoordinates=3)
             ),
@@ -326,9 +269,6 @@ def with_bristles(step: float, stiffness: float) -> Run:
         if begin in at_begin:
             clutch, closed = at_begin[begin]
             mbs.SetObjectParameter(clutch, "activeConnector", closed)
-        settings = rotors.settings(step, begin, end)
-        with quiet():
-            solve_dynamic(mbs, settings, exu.DynamicSolverType.GeneralizedAlpha, updateInitialValues=True)
-        found.append(rotors.recorded())
+        found.append(rotors.run(end, round((end - begin) / step), begin=begin, solver="GeneralizedAlpha"))
     together = np.vstack(found)
     return Run(together[:, 0], together[:, 1:])

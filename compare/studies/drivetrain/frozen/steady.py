@@ -28,6 +28,7 @@ from compare.studies.toolkit.drivetrain_bench import (
     natural_frequency,
     onset_speed,
     parameters_of,
+    passenger_car,
     rest_of,
     start_disc,
     whirl_of,
@@ -131,10 +132,8 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
     return speed, 2.0 * radial(speed)[1] / slope
 
 
-# --- Steady motions of the clutch disc on the bench and of the reference's reduced disc
-#
-# Below the onset and with an offset of the shaft from the engine, the disc comes to rest in space. Above the onset
-# and without offset, it whirls on its stop.
+# --- Steady motions on the bench: below the onset and with an offset, the disc comes to rest in space; above the
+# onset and without offset, it whirls on its stop.
 
 NOTE = (
     f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
@@ -161,11 +160,11 @@ class Steady(NamedTuple):
     note=NOTE,
 )
 def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
-    motions = _resting(engine, below)
+    motions = _motions(engine, below, whirling=False)
     return _measured(
         motions,
         slice(0, 2),
-        theory.balanced_car().offset,
+        passenger_car().offset,
         components=("x", "y"),
         data={"rest": _shown(motions)},
     )
@@ -177,7 +176,7 @@ def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
     note=NOTE,
 )
 def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
-    motions = _whirling(engine, above)
+    motions = _motions(engine, above, whirling=True)
     return _measured(motions, 0, 0.0, data={"whirl": _shown(motions)})
 
 
@@ -187,7 +186,7 @@ def radius(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
     note=NOTE,
 )
 def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measured:
-    return _measured(_whirling(engine, above), 1, 0.0)
+    return _measured(_motions(engine, above, whirling=True), 1, 0.0)
 
 
 @STUDY.claim(
@@ -198,7 +197,8 @@ def frequency(engine: Engine, above: tuple[float, ...] = theory.ABOVE) -> Measur
 def slips(
     engine: Engine, below: tuple[float, ...] = theory.BELOW, above: tuple[float, ...] = theory.ABOVE
 ) -> Measured:
-    return _measured((*_resting(engine, below), *_whirling(engine, above)), 2, theory.balanced_car().offset)
+    motions = (*_motions(engine, below, whirling=False), *_motions(engine, above, whirling=True))
+    return _measured(motions, 2, passenger_car().offset)
 
 
 def _measured(
@@ -219,7 +219,12 @@ def _measured(
         at={"speed in rpm": [one.speed for one in motions]},
         components=components,
         parameters=parameters_of(
-            theory.balanced_car(), without=("offset",), offset=offset, torque=theory.TORQUE, brake=BRAKE
+            passenger_car(),
+            without=("offset",),
+            unbalance=0.0,
+            offset=offset,
+            torque=theory.TORQUE,
+            brake=BRAKE,
         ),
         data=data or {},
     )
@@ -229,53 +234,31 @@ def _shown(motions: Sequence[Steady]) -> FloatArray:
     return np.array([(one.speed, *one.found.value) for one in motions])
 
 
-@functools.lru_cache(maxsize=2)
-def _resting(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
-    """Return the states of rest at ``speeds`` in rpm, with the car's offset."""
-    car = theory.balanced_car()
-
-    def one(speed: float) -> Steady:
-        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, car.offset)
-
-        def quantities(rings: int) -> FloatArray:
-            rest = rest_of(car, bench, rings)
-            return np.array([rest.x, rest.y, bench.speed - rest.spin])
-
-        rate = -rest_of(car, bench).eigenvalues[0].real
-        found = _settled(car, bench, rate, complex(bench.offset), whirling=False)
-        return Steady(speed, found, _with_rings(quantities))
-
-    return tuple(one(speed) for speed in speeds)
+@functools.lru_cache(maxsize=4)
+def _motions(engine: Engine, speeds: tuple[float, ...], whirling: bool) -> tuple[Steady, ...]:
+    """Return the whirls at ``speeds`` in rpm without offset, or the states of rest with the car's offset."""
+    return tuple(_motion(speed, whirling) for speed in speeds)
 
 
-@functools.lru_cache(maxsize=2)
-def _whirling(engine: Engine, speeds: tuple[float, ...]) -> tuple[Steady, ...]:
-    """Return the whirls at ``speeds`` in rpm, without offset."""
-    car = theory.balanced_car()
+def _motion(speed: float, whirling: bool) -> Steady:
+    car = passenger_car()
+    bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, 0.0 if whirling else car.offset)
 
-    def one(speed: float) -> Steady:
-        bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE)
-
-        def quantities(rings: int) -> FloatArray:
+    def by_reference(rings: int) -> tuple[FloatArray, float]:
+        """Return the values and the decay rate in 1/s of the slowest mode."""
+        if whirling:
             whirl = whirl_of(car, bench, rings)
-            return np.array([whirl.radius, whirl.frequency, bench.speed - whirl.spin])
+            values = (whirl.radius, whirl.frequency, bench.speed - whirl.spin)
+            return np.array(values), -whirl.eigenvalues[1].real
+        rest = rest_of(car, bench, rings)
+        return np.array([rest.x, rest.y, bench.speed - rest.spin]), -rest.eigenvalues[0].real
 
-        rate = -whirl_of(car, bench).eigenvalues[1].real
-        found = _settled(car, bench, rate, complex(theory.START), whirling=True)
-        return Steady(speed, found, _with_rings(quantities))
-
-    return tuple(one(speed) for speed in speeds)
-
-
-def _with_rings(quantities: Callable[[int], FloatArray]) -> Measurement:
-    """Return ``quantities(rings)`` of the reference, with the change for finer rings as error."""
-    found = quantities(RINGS)
-    return Measurement(found, np.abs(found - quantities(theory.FINER)))
+    (values, rate), (finer, _) = by_reference(RINGS), by_reference(theory.FINER)
+    found = _settled(car, bench, rate, whirling=whirling)
+    return Steady(speed, found, Measurement(values, np.abs(values - finer)))
 
 
-def _settled(
-    car: Drivetrain, operation: Operation, rate: float, start: complex, *, whirling: bool
-) -> Measurement:
+def _settled(car: Drivetrain, operation: Operation, rate: float, *, whirling: bool) -> Measurement:
     """Return x, y and slip, or for a whirl radius, frequency and slip, after all transients.
 
     ``rate`` in 1/s is the decay rate of the slowest mode.
@@ -283,7 +266,7 @@ def _settled(
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
         model = operation.build(car)
-        start_disc(model, start, 0j)
+        start_disc(model, complex(theory.START if whirling else operation.offset), 0j)
         motion = model.run(theory.DECAYS / rate, sample_every=theory.SAMPLE, tolerance=tolerance)
         z, velocity = centre(motion.disc), centre(motion.disc_velocity)
         shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +20,7 @@ from compare.claims import WORKING, Data, Study
 from compare.claims.linearised_flow import ComplexArray
 from compare.studies.toolkit.drivetrain_bench import (
     EPSILON,
+    RINGS,
     RPM,
     SOURCE,
     Operation,
@@ -42,10 +43,6 @@ if TYPE_CHECKING:
 
 
 # --- Speeds, torques and loads of the car's clutch, and accuracy
-
-
-def balanced_car() -> Drivetrain:
-    return replace(passenger_car(), unbalance=0.0)
 
 
 FINER = 24
@@ -106,7 +103,7 @@ TORQUES = np.geomspace(0.2, 60.0, 32)
 """Torques of the maps in N m."""
 
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
-"""Relative surplus of the load over the load that the torque needs."""
+"""Surpluses of the map."""
 
 SURPLUS, SPEED = 0.1, 6000.0
 """Surplus in the map over speeds, and speed in rpm in the map over surpluses."""
@@ -142,16 +139,6 @@ class CarWhirl:
     friction_force: float
     torque: float
     engine_torque: float
-
-    @property
-    def place(self) -> complex:
-        """Initial position of the centre in m."""
-        return complex(self.radius)
-
-    @property
-    def velocity(self) -> complex:
-        """Initial velocity of the centre in m/s."""
-        return 1j * self.frequency * self.radius
 
 
 def whirl_under_surplus(
@@ -190,11 +177,10 @@ def _ratio_of_moment(law: Annulus, needed: float) -> float:
 
 
 def support_of(car: Drivetrain) -> Support:
-    """Return the reference's support of the clutch disc about the engine's axis."""
     return Support(car.radial_stiffness, 0.0, car.hardening, car.stop_gap, car.stop_stiffness)
 
 
-def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = 16) -> FloatArray:
+def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> FloatArray:
     """Return A of small motions (θ, ψ, x, y, φ and rates), shape (10, 10), with the centre on the x axis."""
     x, omega, law = whirl.radius, whirl.engine_speed, facings(car, rings)
     place_to_slip, rate_to_slip = np.zeros((3, 5)), np.zeros((3, 5))  # of u_x, u_y, S
@@ -236,76 +222,59 @@ def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
 
 
 def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
-    """Return six eigenvalues in 1/s, without those of the free phase and the free speed of the car.
-
-    The slowest decay comes first.
-    """
+    """Return six eigenvalues in 1/s, slowest decay first, without those of free phase and free speed of the car."""
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
     return np.asarray(values[np.lexsort((-values.imag, -values.real))])
 
 
+def modulation(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> ComplexArray:
+    """Return the eigenvalues of :func:`of_modulation` by the reference's friction."""
+    return of_modulation(state_matrix_of(car, whirl, rings), whirl.frequency)
+
+
 def whirls_of(car: Drivetrain) -> list[CarWhirl]:
-    """Return the whirls of ``WHIRLS``."""
     found = [whirl_under_surplus(car, speed * RPM, torque, surplus) for speed, torque, surplus in WHIRLS]
     return [whirl for whirl in found if whirl is not None]
 
 
 def curves(every: int = 1) -> Data:
-    """Compute the maps of modulation at one point in ``every``."""
-    return _lines_of_reference(balanced_car(), every) | _maps_of_modulation(centred_car(), every)
+    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
 
-
-def _lines_of_reference(car: Drivetrain, every: int) -> Data:
-    """Return x, y at rest, and radius and frequency of a whirl, of the reference over the speed in rpm."""
+    Over the speed in rpm: x, y at rest, and radius and frequency of a whirl. Over (torque, speed) and over
+    (torque, surplus): see :func:`whirl_growth`. The radius shows whether the disc touches the stop.
+    """
+    car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]
     fast = np.linspace(onset + 5.0, 6200.0, 25)[::every]
     rests = [rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
     circles = [whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
+    speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
     return {
         "onset": np.array(onset),
         "rest": np.array([(speed, each.x, each.y) for speed, each in zip(slow, rests, strict=True)]),
-        "whirl": np.array(
-            [(speed, each.radius, each.frequency) for speed, each in zip(fast, circles, strict=True)]
-        ),
-    }
-
-
-def _maps_of_modulation(car: Drivetrain, every: int) -> Data:
-    """Return growth rate (1/s) of the modulation and radius (m) over (torque, speed) and over (torque, surplus).
-
-    NaN if the clutch locks up because there is no whirl. The radius shows whether the disc touches the stop.
-    """
-    speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
-    return {
+        "whirl": np.array([(n, each.radius, each.frequency) for n, each in zip(fast, circles, strict=True)]),
         "speeds": speeds,
         "torques": torques,
         "surpluses": surpluses,
-        "over speed": np.array([[whirl_growth(car, n, t, SURPLUS) for n in speeds] for t in torques]),
-        "over surplus": np.array([[whirl_growth(car, SPEED, t, s) for s in surpluses] for t in torques]),
+        "over speed": np.array([[whirl_growth(centred, n, t, SURPLUS) for n in speeds] for t in torques]),
+        "over surplus": np.array([[whirl_growth(centred, SPEED, t, s) for s in surpluses] for t in torques]),
     }
 
 
 def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -> FloatArray:
-    """Return growth rate and radius of the whirl, shape (2,); NaN if there is none."""
+    """Return the growth rate in 1/s of the modulation and the radius in m of the whirl; NaN if there is none."""
     whirl = whirl_under_surplus(car, speed * RPM, torque, surplus)
     if whirl is None:
         return np.array([np.nan, np.nan])
-    slowest = of_modulation(state_matrix_of(car, whirl), whirl.frequency)[0]
-    return np.array([slowest.real, whirl.radius])
-
-
-# --- The car's drivetrain in Exudyn, in a whirl
+    return np.array([modulation(car, whirl)[0].real, whirl.radius])
 
 
 def build(
     car: Drivetrain, whirl: CarWhirl, *, deviation: float = 0.0, regularisation: float = EPSILON
 ) -> DrivetrainModel:
-    """Return the drivetrain in a whirl, with an engine and a load of constant torque.
-
-    ``deviation`` enlarges the radius by this fraction.
-    """
+    """Return the drivetrain in a whirl whose radius is larger by the fraction ``deviation``."""
     from exudyn_models import build_drivetrain
 
     model = build_drivetrain(
@@ -318,7 +287,8 @@ def build(
         vehicle_torque=lambda time, angle, speed: -whirl.torque,
         shaft_torque=whirl.torque,
     )
-    start_disc(model, (1.0 + deviation) * whirl.place, (1.0 + deviation) * whirl.velocity)
+    scale = 1.0 + deviation
+    start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
     return model
 
 

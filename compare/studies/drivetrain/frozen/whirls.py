@@ -21,7 +21,14 @@ from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.theory import STUDY, build
-from compare.studies.toolkit.drivetrain_bench import RPM, balance_of, centre, centred_car, parameters_of
+from compare.studies.toolkit.drivetrain_bench import (
+    RINGS,
+    RPM,
+    balance_of,
+    centre,
+    centred_car,
+    parameters_of,
+)
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -51,8 +58,7 @@ def linearised(engine: Engine) -> Measured:
     by_exudyn = _by_exudyn(car)
     found, expected, errors = [], [], []
     for whirl in theory.whirls_of(car):
-        predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)
-        finer = theory.of_modulation(theory.state_matrix_of(car, whirl, theory.FINER), whirl.frequency)
+        predicted, finer = (theory.modulation(car, whirl, rings) for rings in (RINGS, theory.FINER))
         found.append(matched(theory.of_modulation(by_exudyn(whirl), whirl.frequency), predicted))
         expected.append(predicted)
         errors.append(np.max(np.abs(matched(finer, predicted) - predicted)))
@@ -81,7 +87,6 @@ def linearised(engine: Engine) -> Measured:
     named={f"border at {torque:g} N m": i for i, torque in enumerate(theory.BORDER_TORQUES)},
 )
 def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Measured:
-    """Search ``between`` two speeds in rpm."""
     car = centred_car()
 
     def borders(matrix: Matrix) -> FloatArray:
@@ -131,7 +136,7 @@ def growth(engine: Engine) -> Measured:
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     matrix = theory.in_turning_axes(theory.state_matrix_of(car, whirl), whirl.frequency)
-    predicted = theory.of_modulation(theory.state_matrix_of(car, whirl), whirl.frequency)[0]
+    predicted = theory.modulation(car, whirl)[0]
     values, left = np.linalg.eig(matrix.T)
     mode = left[:, np.argmin(np.abs(values - predicted))]
 
@@ -179,7 +184,6 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
     basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
-    """Simulate up to ``until`` in s, and keep the motion for the figure."""
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
     motions = [

@@ -29,10 +29,11 @@ from compare.studies.toolkit.drivetrain_bench import (
 )
 from reference_model.systems import FloatArray
 
-# --- The run-up
-
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
+    from exudyn_models.drivetrain.model import DrivetrainMotion
+
+# --- The run-up
 
 IDLE, TOP = 800.0, 6000.0
 """Speeds in rpm."""
@@ -70,9 +71,6 @@ def transmitted(car: Drivetrain) -> float:
 
 # --- Predictions of the reference for the reduced disc at frozen speeds of the run-up
 
-if TYPE_CHECKING:
-    from exudyn_models import Drivetrain
-
 
 @functools.lru_cache(maxsize=2)
 def whirls_above_onset(car: Drivetrain) -> FloatArray:
@@ -104,10 +102,6 @@ def curves(count: int = 120) -> Data:
 
 # --- The run-up in Exudyn
 
-if TYPE_CHECKING:
-    from exudyn_models import Drivetrain
-    from exudyn_models.drivetrain.model import DrivetrainMotion
-
 
 def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion:
     """Return the run-up to ``top`` (rpm), with a feedforward load that the slip corrects."""
@@ -131,7 +125,7 @@ def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion
 # --- The order-tracked spectrum of the disc's motion, and its strongest line
 
 HOP = 2 * SAMPLES
-"""Samples from one window to the next, two turns."""
+"""Samples from one window to the next."""
 
 
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -167,9 +161,6 @@ def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     low, middle, high = (np.log(np.take_along_axis(amplitude, (top + i)[None], 0)[0]) for i in (-1, 0, 1))
     return speed, orders[top] + (orders[1] - orders[0]) * 0.5 * (low - high) / (low - 2.0 * middle + high)
 
-
-if TYPE_CHECKING:
-    from exudyn_models.drivetrain.model import DrivetrainMotion
 
 STUDY = Study.beside(
     __file__,
@@ -209,7 +200,6 @@ def _parameters() -> dict[str, float | str]:
     basis="self-check",  # the heat comes from the friction law of the model itself
 )
 def balance(engine: Engine, top: float = TOP) -> Measured:
-    """Simulate up to ``top`` in rpm, and keep the motion for the figures."""
     motions = _run_ups(engine, top)
     measured = balance_of([motion.energy for motion in motions], _parameters())
     return replace(measured, data=_shown(motions[0]))
@@ -220,7 +210,6 @@ def balance(engine: Engine, top: float = TOP) -> Measured:
     resolution=0.5 * LINES_APART,
 )
 def lines(engine: Engine, top: float = TOP) -> Measured | None:
-    """Return None if the run-up is shorter than a window of the spectrum."""
     motions = _run_ups(engine, top)
     if motions[0].engine_angle[-1] < 2.0 * math.pi * TURNS:
         return None

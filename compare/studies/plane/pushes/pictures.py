@@ -10,7 +10,6 @@ from compare.output.limit_surface import draw_limit_surface
 from compare.studies.plane.pushes.theory import (
     LEGS,
     SLIDING_FORCES,
-    Motion,
     by_series,
     contact_of,
     coulomb,
@@ -41,7 +40,7 @@ def _forces() -> Figure:
             color=GREY,
         )
         for push in by_series()[series]:
-            theory = coulomb(push, Motion.of(push)).force
+            theory = coulomb(push).force
             for force, colour in ((theory, "tab:orange"), (measured(push).force, BLACK)):
                 way = LENGTH * force
                 panel.plot(
@@ -85,7 +84,7 @@ def _errors() -> Figure:
             label=_title(series),
             linestyle=dashes,
         )
-        theory = [abs(coulomb(push, Motion.of(push)).force) for push in pushes]
+        theory = [abs(coulomb(push).force) for push in pushes]
         found = [abs(measured(push).force) for push in pushes]
         panels[1].plot(
             theory, found, "." if surface(series) == "board" else "x", markersize=4, label=_title(series)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -15,12 +15,15 @@ from compare.claims.validation import Validation
 from compare.engines import Engine
 from compare.studies.plane.pushes.reduction import Push, reduced_pushes
 from compare.studies.plane.pushes.theory import (
+    CENTRE,
     Motion,
     contact_of,
     coulomb,
     errors,
     force_error,
     median_with_error,
+    pushed_above,
+    summed,
     uncertainties,
     work_ratio,
     wrench_error,
@@ -40,16 +43,16 @@ GROUPS = {
 }
 """Series by contact and surface."""
 
-HYPOTHESES = {
+HYPOTHESES: dict[str, theory.Law] = {
     "Coulomb's law, the authors' parameters": coulomb,
-    "pusher 10 mm above the surface": theory.pushed_above(10.0),
-    "pusher 20 mm above the surface": theory.pushed_above(20.0),
-    "sliding force 10 % larger": theory.other_force(1.1),
-    "centre of mass 2 mm further along x": theory.pressure_moved_by(2.0),
-    "centre of mass 2 mm further along y": theory.pressure_moved_by(2.0j),
-    "a third of the pressure at the edges": theory.pressed_at_edges(1.0 / 3.0),
-    "friction rises with the slip speed to the power 0.1": theory.rate_dependent(0.1),
-    "friction falls with the slip speed to the power 0.1": theory.rate_dependent(-0.1),
+    "pusher 10 mm above the surface": partial(pushed_above, height=10.0),
+    "pusher 20 mm above the surface": partial(pushed_above, height=20.0),
+    "sliding force 10 % larger": partial(coulomb, factor=1.1),
+    "centre of mass 2 mm further along x": partial(coulomb, centre=CENTRE + 2.0),
+    "centre of mass 2 mm further along y": partial(coulomb, centre=CENTRE + 2.0j),
+    "a third of the pressure at the edges": partial(summed, at_edges=1.0 / 3.0),
+    "friction rises with the slip speed to the power 0.1": partial(summed, exponent=0.1),
+    "friction falls with the slip speed to the power 0.1": partial(summed, exponent=-0.1),
 }
 """Other explanations of the comparison error; sizes are assumptions, and nothing is fitted."""
 
@@ -61,7 +64,7 @@ LIMIT = 1e-9
 
 
 def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
-    return np.array([law(push, Motion.of(push)).components for push in pushes])
+    return np.array([law(push).components for push in pushes])
 
 
 @STUDY.claim(
@@ -74,7 +77,7 @@ def sums() -> Measured:
     """Compare the wrench of the reference's contact with the sum over the points."""
     pushes = reduced_pushes()
     return Measured(
-        predicted=_wrenches(pushes, theory.rate_dependent(0.0)),
+        predicted=_wrenches(pushes, summed),
         value=_wrenches(pushes, coulomb),
         error=ROUNDING * max(theory.SLIDING_FORCES.values()),
     )

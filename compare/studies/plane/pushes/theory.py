@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -111,31 +111,38 @@ def predicted(motion: Motion, contact: Points, sliding_force: float) -> Wrench:
     return Wrench(sliding_force * force, sliding_force * moment)
 
 
-Law = Callable[[Push, Motion], Wrench]
+Law = Callable[[Push], Wrench]
 
 
-def coulomb(push: Push, motion: Motion) -> Wrench:
-    """Return the wrench of Coulomb friction with the authors' parameters."""
-    return predicted(motion, contact_of(push.series), SLIDING_FORCES[surface(push.series)])
+def coulomb(
+    push: Push, *, centre: complex = CENTRE, factor: float = 1.0, divisions: int = DIVISIONS
+) -> Wrench:
+    """Return the wrench of Coulomb friction with the authors' parameters.
+
+    ``centre`` moves the centre of pressure of three feet (mm), ``factor`` multiplies the sliding force, and
+    ``divisions`` refine the patch.
+    """
+    contact = contact_of(push.series, centre, divisions)
+    return predicted(Motion.of(push), contact, factor * SLIDING_FORCES[surface(push.series)])
 
 
-def force_error(push: Push, motion: Motion, law: Law) -> float:
+def force_error(push: Push, law: Law) -> float:
     """Return the angle in degrees from the measured to the predicted force."""
-    force, theory = measured(push).force, law(push, motion).force
-    return float(np.degrees(np.angle(theory * force.conjugate())))
+    return float(np.degrees(np.angle(law(push).force * measured(push).force.conjugate())))
 
 
-def wrench_error(push: Push, motion: Motion, law: Law) -> float:
+def wrench_error(push: Push, law: Law) -> float:
     """Return the angle in degrees between the measured and the predicted wrench, moments over ``PUSHER``."""
-    found, theory = measured(push).components, law(push, motion).components
+    found, theory = measured(push).components, law(push).components
     cosine = found @ theory / np.linalg.norm(found) / np.linalg.norm(theory)
     return float(np.degrees(np.arccos(min(1.0, cosine))))
 
 
-def work_ratio(push: Push, motion: Motion, law: Law) -> float:
+def work_ratio(push: Push, law: Law) -> float:
     """Return the work of the measured wrench over that of the predicted one."""
+    motion = Motion.of(push)
     along = np.array([motion.shift.real, motion.shift.imag, motion.spin * PUSHER])
-    return float((measured(push).components @ along) / (law(push, motion).components @ along))
+    return float((measured(push).components @ along) / (law(push).components @ along))
 
 
 # --- Uncertainties of the direction of the force, as in ASME V&V 20: of the data, of the input, and numerical ones.
@@ -176,24 +183,23 @@ def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
 def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
     """Return the uncertainties of the pushes of one series."""
     shift, turn = pose_errors(pushes)
+    rounding = GIVEN_TO / np.sqrt(12.0)
     data, inputs, numerical = [], [], []
     for push in pushes:
+        base = force_error(push, coulomb)
         moved = [
             replace(push, x=push.x + shift),
             replace(push, y=push.y + shift),
             replace(push, turn=push.turn + turn),
         ]
-        base = force_error(push, Motion.of(push), coulomb)
-        effects = [_change(force_error(push, Motion.of(other), coulomb), base) for other in moved]
+        effects = [_change(force_error(other, coulomb), base) for other in moved]
         offset = np.degrees(push.noise / abs(measured(push).force))  # of the first sample
         data.append(np.hypot(np.linalg.norm(effects), offset))
-        rounding = GIVEN_TO / np.sqrt(12.0)
-        laws = [pressed_at(push, step * rounding) for step in (1.0, 1.0j)] if feet(push.series) else []
-        inputs.append(
-            float(np.linalg.norm([_change(force_error(push, Motion.of(push), law), base) for law in laws]))
-        )
-        finer = 0.0 if feet(push.series) else force_error(push, Motion.of(push), _refined) - base
-        numerical.append(abs(finer))
+        centres = [CENTRE + step * rounding for step in (1.0, 1.0j)] if feet(push.series) else []
+        laws = [partial(coulomb, centre=centre) for centre in centres]
+        inputs.append(float(np.linalg.norm([_change(force_error(push, law), base) for law in laws])))
+        finer = partial(coulomb, divisions=2 * DIVISIONS)
+        numerical.append(0.0 if feet(push.series) else abs(force_error(push, finer) - base))
     return Uncertainties(np.array(data), np.array(inputs), np.array(numerical))
 
 
@@ -201,73 +207,30 @@ def _change(angle: float, base: float) -> float:
     return (angle - base + 180.0) % 360.0 - 180.0
 
 
-def _refined(push: Push, motion: Motion) -> Wrench:
-    contact = contact_of(push.series, divisions=2 * DIVISIONS)
-    return predicted(motion, contact, SLIDING_FORCES[surface(push.series)])
-
-
 # --- Other explanations of the rest: hypotheses, not fits.
 
-Places = tuple[NDArray[np.complex128], FloatArray]
-"""Places (m) of contact points about the centre of mass, and their shares of the load."""
+
+def pushed_above(push: Push, height: float) -> Wrench:
+    """Return Coulomb's wrench with a pusher ``height`` mm above the surface, which moves the centre of pressure."""
+    return coulomb(push, centre=CENTRE + measured(push).force * height / (MASS * GRAVITY))
 
 
-def pressed_at(push: Push, offset: complex) -> Law:
-    """Return Coulomb's law with the centre of pressure away from the centre of mass by ``offset`` (mm)."""
-    contact = contact_of(push.series, CENTRE + offset)
-    return lambda push, motion: predicted(motion, contact, SLIDING_FORCES[surface(push.series)])
+def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrench:
+    """Return the wrench as a sum over contact points, with μ ∝ speed to the power ``exponent`` and the same mean μ.
 
-
-def pushed_above(height: float) -> Law:
-    """Return Coulomb's law with a pusher ``height`` mm above the surface, which moves the centre of pressure."""
-
-    def law(push: Push, motion: Motion) -> Wrench:
-        shift = measured(push).force * height / (MASS * GRAVITY)
-        return pressed_at(push, shift)(push, motion)
-
-    return law
-
-
-def other_force(factor: float) -> Law:
-    """Return Coulomb's law with another sliding force."""
-
-    def law(push: Push, motion: Motion) -> Wrench:
-        return predicted(motion, contact_of(push.series), factor * SLIDING_FORCES[surface(push.series)])
-
-    return law
-
-
-def pressure_moved_by(offset: complex) -> Law:
-    """Return Coulomb's law with the centre of pressure of three feet moved by ``offset`` (mm)."""
-    return lambda push, motion: pressed_at(push, offset)(push, motion)
-
-
-def rate_dependent(exponent: float) -> Law:
-    """Return a law with μ ∝ speed to the power ``exponent``, and the mean μ of Coulomb's law."""
-
-    def law(push: Push, motion: Motion) -> Wrench:
-        arms, shares = _places(contact_of(push.series))
-        return _sum_over(arms, shares, motion, SLIDING_FORCES[surface(push.series)], exponent)
-
-    return law
-
-
-def pressed_at_edges(share: float) -> Law:
-    """Return Coulomb's law with a ``share`` of the load on the edges of a patch; feet stay as they are."""
-
-    def law(push: Push, motion: Motion) -> Wrench:
-        arms, shares = _places(contact_of(push.series))
-        if not feet(push.series):
-            edges = _edges()
-            arms = np.concatenate([arms, edges])
-            shares = np.concatenate([(1.0 - share) * shares, np.full(len(edges), share / len(edges))])
-        return _sum_over(arms, shares, motion, SLIDING_FORCES[surface(push.series)], 0.0)
-
-    return law
-
-
-def _places(contact: Points) -> Places:
-    return np.array(contact.arms(0.0)), np.array(contact.shares)
+    The share ``at_edges`` of the load acts on the edges of a patch; feet stay as they are.
+    """
+    contact, motion = contact_of(push.series), Motion.of(push)
+    arms, shares = np.array(contact.arms(0.0)), np.array(contact.shares)
+    if at_edges > 0.0 and not feet(push.series):
+        edges = _edges()
+        arms = np.concatenate([arms, edges])
+        shares = np.concatenate([(1.0 - at_edges) * shares, np.full(len(edges), at_edges / len(edges))])
+    ways = motion.shift + 1j * motion.spin * arms
+    lengths = np.maximum(abs(ways), 1e-12)
+    strengths = shares * (lengths / (shares @ lengths)) ** exponent
+    forces = SLIDING_FORCES[surface(push.series)] * strengths * ways / lengths
+    return Wrench(complex(forces.sum()), float((arms.conjugate() * forces).imag.sum()))
 
 
 def _edges(count: int = 60) -> NDArray[np.complex128]:
@@ -279,16 +242,6 @@ def _edges(count: int = 60) -> NDArray[np.complex128]:
     return np.asarray((np.interp(along, reached, corners) - CENTRE) * MM)
 
 
-def _sum_over(
-    arms: NDArray[np.complex128], shares: FloatArray, motion: Motion, sliding_force: float, exponent: float
-) -> Wrench:
-    ways = motion.shift + 1j * motion.spin * arms
-    lengths = np.maximum(abs(ways), 1e-12)
-    strengths = shares * (lengths / (shares @ lengths)) ** exponent
-    forces = sliding_force * strengths * ways / lengths
-    return Wrench(complex(forces.sum()), float((arms.conjugate() * forces).imag.sum()))
-
-
 @cache
 def by_series() -> dict[str, tuple[Push, ...]]:
     """Return the pushes of the table by the name of their series."""
@@ -298,11 +251,9 @@ def by_series() -> dict[str, tuple[Push, ...]]:
     return found
 
 
-def errors(
-    pushes: Sequence[Push], of: Callable[[Push, Motion, Law], float], law: Law = coulomb
-) -> FloatArray:
+def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = coulomb) -> FloatArray:
     """Return the sizes of the errors of ``of`` with a law, shape (n,)."""
-    return np.abs([of(push, Motion.of(push), law) for push in pushes])
+    return np.abs([of(push, law) for push in pushes])
 
 
 def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:

@@ -1,0 +1,71 @@
+"""Rotors about one axis in Exudyn, with a sensor on each speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from reference_model.systems import FloatArray
+
+NUMERICAL_DAMPING = 0.8
+"""Spectral radius of generalised-α, below 1 to damp out vibrations that a jump of friction excites."""
+
+
+class Rotors:
+    """Rotors with inertias in kg m², initial speeds in rad/s and an initial angle of the last one in rad."""
+
+    def __init__(self, inertias: Sequence[float], speeds: Sequence[float], last_angle: float = 0.0) -> None:
+        import exudyn as exu  # deferred, because the command line must start without it
+        import exudyn.itemInterface
+
+        self.items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+        self.container = exu.SystemContainer()  # must live as long as its model
+        self.mbs: Any = self.container.AddSystem()
+        self.nodes, self.sensors = [], []
+        of_speed = exu.OutputVariableType.Coordinates_t
+        angles = [0.0] * (len(inertias) - 1) + [last_angle]
+        for inertia, speed, angle in zip(inertias, speeds, angles, strict=True):
+            node = self.mbs.AddNode(self.items.Node1D(initialCoordinates=[angle], initialVelocities=[speed]))
+            self.mbs.AddObject(self.items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+            sensor = self.items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=of_speed)
+            self.sensors.append(self.mbs.AddSensor(sensor))
+            self.nodes.append(node)
+
+    def marker(self, node: Any) -> Any:
+        """Return a new marker on the angle of a node."""
+        return self.mbs.AddMarker(self.items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+
+    def run(
+        self,
+        end: float,
+        steps: int,
+        *,
+        begin: float = 0.0,
+        solver: str = "DOPRI5",
+        tolerance: float = 1e-8,
+        breaks: Sequence[float] = (),
+    ) -> FloatArray:
+        """Return times in s and the sensor values after each step, one column each; the model keeps its state.
+
+        The run stops and continues at the ``breaks``, so the times contain them. ``steps`` have equal size, and with
+        DOPRI5 they only limit the size of its own steps, which have a local error of ``tolerance``.
+        """
+        import exudyn as exu
+
+        from exudyn_models import solve_dynamic
+        from exudyn_models.solver.solver_run import quiet
+
+        settings = exu.SimulationSettings()
+        settings.solution.file.write = False
+        settings.solution.sensors.writePeriod = 0.0  # every step
+        options = settings.timeIntegration
+        options.startTime, options.endTime, options.numberOfSteps, options.verboseMode = begin, end, steps, 0
+        options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
+        options.generalizedAlpha.spectralRadius = NUMERICAL_DAMPING
+        kind = getattr(exu.DynamicSolverType, solver)
+        with quiet():
+            solve_dynamic(self.mbs, settings, kind, updateInitialValues=True, breaks=breaks)
+        stored = [self.mbs.GetSensorStoredData(sensor) for sensor in self.sensors]
+        return np.column_stack((stored[0][:, 0], *(values[:, 1:] for values in stored)))
