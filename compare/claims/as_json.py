@@ -70,7 +70,7 @@ def _value(kind: Any, content: Any) -> Any:
     if get_origin(kind) is tuple:
         return tuple(_value(get_args(kind)[0], item) for item in content)
     if get_origin(kind) is np.ndarray:
-        return numbers_from_json(content)
+        return np.array(content, dtype=float)
     return float(content) if kind is float else content
 
 
@@ -78,11 +78,6 @@ def _dataclasses(kind: Any) -> dict[str, type[Any]]:
     """Return the dataclasses in the union ``kind`` by name; empty if it is not a union."""
     several = get_args(kind) if get_origin(kind) is UnionType else ()
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
-
-
-def numbers_from_json(content: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """Return the array from the output of ``as_json``."""
-    return np.array(content, dtype=float)
 
 
 def claim_as_json(claim: Claim) -> dict[str, Any]:
@@ -116,27 +111,8 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 
 def claim_from_json(content: dict[str, Any]) -> Claim:
     """Return the claim from the output of ``claim_as_json``."""
-    return Claim(
-        content["sentence"],
-        equation=content["equation"],
-        kind=content["kind"],
-        engine=content["engine"],
-        predicted=numbers_from_json(content["predicted"]),
-        measured=numbers_from_json(content["measured"]),
-        budget=ErrorBudget(
-            numbers_from_json(content["numerical_error"]),
-            model=content["model_error"],
-            resolution=float(content["resolution"]),
-        ),
-        parameters=content["parameters"],
-        source=content["source"],
-        unit=content["unit"],
-        note=content["note"],
-        basis=content["basis"],
-        implied_by=content["implied_by"],
-        answers=content["answers"],
-        named=content["named"],
-        identity=content["id"],
-        size=None if content["size"] is None else numbers_from_json(content["size"]),
-        axes=content["axes"],
+    alike = {field.name: content[field.name] for field in fields(Claim) if field.name in content}
+    budget = ErrorBudget(
+        content["numerical_error"], model=content["model_error"], resolution=float(content["resolution"])
     )
+    return Claim(**alike, budget=budget, identity=content["id"])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from urllib.parse import quote
 
-from compare.claims.claim import GRADES, Claim, Evidence, Verdict
+from compare.claims.claim import GRADES, Claim, Verdict
 from compare.claims.study import Recorded
 from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, State
 from compare.report.numbers import error_text
@@ -94,7 +94,7 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
         grade = next((one.value for one in reversed(GRADES) if grades[one]), ROUGH)
     else:
         grade = OPEN
-    independent = matrix.of_evidence(INDEPENDENT, engine)
+    independent = matrix.of_evidence("independent", engine)
     agreeing = f"{independent[State.AGREES]} of {sum(independent.values())} checks against independent evidence agree"
     gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
     rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
@@ -110,9 +110,6 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
         cells = recorded.cells(best)
     version = run.versions.get(engine, "")
     return Glance(engine, version, grade, _joined(sentences), where, why, cells)
-
-
-INDEPENDENT: Evidence = "independent"
 
 
 def _verb(state: State, count: int) -> str:

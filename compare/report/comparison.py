@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -63,9 +63,7 @@ def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Ch
     """
     found = [*_of_runs(old, new), *_of_claims(old, new)]
     order = list(Kind)
-    marked = [
-        Change(one.kind, one.claim, one.engine, one.words, (one.claim, one.engine) in known) for one in found
-    ]
+    marked = [replace(one, known=(one.claim, one.engine) in known) for one in found]
     return tuple(sorted(marked, key=lambda one: order.index(one.kind)))
 
 
@@ -76,12 +74,8 @@ def failures(results: Results) -> dict[Key, str]:
         for claim in _claims(results)
         if claim["verdict"] == State.DIFFERS.value
     }
-    return differ | {
-        (study["name"], engine): unit["state"]
-        for study in results["studies"]
-        for engine, unit in study["units"].items()
-        if unit["state"] == State.FAILED.value
-    }
+    failed = State.FAILED.value
+    return differ | {key: failed for key, unit in _units(results).items() if unit["state"] == failed}
 
 
 def without_verdict(results: Results) -> tuple[str, ...]:

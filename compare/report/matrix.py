@@ -12,6 +12,7 @@ from typing import Literal
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
 from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
+from compare.claims.validation import Validation
 from compare.engines import repeated_by, shares_code
 from compare.report.numbers import deciding, in_short
 from compare.run.provenance import ROOT
@@ -88,7 +89,8 @@ class Cell:
     @property
     def number(self) -> str:
         """Number next to the verdict, see ``compare.report.numbers.in_short``; "" without claims."""
-        return in_short(deciding(self._decisive)) if self.claims else ""
+        worst = [claim for claim in self.claims if state_of(claim) is self.state]
+        return in_short(deciding(worst)) if worst else ""
 
     @property
     def grade(self) -> Grade | None:
@@ -102,10 +104,6 @@ class Cell:
     def symbol(self) -> str:
         """Mark that is recognisable without colour."""
         return GRADE_SYMBOLS[self.grade] if self.grade is not None else self.state.symbol
-
-    @property
-    def _decisive(self) -> list[Claim]:
-        return [claim for claim in self.claims if state_of(claim) is self.state]
 
 
 @dataclass(frozen=True)
@@ -188,6 +186,7 @@ class Matrix:
     studies: tuple[Study, ...]
     rows: tuple[Row, ...]
     recorded: tuple[RecordedMatrix, ...] = ()
+    validations: tuple[tuple[Study, Validation], ...] = ()
 
     def of(self, study: Study) -> Matrix:
         """Return the rows of one study."""
@@ -254,7 +253,8 @@ def matrix(run: Run) -> Matrix:
         RecordedMatrix(study, settings) for study in run.studies if (settings := study.recorded())
     )
     columns = tuple(column for column in (THEORY, *run.engines) if column in used)
-    return Matrix(columns, run.studies, rows, recorded)
+    validations = tuple((study, one) for study in run.studies for one in study.validations())
+    return Matrix(columns, run.studies, rows, recorded, validations)
 
 
 def _rows(run: Run, study: Study) -> list[Row]:
@@ -277,7 +277,10 @@ def _rows(run: Run, study: Study) -> list[Row]:
                 cells[column] = gaps[column]
         identity = _identity(study, next(iter(found.values()))[0], rows)
         rows.append(Row(study, identity, sentence, equation, cells))
-    rows = [_with_evidence(row, rows, study) for row in rows]
+    rows = [
+        replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
+        for row in rows
+    ]
     # keep gaps that no row shows because no column made a claim
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
@@ -296,12 +299,8 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
     return f"{name}~{same + 1}" if same else name
 
 
-def _with_evidence(row: Row, rows: list[Row], study: Study) -> Row:
-    """Return ``row`` with the kind of evidence of each verdict; another of ``rows`` may imply a verdict."""
-    return replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
-
-
 def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
+    """Return a cell of ``row`` with its kind of evidence; another of ``rows`` may imply its verdict."""
     cell = row.cells[column]
     if not cell.claims:
         return cell
@@ -309,18 +308,10 @@ def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) ->
     if engine and not study.contact and _agrees(row.cells.get(engine)):
         return replace(cell, evidence="implied", implied_by=engine)
     sentence = cell.claims[0].implied_by
-    by = (
-        next((each.cells.get(column) for each in rows if each.sentence == sentence), None)
-        if sentence
-        else None
-    )
-    # A self-check cannot imply independent evidence.
-    if (
-        by is not None
-        and _agrees(by)
-        and (own != "independent" or evidence_of(by.claims[0]) == "independent")
-    ):
-        return replace(cell, evidence="implied", implied_by=sentence)
+    for by in (each.cells.get(column) for each in rows if each.sentence == sentence):
+        # A self-check cannot imply independent evidence.
+        if by and _agrees(by) and (own != "independent" or evidence_of(by.claims[0]) == "independent"):
+            return replace(cell, evidence="implied", implied_by=sentence)
     return replace(cell, evidence=own)
 
 

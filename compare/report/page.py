@@ -6,8 +6,6 @@ import functools
 import shlex
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Any
 from urllib.parse import quote
 
@@ -19,7 +17,7 @@ from compare.claims.errata import TEXT
 from compare.claims.study import Study
 from compare.report import quotes
 from compare.report.at_a_glance import cases, contrast, glances
-from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Cell, Matrix, Row, State, state_of
+from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Matrix, Row, State, state_of
 from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
 from compare.report.results_json import erratum_id
 from compare.run.runner import Run
@@ -27,29 +25,12 @@ from compare.run.store import Drawing
 from compare.run.workers import Failure
 from reference_model.systems import UNITS
 
-
-@dataclass(frozen=True)
-class Picture:
-    """A figure or an animation, by its path in the report's folder."""
-
-    name: str
-    path: str
-    caption: str
-    moves: bool = False
-
-    @property
-    def still(self) -> str:
-        """Path of the figure, or of the first frame of the animation."""
-        return str(PurePosixPath(self.path).with_suffix(".png")) if self.moves else self.path
-
-
 HERO = "drivetrain-picture"
 """Figure on the first screen, if it was drawn."""
 
 
 def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
     """Return the HTML of the report; ``paths`` are the claims' tables by identity."""
-    hero_study, hero = _hero(run)
     return (
         environment()
         .get_template("index.html.j2")
@@ -69,10 +50,8 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             glances=(found := glances(run, matrix)),
             contrast=contrast(found),
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
-            deviation=_largest_difference,
-            validations=[(study, one) for study in matrix.studies for one in study.validations()],
-            hero=hero,
-            hero_study=hero_study,
+            deviation=lambda cell: error_text(max(float(claim.difference.max()) for claim in cell.claims), 1),
+            hero=_hero(run),
             filters=_filters(matrix),
             erratum_id=erratum_id,
             claim_commands=functools.partial(_claim_commands, run.seed),
@@ -103,7 +82,11 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     result.filters.update(
-        number=_number, value=_value, answers=_answers, paragraphs=_paragraphs, urlpath=quote
+        number=lambda value: _data(value, error_text(value)),
+        value=lambda value, uncertainty: _data(value, value_text(value, uncertainty)),
+        answers=lambda value: _data(value, answers_text(value)),
+        paragraphs=lambda text: [one.strip() for one in text.split("\n\n") if one.strip()],
+        urlpath=quote,
     )
     return result
 
@@ -205,12 +188,8 @@ def _shared_parameters(claims: tuple[Claim, ...]) -> dict[str, Any]:
     return {
         name: value
         for name, value in first.items()
-        if all(name in claim.parameters and _same(claim.parameters[name], value) for claim in claims)
+        if all(repr(claim.parameters.get(name)) == repr(value) for claim in claims)  # NaN equals NaN
     }
-
-
-def _same(a: Any, b: Any) -> bool:
-    return repr(a) == repr(b)  # arrays and NaN too
 
 
 def _by_engine(row: Row, attribute: str) -> list[str]:
@@ -226,14 +205,11 @@ def _by_engine(row: Row, attribute: str) -> list[str]:
 
 
 def _parameters(parameters: Mapping[str, Any]) -> str:
-    said = (
-        f"{name} = {_parameter(value)} {UNITS.get(name, '')}".rstrip() for name, value in parameters.items()
-    )
-    return ", ".join(said)
-
-
-def _parameter(value: Any) -> str:
-    return trimmed(float(value)) if isinstance(value, (int, float)) else str(value)
+    said = {
+        name: trimmed(float(value)) if isinstance(value, int | float) else value
+        for name, value in parameters.items()
+    }
+    return ", ".join(f"{name} = {text} {UNITS.get(name, '')}".rstrip() for name, text in said.items())
 
 
 def _is_answered(study: Study, own: Matrix) -> bool:
@@ -276,34 +252,20 @@ def _origin(quote: quotes.Quote) -> str:
     return f"{error}{quote.claim.engine}: {quote.claim.sentence}"
 
 
-def _pictures(run: Run, study: Study) -> list[Picture]:
+def _pictures(run: Run, study: Study) -> list[tuple[str, str]]:
+    """Return name and suffix of the study's pictures in the order of their captions; others come last."""
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
-    figures = [Picture(name, f"figures/{name}.svg", study.figures.get(name, "")) for name in drawing.figures]
-    animations = [
-        Picture(name, f"figures/{name}.gif", study.figures.get(name, ""), moves=True)
-        for name in drawing.animations
-    ]
-    # in the order of the captions; pictures without a caption come last
+    found = [(name, "svg") for name in drawing.figures] + [(name, "gif") for name in drawing.animations]
     order = list(study.figures)
-    return sorted(
-        figures + animations,
-        key=lambda picture: order.index(picture.name) if picture.name in order else len(order),
-    )
+    return sorted(found, key=lambda one: order.index(one[0]) if one[0] in order else len(order))
 
 
-def _hero(run: Run) -> tuple[Study | None, Picture | None]:
-    """Return the picture of the first screen and its study; None if it was not drawn."""
-    for study in run.studies:
-        for picture in _pictures(run, study):
-            if picture.name == HERO:
-                return study, picture
-    return None, None
-
-
-def _largest_difference(cell: Cell) -> str:
-    return error_text(max(float(claim.difference.max()) for claim in cell.claims), 1)
+def _hero(run: Run) -> tuple[Study, str, str] | None:
+    """Return study, name and suffix of the picture of the first screen; None if it was not drawn."""
+    pictures = ((study, *picture) for study in run.studies for picture in _pictures(run, study))
+    return next((picture for picture in pictures if picture[1] == HERO), None)
 
 
 def _filters(matrix: Matrix) -> dict[str, list[str]]:
@@ -341,23 +303,6 @@ def command(what: str, engine: str, seed: int | None = None) -> str:
     return f"{text} --engine {shlex.quote(engine)}" + (f" --seed {seed}" if seed is not None else "")
 
 
-def _number(value: float) -> Markup:
-    """Return an error with two digits, and its exact value as data."""
-    return _data(value, error_text(value))
-
-
-def _value(value: float, uncertainty: float) -> Markup:
-    """Return a result with its significant digits, and its exact value as data."""
-    return _data(value, value_text(value, uncertainty))
-
-
-def _answers(value: float) -> Markup:
-    return _data(value, answers_text(value))
-
-
 def _data(value: float, text: str) -> Markup:
+    """Return a number as printed, with its exact value as data."""
     return Markup('<data value="{}">{}</data>').format(repr(value), text)
-
-
-def _paragraphs(text: str) -> list[str]:
-    return [paragraph.strip() for paragraph in text.split("\n\n") if paragraph.strip()]

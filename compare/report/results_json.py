@@ -240,11 +240,7 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
             for recorded in matrix.recorded
             for setting in recorded.settings
         ],
-        "validations": [
-            {"study": study.name} | asdict(validation)
-            for study in matrix.studies
-            for validation in study.validations()
-        ],
+        "validations": [{"study": study.name} | asdict(one) for study, one in matrix.validations],
         "errata": [
             {
                 "id": erratum_id(erratum),

@@ -4,6 +4,7 @@ import json
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -12,11 +13,13 @@ from fake_studies import GOOD, claim, fake, straight
 from compare.claims.claim import BASES, THEORY, Verdict
 from compare.claims.study import Findings
 from compare.engines import Engine, engines, exudyn, exudyn_native, reference
-from compare.report.matrix import State, evidence_of
+from compare.report.matrix import State, evidence_of, matrix
 from compare.report.page import counted, summary
 from compare.report.write import write_report
 from compare.run.runner import Run, run
 from compare.studies import STUDIES, studies
+
+pytestmark = pytest.mark.usefixtures("all_in_this_process")
 
 
 @pytest.mark.parametrize(
@@ -53,12 +56,7 @@ def measured(engine, rests=0.0, basis="independent"):
     return Findings(made)
 
 
-def measured_wrongly(engine):
-    return measured(engine, rests=1.0)
-
-
-def measured_with_its_own_law(engine):
-    return measured(engine, basis="reference")
+measured_with_its_own_law = partial(measured, basis="reference")
 
 
 def study_of(measure, **more):
@@ -66,19 +64,14 @@ def study_of(measure, **more):
 
 
 def kinds(folder, study, *of):
-    result = run((study,), of or (GOOD,), folder=folder / "data")
-    rows = write_report(result, folder).rows
+    rows = matrix(run((study,), of, folder=folder)).rows
     return {row.sentence: {name: cell.evidence for name, cell in row.cells.items()} for row in rows}
 
 
-def test_a_claim_implied_by_an_agreeing_claim_adds_no_evidence(tmp_path):
-    found = kinds(tmp_path, study_of(measured))
-    assert [each["good"] for each in found.values()] == ["independent", "implied", "independent"]
-
-
-def test_a_claim_implied_by_a_differing_claim_is_independent(tmp_path):
-    found = kinds(tmp_path, study_of(measured_wrongly))
-    assert [each["good"] for each in found.values()] == ["independent"] * 3
+@pytest.mark.parametrize(("rests", "evidence"), [(0.0, "implied"), (1.0, "independent")])
+def test_a_claim_implied_by_an_agreeing_claim_adds_no_evidence(rests, evidence, tmp_path):
+    found = kinds(tmp_path, study_of(partial(measured, rests=rests)), GOOD)
+    assert [each["good"] for each in found.values()] == ["independent", evidence, "independent"]
 
 
 def test_a_self_check_does_not_imply_independent_evidence(tmp_path):
@@ -153,13 +146,14 @@ def test_the_contact_alone_is_measured_by_radius_and_frequency_of_the_whirl():
 
 
 @pytest.fixture(scope="module")
-def reported(tmp_path_factory):
+def reported(tmp_path_factory, all_in_this_process):
     """Return matrix and folder of a report on the reference and Exudyn, with all kinds of evidence."""
     folder = tmp_path_factory.mktemp("evidence")
     study = study_of(measured_with_its_own_law, provided={"theory": theory})
     native_too = replace(exudyn_native, function=straight)
-    matrix = write_report(run((study,), (reference, exudyn, native_too), folder=folder / "data"), folder)
-    return matrix, folder
+    return write_report(
+        run((study,), (reference, exudyn, native_too), folder=folder / "data"), folder
+    ), folder
 
 
 def theory():
@@ -167,17 +161,15 @@ def theory():
 
 
 def test_the_first_line_counts_independent_evidence_first(reported):
-    matrix, folder = reported
+    found, folder = reported
     line = "4 checks against independent evidence and 3 others agree, 0 differ, 0 inconclusive"
-    assert summary(matrix) == line
-    assert counted(matrix) == (
+    assert summary(found) == line
+    assert counted(found) == (
         "4 claims, 7 checks (each claim in every engine of its study): 4 against independent evidence, "
         "1 self-checks, 1 of algebra and 1 implied by others."
     )
     page = (folder / "index.html").read_text(encoding="utf-8")
-    assert (
-        f'<p class="totals" id="totals"><strong>{line}.</strong> <span>{counted(matrix)}</span></p>' in page
-    )
+    assert f'<p class="totals" id="totals"><strong>{line}.</strong> <span>{counted(found)}</span></p>' in page
     assert f"<title>Friction discs: {line}</title>" in page
 
 
@@ -193,7 +185,7 @@ def test_the_page_explains_each_kind_of_evidence_and_links_to_the_implying_claim
 
 
 def test_machine_readable_results_contain_the_kind_of_evidence(reported):
-    matrix, folder = reported
+    _, folder = reported
     results = json.loads((folder / "results.json").read_text(encoding="utf-8"))
     assert {kind: counts["agrees"] for kind, counts in results["evidence"].items()} == {
         "independent": 4,
@@ -216,10 +208,8 @@ def test_machine_readable_results_contain_the_kind_of_evidence(reported):
     said = {"kind": "formula", "evidence": "implied", "implied by": RESTS}
     assert cases["rests.exudyn", CIRCLE].items() >= said.items()
     assert cases["rests.theory", "The forms are one"]["evidence"] == "algebra"
-    assert sum(matrix.of_evidence("independent").values()) == 4
 
 
-@pytest.mark.usefixtures("in_this_process")
 def test_matrix_and_table_show_the_same_number(tmp_path):
     """The claim's smallest budget is much smaller than its largest."""
 
@@ -229,8 +219,8 @@ def test_matrix_and_table_show_the_same_number(tmp_path):
             (claim("Three numbers", engine.name, np.zeros(3), differences, allowed, resolution=1.0),)
         )
 
-    matrix = write_report(run((study_of(budgets),), (GOOD,), folder=tmp_path / "data"), tmp_path)
-    cell = matrix.rows[0].cells["good"]
+    written = write_report(run((study_of(budgets),), (GOOD,), folder=tmp_path / "data"), tmp_path)
+    cell = written.rows[0].cells["good"]
     assert (cell.state, cell.number) == (State.AGREES, "±\N{NO-BREAK SPACE}1.0×10⁻⁵ m")
     page = (tmp_path / "index.html").read_text(encoding="utf-8")
     assert page.count(f'<small class="within">{cell.number}</small>') == 2
