@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 import scipy.linalg
+from scipy.optimize import minimize
 
 from exudyn_models.forces.axial_pairs import Mode, spanned
 from exudyn_models.solver.stick.sticking_contacts import (
@@ -41,12 +42,11 @@ class LockedContacts:
     def share_directions(self) -> None:
         """Let each contact in the plane slip only in directions that joints and contacts locked before it allow."""
         locked: list[StickingContact] = []
+        on_axis = [contact for contact in self._contacts if contact not in self._planar]
+        by_joints = _null_space(self._held_rows([one for one in on_axis if one.mode == Mode.LOCKED]))
         for contact in self._contacts:
             if isinstance(contact, PlanarContact):
-                held = self._held_rows(locked)
-                # SciPy 1.12 fails for a matrix without rows
-                free = scipy.linalg.null_space(held) if held.size else np.eye(held.shape[1])
-                contact.allow(self._mbs, free)
+                contact.allow(self._mbs, by_joints, _null_space(self._held_rows(locked)))
                 contact.enter(self._mbs, contact.mode)
             if contact.mode == Mode.LOCKED:
                 locked.append(contact)
@@ -67,14 +67,48 @@ class LockedContacts:
         wanted = np.concatenate([np.zeros(len(held)), slip[resisted]])
         return np.asarray(weights * np.linalg.lstsq(rows, wanted, rcond=None)[0])
 
-    def support(self, overloaded: StickingContact) -> bool:
-        """Let idle contacts in the plane resist the motion that would follow; return whether that is new."""
-        idle = [contact for contact in self._planar if contact.stick.idle]
-        if not idle or not isinstance(overloaded, PlanarContact):
+    def balance(self, t: float) -> bool:
+        """Distribute the load at the time t (s) over the contacts in the plane that rest on the same bodies.
+
+        The largest share of its capacity that a contact holds becomes as small as possible, so the contacts cannot
+        hold the load if one is still overloaded. Return whether the bodies leave the distribution undetermined.
+        """
+        mbs = self._mbs
+        resting = [contact for contact in self._planar if contact.planar.rests and contact.holding(t) > 0.0]
+        others = [
+            contact for contact in self._contacts if contact.mode == Mode.LOCKED and contact not in resting
+        ]
+        if len(resting) < 2:
             return False
-        velocities = self._velocities_of(overloaded, overloaded.planar.direction)
-        slips = [contact.slip_rows(self._mbs) @ velocities for contact in idle]
-        return sum(contact.resist(slip) for contact, slip in zip(idle, slips, strict=True)) > 0
+        capacities = [contact.holding(t) for contact in resting]
+        sizes = np.array([[1.0, 1.0, contact.planar.mean_radius] for contact in resting])
+        sizes = (sizes * np.array(capacities)[:, None]).ravel()
+        slips = np.vstack([contact.slip_rows(mbs) for contact in resting])
+        on_bodies = _null_space(self._held_rows(others)).T @ (slips.T * sizes)
+        undetermined = sizes[:, None] * _null_space(on_bodies)
+        undetermined = undetermined[:, np.linalg.norm(undetermined, axis=0) > 0.0]  # not the moments of pins
+        if not undetermined.size:
+            return False
+        present = np.concatenate([contact.planar.held_wrench(mbs) for contact in resting])
+
+        def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """Return the share that each contact holds, and its derivatives by x."""
+            found = [
+                contact.planar.load_share(wrench, capacity)
+                for contact, wrench, capacity in zip(
+                    resting, (present + undetermined @ x).reshape(-1, 3), capacities, strict=True
+                )
+            ]
+            gradients = [
+                -slip / capacity @ undetermined[3 * i : 3 * i + 3]
+                for i, ((_, slip), capacity) in enumerate(zip(found, capacities, strict=True))
+            ]
+            return np.array([share for share, _ in found]), np.array(gradients)
+
+        moved = undetermined @ least_maximum(shares, undetermined.shape[1])
+        for contact, change in zip(resting, moved.reshape(-1, 3), strict=True):
+            contact.planar.taken_over = contact.planar.taken_over + change
+        return True
 
     def _mobilities(self) -> FloatArray:
         """Return the inverse square roots of the diagonal of the mass matrix, or the largest one without mass."""
@@ -106,3 +140,34 @@ class LockedContacts:
         places = [data.GetObjectLTGAE(lock)[0] for contact in locked for lock in contact.active_locks()]
         forces[places] += change[size + len(self._joints) :]
         data.SetAECoordinates(forces)
+
+
+def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:
+    """Return the x, shape (size,), at which the largest of convex ``functions`` is smallest.
+
+    They return their values, shape (n,), and their derivatives by x, shape (n, size).
+    """
+
+    def above(z: FloatArray) -> FloatArray:
+        return z[0] - functions(z[1:])[0]
+
+    def slopes(z: FloatArray) -> FloatArray:
+        gradients = functions(z[1:])[1]
+        return np.hstack((np.ones((len(gradients), 1)), -gradients))
+
+    start = np.zeros(size)
+    found = minimize(
+        lambda z: z[0],
+        [np.max(functions(start)[0]), *start],
+        jac=lambda z: np.eye(size + 1)[0],
+        constraints={"type": "ineq", "fun": above, "jac": slopes},
+        method="SLSQP",
+        options={"ftol": 1e-13, "maxiter": 200},
+    )
+    return np.asarray(found.x[1:])
+
+
+def _null_space(rows: FloatArray) -> FloatArray:
+    """Return a basis of the vectors that ``rows``, shape (m, n), map to zero, shape (n, k)."""
+    # SciPy 1.12 fails for a matrix without rows
+    return scipy.linalg.null_space(rows) if rows.size else np.eye(rows.shape[1])

@@ -64,12 +64,11 @@ class ModeChoice:
         self._locked = LockedContacts(mbs, t, contacts)
 
     def survey(self, t: float) -> None:
-        """Find the directions of slip that joints and locks hold at the time t (s) and the initial values.
-
-        This changes the current constraint forces.
-        """
+        """Find the directions of slip that joints and locks hold at the time t (s) and the initial values."""
         if self._planar:  # on one axis the directions of slip stay
+            forces = np.array(self._mbs.systemData.GetAECoordinates())
             self._locked = LockedContacts(self._mbs, t, self._contacts)
+            self._mbs.systemData.SetAECoordinates(forces)
 
     def begin(self) -> None:
         """Remove the slip of contacts that are locked at the start."""
@@ -77,11 +76,20 @@ class ModeChoice:
             if contact.mode == Mode.LOCKED:
                 self._locked.set_slip(contact, np.zeros(3))
 
-    def leave(self, contact: StickingContact, mode: Mode) -> None:
-        """Let a contact enter the mode that follows, unless idle contacts can take its load."""
-        was_locked = contact.mode == Mode.LOCKED and mode != Mode.OPEN
-        if not (was_locked and self._locked.support(contact)):
-            self.enter(contact, mode)
+    def margins(self, t: float) -> list[float]:
+        """Return the margins of all contacts at the time t (s), after sharing loads that would end a rest."""
+        margins = [contact.margin(self._mbs, t) for contact in self._contacts]
+        if min(margins) < 0.0 and self._locked.balance(t):
+            margins = [contact.margin(self._mbs, t) for contact in self._contacts]
+        return margins
+
+    def leave(self, t: float, contact: StickingContact, mode: Mode) -> None:
+        """Let a contact enter the mode that follows at t (s); of several that share a load, the most loaded one."""
+        if isinstance(contact, PlanarContact) and contact.planar.rests and mode != Mode.OPEN:
+            locked = [one for one in self._planar if one.mode == Mode.LOCKED]
+            contact = max(locked, key=lambda one: one.overload(self._mbs, t))
+            mode = contact.driven(self._mbs)
+        self.enter(contact, mode)
 
     def settle(self, t: float) -> None:
         """Choose modes that let all contacts obey Coulomb's law from the time t (s) on."""
@@ -93,9 +101,11 @@ class ModeChoice:
             self._locked.share_directions()
             for planar in self._planar:
                 planar.stick.idle = planar.stick.slides and self._locked.is_held(planar)
+                if not planar.planar.rests:
+                    planar.planar.taken_over = np.zeros(3)
             settled, chosen = self._examined()
             if chosen is not None:
-                self.leave(*chosen)
+                self.leave(t, *chosen)
             elif settled:
                 for contact in self._contacts:
                     contact.stick.idle = contact.stick.slides and self._locked.is_held(contact)
@@ -113,6 +123,7 @@ class ModeChoice:
         slip = np.zeros(3)
         if released:
             contact.enter(self._mbs, Mode.OPEN)
+            self._locked.share_directions()
             free = self._free_motion(contact)
             shortest = contact.rest_share * self._step
             speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
@@ -163,13 +174,18 @@ class ModeChoice:
         for contact in self._contacts:
             if contact.opens_or_closes(contact.holding(t)):
                 return contact, contact.following(mbs, t)
-        most = max(self._contacts, key=lambda contact: contact.overload(mbs, t))
+        if self._most_loaded(t).overload(mbs, t) > 1.0 + ROUNDING:
+            self._locked.balance(t)
+        most = self._most_loaded(t)
         if most.overload(mbs, t) > 1.0 + ROUNDING:
             return most, most.driven(mbs)
         for contact in self._contacts:
             if contact.reverses(mbs, contact.rest_share * self._step) and not self._locked.is_held(contact):
                 return contact, Mode.LOCKED
         return None
+
+    def _most_loaded(self, t: float) -> StickingContact:
+        return max(self._contacts, key=lambda contact: contact.overload(self._mbs, t))
 
     def _start_with_forces(self, t: float) -> bool:
         """Make accelerations and constraint forces initial values; return whether the loads agree with them.

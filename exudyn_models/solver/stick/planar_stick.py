@@ -49,7 +49,9 @@ class PlanarStick(AxialStick):
     on_axis : bool
         Whether joints hold both bodies on one axis, so that it is an ``AxialStick``.
     basis : array of shape (3, k)
-        Directions of slip (m/s, m/s, rad/s) that joints and other locked contacts allow.
+        Directions of slip (m/s, m/s, rad/s) that the locks of this contact hold.
+    allowed : array of shape (3, k)
+        Directions of slip that the joints of the model allow; other locked contacts may hold some of them.
     direction : array of shape (3,)
         Slip into which the load has released the contact, scaled to P = 1 m/s and normal to the limit surface.
 
@@ -58,7 +60,13 @@ class PlanarStick(AxialStick):
     sliding: tuple[Callable[..., Any], ...] = ()
     on_axis: bool = True
     basis: FloatArray = field(default_factory=lambda: SPIN)
+    allowed: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
+    taken_over: FloatArray = field(default_factory=lambda: np.zeros(3))
+    """Force (N) and moment (N m) on the disc that the contact takes over from others that hold the same bodies.
+
+    Their sum over all contacts does not move the bodies.
+    """
     frozen: bool = False
     """True in the last step before the contact rests: friction keeps its value from the start of the step."""
     predicts: bool = False
@@ -70,17 +78,22 @@ class PlanarStick(AxialStick):
     def __post_init__(self) -> None:
         self.set_basis(self.basis)
 
-    def allow(self, slips: FloatArray) -> None:
-        """Set the basis to the span of possible ``slips``, shape (3, n); a pin does not resist spin."""
+    def span(self, slips: FloatArray) -> FloatArray:
+        """Return a basis of possible ``slips``, shape (3, n); a pin does not resist spin."""
         radius = self.mean_radius
         axes, sizes, _ = np.linalg.svd(slips * np.array([1.0, 1.0, radius])[:, None])
         count = np.count_nonzero(sizes > NEGLIGIBLE)
-        self.set_basis(axes[:, :count] / np.array([1.0, 1.0, radius or 1.0])[:, None])
+        return np.asarray(axes[:, :count] / np.array([1.0, 1.0, radius or 1.0])[:, None])
 
     def set_basis(self, basis: FloatArray) -> None:
         """Lock the slip in the directions of ``basis``, shape (3, k), from now on."""
         self.basis, self._to_basis = basis, np.linalg.pinv(basis)
         self._evaluated: tuple[list[float], FloatArray] = [], np.empty((3, 0))
+
+    @property
+    def rests(self) -> bool:
+        """True if the contact or others on the same bodies hold its slip."""
+        return self.idle or self.mode == Mode.LOCKED
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradients of the locked slips, shape (k, n), at ``coordinates`` with reference values."""
@@ -103,17 +116,19 @@ class PlanarStick(AxialStick):
         return float(-np.array(unit_friction(slip, self.factors.geometry)) @ slip)
 
     def held_wrench(self, mbs: Any) -> FloatArray:
-        """Return force (N) and moment (N m) of the constraints on the disc, in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the disc of a contact at rest, in the master's axes, shape (3,)."""
+        if self.mode != Mode.LOCKED:
+            return self.taken_over
         count = self.basis.shape[1]
         forces = [mbs.GetObjectOutput(lock, exu.OutputVariableType.Force) for lock in self.locks[:count]]
-        return np.asarray(-self._to_basis.T @ np.array(forces, dtype=float))
+        return self.taken_over - self._to_basis.T @ np.array(forces, dtype=float)
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` on the disc needs, and the slip that it resists.
 
         The slip has P = 1 m/s.
         """
-        contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.basis
+        contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.allowed
         if columns.shape[1] == (3 if radius else 2):  # the slip of the centre has the direction of the force
             force = math.hypot(load[0], load[1])
             along = [load[0] / force, load[1] / force, 0.0] if force else [1.0, 0.0, 0.0]
@@ -131,7 +146,7 @@ class PlanarStick(AxialStick):
 
     def capacity_share(self, mbs: Any, t: float) -> float:
         """Return the load over the largest one: 1 while the contact slides, 0 while it is open."""
-        if self.on_axis or self.mode != Mode.LOCKED:
+        if self.on_axis or not self.rests:
             return super().capacity_share(mbs, t)
         return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]
 
@@ -139,20 +154,15 @@ class PlanarStick(AxialStick):
         """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
         if self.on_axis:
             return super().wrench(mbs, t, slip, radius)
-        if self.mode == Mode.LOCKED:
+        if self.rests:
             return self.held_wrench(mbs)
-        if not self.slides:
-            return np.zeros(3)
-        return self.sliding_wrench(t, self.direction if self.idle else slip, radius)
+        return self.sliding_wrench(t, slip, radius) if self.slides else np.zeros(3)
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
         """Return the generalised forces on the nodes, as the user function of the connector."""
         if self.on_axis or not self.running:
             return super().force(mbs, t, item, q, q_t)
-        if self.idle:
-            wrench = self.sliding_wrench(t, self.direction, 0.0)
-            return (self.slip_map(self.reference + q).T @ wrench).tolist()
-        if not self.slides:
+        if not self.slides or self.idle:
             return [0.0] * len(q)
         if not self.predicts and not self.frozen:
             return self.sliding[0](mbs, t, item, q, q_t)

@@ -200,9 +200,14 @@ class PlanarContact(StickingContact):
         """True if the contact slides and no other constraints hold it."""
         return self.stick.slides and not self.stick.idle
 
-    def allow(self, mbs: Any, velocities: FloatArray) -> None:
-        """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model."""
-        self.planar.allow(self.slip_rows(mbs) @ velocities)
+    def allow(self, mbs: Any, by_joints: FloatArray, velocities: FloatArray) -> None:
+        """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model.
+
+        The joints allow the velocities ``by_joints``.
+        """
+        slips = self.slip_rows(mbs)
+        self.planar.allowed = self.planar.span(slips @ by_joints)
+        self.planar.set_basis(self.planar.span(slips @ velocities))
 
     def slip_rows(self, mbs: Any) -> FloatArray:
         """Return the map from all velocities of the model to the slip at its initial values, shape (3, n)."""
@@ -225,7 +230,7 @@ class PlanarContact(StickingContact):
 
     def following(self, mbs: Any, t: float) -> Mode:
         """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
-        if self.mode == Mode.LOCKED and self.holding(t) > 0.0:
+        if self.planar.rests and self.holding(t) > 0.0:
             return self.driven(mbs)
         return self._free_mode(mbs, t, CURRENT)
 
@@ -237,12 +242,6 @@ class PlanarContact(StickingContact):
         """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
         return _sliding_mode(self.planar.direction)
-
-    def resist(self, slip: FloatArray) -> bool:
-        """Let an idle contact take all that it can hold against a ``slip``; return whether the direction is new."""
-        size, before = self.planar.potential_of(slip), self.planar.direction
-        self.planar.direction = slip / size if size > 0.0 else np.zeros(3)
-        return bool(np.abs(self.scaled(self.planar.direction - before)).max() > NEGLIGIBLE)
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
         """Return the present motion."""
@@ -272,9 +271,11 @@ class PlanarContact(StickingContact):
         holding = self.holding(t)
         if self.opens_or_closes(holding):
             return -1.0
-        if self.mode != Mode.LOCKED:
-            return 1.0
-        return 1.0 - self.planar.load_share(self.planar.held_wrench(mbs), holding)[0]
+        return 1.0 - self.overload(mbs, t)
+
+    def overload(self, mbs: Any, t: float) -> float:
+        """Return the share of its capacity that a contact at rest holds, or 0 if it does not rest."""
+        return self.planar.capacity_share(mbs, t) if self.planar.rests else 0.0
 
     def reverses(self, mbs: Any, time: float) -> bool:
         """Return whether a sliding contact stops within a short ``time`` (s)."""

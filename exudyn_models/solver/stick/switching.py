@@ -238,7 +238,7 @@ class _Run:
         self._part(self._reached + self._step, 1, end, write=False, keep=False, settles=True)
 
     def _margins_at(self, t: float) -> list[float]:
-        return [contact.margin(self._mbs, t) for contact in self._contacts]
+        return self._modes.margins(t)
 
     def _try(self, t: float) -> FloatArray:
         """Return the margins after one step to the time t (s) that is not kept."""
@@ -278,8 +278,12 @@ class _Run:
         leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
         following = [contact.following(self._mbs, high) for contact in leaving]  # loads of this step
         self._modes.survey(high)
+        released = False  # the others that share its load are left to ``settle``
         for contact, mode in zip(leaving, following, strict=True):
-            self._modes.leave(contact, mode)
+            shares = isinstance(contact, PlanarContact) and mode != Mode.OPEN
+            if not (shares and released):
+                self._modes.leave(high, contact, mode)
+            released |= shares
 
     def _stop(self) -> None:
         """Step under constant friction until contacts in the plane rest, and lock them."""
