@@ -41,8 +41,8 @@ class SlipMotion(NamedTuple):
     ``slip`` is (u, S) in m/s and rad/s, ``rate`` its rate of change in m/s² and rad/s², and ``bias`` the rate without
     accelerations, J̇·q̇, each of shape (3,). ``gradient``, shape (3,), contains the derivatives of P by the slip,
     zero at rest; ``radius`` is the distance of the disc's centre from the axis of the master, in m;
-    ``rate_potential`` is P of the rate, in m/s². The rounding error of the slip is
-    proportional to ``largest_term``, the largest speed in m/s that enters it.
+    ``rate_potential`` is P of the rate, in m/s². The rounding error of the slip is proportional to ``largest_term``,
+    the largest speed in m/s that enters it.
     """
 
     slip: FloatArray

@@ -117,9 +117,8 @@ class _Run:
         ):
             newton.maxIterations = max(newton.maxIterations, ITERATIONS)
             if self._planar:
-                newton.useModifiedNewton = (
-                    False  # the direction of friction turns too fast for an old Jacobian
-                )
+                # The direction of friction turns too fast for an old Jacobian.
+                newton.useModifiedNewton = False
                 self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
             try:
                 yield
