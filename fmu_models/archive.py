@@ -38,18 +38,7 @@ class HeadersMissingError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit that has been written to a file.
-
-    Parameters
-    ----------
-    file
-        Path of the unit.
-    platform
-        Platform of its library, "" if the unit does not contain one.
-    remark
-        Reason for a missing library, otherwise "".
-
-    """
+    """A unit in a ``file`` with a library for ``platform``, or "" and a ``remark`` with the reason for none."""
 
     file: Path
     platform: str
@@ -115,17 +104,8 @@ def platform(fmi: Fmi) -> tuple[str, str]:
 def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
     """Write a model as a unit; return its path and platform.
 
-    Raises
-    ------
-    ValueError
-        If the file name does not end with .fmu, as the standard requires.
-    HeadersMissingError
-        If FMPy is not installed.
-    RuntimeError
-        If the compiler fails.
-    OSError
-        If the file cannot be written.
-
+    Raises ``ValueError`` if the file name does not end with .fmu, as the standard requires, ``HeadersMissingError``
+    if FMPy is not installed, ``RuntimeError`` if the compiler fails, and ``OSError`` if the file cannot be written.
     """
     if file.suffix.lower() != ".fmu":
         raise ValueError(f"output = {str(file)!r}: the name of a unit must end with .fmu")

@@ -25,30 +25,12 @@ MOST_PLATES = 1000
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable of a model.
+    """A variable of a model; its value reference is the index in the table.
 
-    Parameters
-    ----------
-    name
-        Name for importers; the value reference is the index in the table.
-    unit
-        One of ``description.UNITS``, or "" if dimensionless.
-    about
-        Description.
-    role
-        "time", "parameter", "state", "derivative", "input", "output", "local", or "event" for an output that changes
-        only at events.
-    start
-        Value before initialisation; None if it follows from others.
-    least, most
-        Allowed range.
-    type
-        "real", "whole" or "boolean".
-    derivative_of
-        Name of the state for a derivative, otherwise "".
-    scale
-        Scale of a state: "x" for lengths, "v" for speeds, or "1".
-
+    ``unit`` is one of ``description.UNITS``, or "" if dimensionless. ``role`` is "time", "parameter", "state",
+    "derivative", "input", "output", "local", or "event" for an output that changes only at events. ``start`` is None
+    if the value follows from others. ``type`` is "real", "whole" or "boolean". A derivative is ``derivative_of`` a
+    state, whose ``scale`` is "x" for lengths, "v" for speeds, or "1".
     """
 
     name: str

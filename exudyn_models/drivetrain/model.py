@@ -8,12 +8,11 @@ disc to the gearbox and the vehicle.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.drivetrain.parameters import Drivetrain, Torque
@@ -22,18 +21,16 @@ from exudyn_models.parts.energy_balance import EnergyBalance, Power, add_energy_
 from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.radial_support import RadialSupport, add_radial_support
 from exudyn_models.parts.ring_friction import add_ring_friction
-from exudyn_models.solver.model import IN_MEMORY
+from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
 from exudyn_models.solver.solve_dynamic import solve_dynamic
 from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 ENERGY_UNIT = 1e3
 """Unit of energy of the energy balance in J."""
 
 ANGLE, SPEED = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
-"""Output variables of a rotor's node."""
+"""Output variables of a node."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,8 +98,7 @@ class DrivetrainModel:
 
     def slip(self) -> float:
         """Return the current slip in rad/s, for a controller."""
-        variable = exu.OutputVariableType.Coordinates_t
-        engine, disc = (self.mbs.GetNodeOutput(node, variable) for node in (self.engine, self.disc))
+        engine, disc = (self.mbs.GetNodeOutput(node, SPEED) for node in (self.engine, self.disc))
         return float(engine - disc[2])
 
     def run(
@@ -178,8 +174,8 @@ def build_drivetrain(
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     twist = shaft_torque / drivetrain.torsional_stiffness if shaft_torque else 0.0
-    engine = _add_rotor(mbs, drivetrain.engine_inertia, 0.0, engine_speed)
-    vehicle = _add_rotor(mbs, drivetrain.vehicle_inertia, -twist, gearbox_speed)
+    engine = add_rotor(mbs, drivetrain.engine_inertia, engine_speed)
+    vehicle = add_rotor(mbs, drivetrain.vehicle_inertia, gearbox_speed, -twist)
     disc = _add_disc(mbs, drivetrain, gearbox_speed)
     support = _add_shaft(mbs, drivetrain, disc)
     torsion = _add_torsional_spring(mbs, drivetrain, vehicle, disc)
@@ -193,9 +189,14 @@ def build_drivetrain(
         plates=drivetrain.faces,
         regularisation=regularisation,
     )
-    gains = _add_torques(mbs, engine=(engine, engine_torque), vehicle=(vehicle, vehicle_torque))
+    torques = {"engine": (engine, engine_torque), "vehicle": (vehicle, vehicle_torque)}
+    gains = {
+        name: _add_torque(mbs, node, torque) for name, (node, torque) in torques.items() if torque is not None
+    }
     balance = _add_balance(mbs, gains, friction, support, torsion, drivetrain.torsional_damping)
-    sensors = _add_sensors(mbs, (engine, disc, vehicle))
+    sensors = tuple(
+        node_sensor(mbs, node, variable) for node in (engine, disc, vehicle) for variable in (ANGLE, SPEED)
+    )
     mbs.Assemble()
     return DrivetrainModel(container, mbs, engine, disc, vehicle, friction, support, sensors, balance)
 
@@ -238,7 +239,7 @@ def _add_shaft(mbs: Any, drivetrain: Drivetrain, disc: Any) -> RadialSupport:
 def _add_torsional_spring(mbs: Any, drivetrain: Drivetrain, vehicle: Any, disc: Any) -> Any:
     return mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamper(
-            markerNumbers=[_coordinate(mbs, vehicle, 0), _coordinate(mbs, disc, 2)],
+            markerNumbers=[coordinate_marker(mbs, vehicle), coordinate_marker(mbs, disc, 2)],
             stiffness=drivetrain.torsional_stiffness,
             damping=drivetrain.torsional_damping,
         )
@@ -272,34 +273,8 @@ def _add_balance(
     )
 
 
-def _add_sensors(mbs: Any, nodes: Sequence[Any]) -> tuple[Any, ...]:
-    return tuple(
-        mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
-        for node in nodes
-        for variable in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
-    )
-
-
-def _add_rotor(mbs: Any, inertia: float, angle: float, speed: float) -> Any:
-    node = mbs.AddNode(
-        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[speed])
-    )
-    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-    return node
-
-
-def _coordinate(mbs: Any, node: Any, coordinate: int) -> Any:
-    return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
-
-
-def _add_torques(mbs: Any, **torques: tuple[Any, Torque | None]) -> dict[str, Power]:
-    """Apply torques to the nodes of rotors, where given; return their powers by the rotors' names."""
-    return {
-        name: _add_torque(mbs, node, torque) for name, (node, torque) in torques.items() if torque is not None
-    }
-
-
 def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
+    """Apply a torque to the node of a rotor; return its power."""
 
     def now(mbs: Any, t: float) -> tuple[float, float]:
         """Return torque and speed."""
@@ -309,7 +284,7 @@ def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
 
     mbs.AddLoad(
         items.LoadCoordinate(
-            markerNumber=_coordinate(mbs, node, 0),
+            markerNumber=coordinate_marker(mbs, node),
             load=0.0,
             loadUserFunction=lambda mbs, t, load: now(mbs, t)[0],
         )

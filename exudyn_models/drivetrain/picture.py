@@ -13,16 +13,15 @@ from typing import Any
 
 import exudyn as exu
 import exudyn.graphics
-import exudyn.itemInterface
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from exudyn_models.drivetrain.parameters import Drivetrain
+from exudyn_models.solver.items import items
 from reference_model.systems import FloatArray
 
 graphics: Any = exudyn.graphics  # its type hints do not fit its own calls
-items: Any = exudyn.itemInterface
 
 Image = NDArray[np.uint8]
 

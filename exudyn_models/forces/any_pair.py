@@ -25,7 +25,6 @@ from exudyn_models.forces.slip_kinematics import (
     Kinds,
     Mounts,
     slip_and_place,
-    slip_jacobian,
 )
 from reference_model.systems import FloatArray
 
@@ -86,7 +85,7 @@ def derivatives_on_nodes(
     """Return derivatives on the nodes of friction that is given over the slip, and the forces on the nodes.
 
     The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` are results of
-    ``slip_jacobian``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
+    ``slip_and_place``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
     gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
@@ -240,7 +239,7 @@ def slip_in_step(
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = slip_of_nodes(to_slip, end_rates)
-    vx, vy, before = slip_of_nodes(slip_jacobian(kinds, start)[0], rates)
+    vx, vy, before = slip_of_nodes(slip_and_place(kinds, start)[0], rates)
     return (
         slip_potential_of_contact(vx, vy, before, angle, contact),
         slip_potential_of_contact(ux, uy, spin, angle, contact),

@@ -26,7 +26,7 @@ from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
 from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, jacobian_of_slip
+from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_and_place_of_nodes
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
@@ -155,18 +155,12 @@ class AxialStick:
 
     Parameters
     ----------
-    kinds : Kinds
-        Kinds of the nodes of master and disc.
     reference : array of shape (n,)
-        Their reference coordinates.
-    factors : LoadAndCoefficient
-        Load and sliding coefficient.
+        Reference coordinates of the nodes of master and disc.
     static_ratio : float
         Static over sliding friction, >= 1.
     locks : tuple of int
         Object numbers of the constraints that lock the contact, one for each direction of slip.
-    mode : Mode or None
-        Present mode, None before the first run.
     running : bool
         Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
     idle : bool
@@ -203,7 +197,7 @@ class AxialStick:
         return self._gradient_at(self.reference + q)
 
     def _gradient_at(self, coordinates: FloatArray) -> list[float]:
-        return cast(list[float], jacobian_of_slip(self.kinds, coordinates)[0][2].tolist())
+        return cast(list[float], slip_and_place_of_nodes(self.kinds, coordinates)[0][2].tolist())
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""

@@ -152,7 +152,6 @@ def slip_potential_of_contact(ux: float, uy: float, spin: float, angle: float, c
 def _force_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, float]:
-    """Return F_x, F_y and M."""
     _, points, friction, epsilon, held, table = contact
     turn = complex(math.cos(angle), math.sin(angle))
     slip_of_centre, turning = complex(ux, uy), 1j * spin * turn

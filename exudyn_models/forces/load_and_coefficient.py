@@ -35,25 +35,13 @@ AT_REST = 1e-200
 class LoadAndCoefficient:
     """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
 
-    Parameters
-    ----------
-    contact : Contact
-        The contact; its μN is ignored.
-    friction_coefficient : float, table or callable
-        μ >= 0, a table over P, or a function of any of ``ARGUMENTS``.
-    normal_load : float or callable
-        N in N, >= 0, or such a function.
-    static_ratio : float
-        Static over sliding friction, >= 1, see ``peak_over_sliding``.
-    plates : int
-        Number of equal contacts, >= 1, that each carry N.
+    ``friction_coefficient`` is a number >= 0, a table over P or a function of any of ``ARGUMENTS``, and
+    ``normal_load``, in N, a number >= 0 or such a function. ``static_ratio`` >= 1 is static over sliding friction,
+    see ``peak_over_sliding``. Each of the ``plates`` >= 1, equal contacts, carries N. The μN of ``contact`` is
+    ignored.
 
-    Raises
-    ------
-    ValueError
-        If a number is negative or not finite, or a function takes other arguments; in a run if a function returns an
-        invalid number.
-
+    Raises ``ValueError`` if a number is out of range or a function takes other arguments; in a run if a function
+    returns an invalid number.
     """
 
     def __init__(

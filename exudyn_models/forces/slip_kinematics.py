@@ -80,20 +80,14 @@ Axes = tuple[Vector, Vector, Vector]
 
 
 @inlined
-def slip_jacobian(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any]]:
-    """Return J, shape (3, n), the axes of the contact on the master, and cosine and sine of the disc's angle in them.
-
-    The angle is that of the x axis of the contact on the disc, or of its y axis if its x axis lies along the master's
-    z axis. ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar
-    body turns about an axis parallel to the global z axis.
-    """
-    to_slip, axes, turned, _ = slip_and_place(kinds, coordinates)
-    return to_slip, axes, turned
-
-
-@inlined
 def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
-    """Return the same and x and y (m) of the contact on the disc, from the contact on the master and in its axes."""
+    """Return J, shape (3, n), the axes of the contact on the master, and angle and place of the disc in these axes.
+
+    The angle, as cosine and sine, is that of the x axis of the contact on the disc, or of its y axis if its x axis
+    lies along the master's z axis. The place is x and y (m) of the contact on the disc from that on the master.
+    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar body
+    turns about an axis parallel to the global z axis.
+    """
     master, disc, mounts = kinds
     return _slip_and_place(master, disc, mounts, coordinates)
 
@@ -162,7 +156,6 @@ def _mounted(
 
 @compiled
 def _axes_at(mounts: Mounts, at: int) -> Axes:
-    """Return the axes that begin at ``mounts[at]``."""
     return (
         (mounts[at], mounts[at + 1], mounts[at + 2]),
         (mounts[at + 3], mounts[at + 4], mounts[at + 5]),
@@ -260,4 +253,4 @@ def _product(a: Vector, b: Vector) -> Any:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-jacobian_of_slip, slip_and_place_of_nodes = KeptOnDisk(slip_jacobian), KeptOnDisk(slip_and_place)
+slip_and_place_of_nodes = KeptOnDisk(slip_and_place)

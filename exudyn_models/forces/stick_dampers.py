@@ -3,7 +3,7 @@
 With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
 with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, with
 equality if the disc only translates or only rotates. For points xᵀ·V·x is the mean of all squares of the slip. So
-friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_jacobian`` it is the damper D =
+friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D =
 (μN/ε)·Jᵀ·V·J between two bodies.
 
 For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of

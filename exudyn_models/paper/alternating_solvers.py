@@ -83,7 +83,7 @@ def solve_in_turns(
     friction: Friction,
     seconds: float,
 ) -> Recording:
-    """Solve up to the last of ``times``, with ``solver`` in slip and generalised-α in creep.
+    """Solve up to the last of ``times``, shape (n,), with ``solver`` in slip and generalised-α in creep.
 
     In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
     almost rests, and its creep changes as the ground turns. So steps of a fraction of a turn have an error of a small
@@ -93,21 +93,7 @@ def solve_in_turns(
     model extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
     between two steps, as soon as a different part creeps, or none.
 
-    Parameters
-    ----------
-    contact
-        Contact of the system. This and all other numbers are in units that make the motion of order one.
-    state : array of shape (4,) or (6,)
-        Initial state.
-    times : array of shape (n,)
-        Times from 0 on.
-    solver
-        Solver for slip.
-    friction
-        Friction between the discs.
-    seconds
-        Unit of time in s, for messages.
-
+    All numbers are in units that make the motion of order one; ``seconds`` is the unit of time in s, for messages.
     """
     motion = _Turns(
         contact, solver, friction, Recording(contact, times), StepCount(float(times[-1]), seconds=seconds)

@@ -22,14 +22,7 @@ RELAXATIONS = 40.0
 
 @dataclass(frozen=True)
 class RegularisedContact:
-    """The contact of a system under the regularised law, which is viscous below the slip speed ε.
-
-    Parameters
-    ----------
-    epsilon
-        ε > 0 of the contact as a whole, in the system's unit of speed.
-
-    """
+    """The contact of a system under the regularised law, viscous below the slip speed ε > 0 in its unit of speed."""
 
     system: System
     epsilon: float

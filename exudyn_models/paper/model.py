@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.parts.radial_support import add_radial_support
 from exudyn_models.parts.ring_friction import AddFriction, add_ring_friction
-from exudyn_models.solver.model import IN_MEMORY, Model
+from exudyn_models.solver.items import add_rotor, coordinate_marker, items, node_sensor
+from exudyn_models.solver.solver_run import Model
 from reference_model.systems import DiscOnDisc, FloatArray, System
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 MASTER_INERTIA = 1e30
 """Inertia in kg m² of the master disc, a body whose speed no contact torque can change.
@@ -41,7 +39,7 @@ def build_model(
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
-    master = _add_master(mbs, system.disc_speed - axes_speed)
+    master = add_rotor(mbs, MASTER_INERTIA, system.disc_speed - axes_speed)
     body = _add_supported_body(mbs, system, initial_state, axes_speed)
     contact: dict[str, Any] = {"contact_radius": 0.0}
     if isinstance(system, DiscOnDisc):
@@ -58,18 +56,14 @@ def build_model(
             regularisation=regularisation,
             **contact,
         )
-    sensors = _sensors(mbs, body)
+    variables = exu.OutputVariableType
+    position, velocity, acceleration = (
+        node_sensor(mbs, body, variable)
+        for variable in (variables.Coordinates, variables.Coordinates_t, variables.Coordinates_tt)
+    )
+    sensors = position, velocity, acceleration
     mbs.Assemble()
     return Model(container, mbs, mbs.GetNodeODE2Index(body), system.state_size // 2, sensors)
-
-
-def _add_master(mbs: Any, speed: float) -> Any:
-    """Add a disc that always turns about (0, 0) with ``speed`` (rad/s); return its ``NodeIndex``."""
-    node = mbs.AddNode(
-        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
-    )
-    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=MASTER_INERTIA))
-    return node
 
 
 def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axes_speed: float) -> Any:
@@ -91,7 +85,7 @@ def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axe
     mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=inertia))
     add_radial_support(
         mbs,
-        None if axes_speed == 0.0 else _add_master(mbs, -axes_speed),
+        None if axes_speed == 0.0 else add_rotor(mbs, MASTER_INERTIA, -axes_speed),
         node,
         stiffness=system.stiffness,
         damping=system.damping,
@@ -123,24 +117,10 @@ def _add_shaft(mbs: Any, node: Any, disc: DiscOnDisc, axes_speed: float) -> None
 
     The shaft is the ground's coordinate, and Ω, relative to the axes, is the damper's velocity offset.
     """
-    ground = mbs.AddNode(items.NodePointGround())
     mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamperExt(
-            markerNumbers=[
-                mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0)),
-                mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2)),
-            ],
+            markerNumbers=[coordinate_marker(mbs, None), coordinate_marker(mbs, node, 2)],
             damping=disc.shaft_damping,
             velocityOffset=disc.shaft_speed - axes_speed,
         )
     )
-
-
-def _sensors(mbs: Any, node: Any) -> tuple[Any, Any, Any]:
-    """Add and return sensors for coordinates, velocities and accelerations of a node."""
-    variables = exu.OutputVariableType
-    position, velocity, acceleration = (
-        mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
-        for variable in (variables.Coordinates, variables.Coordinates_t, variables.Coordinates_tt)
-    )
-    return position, velocity, acceleration

@@ -144,25 +144,9 @@ def simulate_fixed_step(
 class Run:
     """A motion to compute from time 0 on, in units that make it of order one.
 
-    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances.
-
-    Parameters
-    ----------
-    given : tuple
-        System, initial state and times as given.
-    tolerance
-        Accuracy to aim at; nan for fixed steps.
-    units
-        Units of the motion.
-    contact
-        Contact of the system in these units, with ε.
-    state, times : array
-        Initial state and times in these units.
-    scales
-        Scales of the run in these units.
-    began
-        Start of the computation, by ``time.perf_counter``.
-
+    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. Contact, with its ε,
+    state, times and scales are in these units. ``tolerance`` is nan for fixed steps, and ``began`` is the start of
+    the computation by ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

@@ -13,14 +13,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import constant_law
 from exudyn_models.forces.user_functions import ForceFunction, JacobianFunction
 from exudyn_models.solver.contacts import Contact, register
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+from exudyn_models.solver.items import coordinate_marker, items
 
 
 def add_connector(
@@ -47,7 +45,9 @@ def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> 
     """Add the connector of a contact over ``nodes`` and register the contact; return its ``ObjectIndex``."""
     register(mbs, contact)
     if not contact.built_in:
-        return add_connector(mbs, nodes, contact.functions["force"], contact.functions["jacobian"], contact.name)
+        return add_connector(
+            mbs, nodes, contact.functions["force"], contact.functions["jacobian"], contact.name
+        )
     markers = rotor_markers(mbs, nodes)
     item = mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamperExt(
@@ -81,6 +81,4 @@ def _resistance(force: ForceFunction, size: int) -> Callable[..., float]:
 
 def rotor_markers(mbs: Any, nodes: Sequence[Any]) -> list[Any]:
     """Add markers of the angles of two rotors, or of the ground and one rotor; return their ``MarkerIndex``."""
-    if len(nodes) == 1:
-        nodes = [mbs.AddNode(items.NodePointGround()), *nodes]
-    return [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0)) for node in nodes]
+    return [coordinate_marker(mbs, node) for node in ((None, *nodes) if len(nodes) == 1 else nodes)]

@@ -12,15 +12,12 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 
+from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
-from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, positive_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 Power: TypeAlias = Callable[[Any, float], float]
 """Takes the ``mbs`` and the time in s; returns a power in W of the current motion."""
@@ -148,17 +145,8 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
         return [power(mbs, t) / unit for power in powers]
 
     watch_powers(rates, list(named), unit)
-
-    node = mbs.AddNode(
-        items.NodeGenericODE1(
-            referenceCoordinates=[0.0] * len(powers),
-            initialCoordinates=[0.0] * len(powers),
-            numberOfODE1Coordinates=len(powers),
-        )
-    )
-    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
-    variable = exu.OutputVariableType.Coordinates
-    return mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY))
+    node = add_integrals(mbs, rates, [0.0] * len(powers))
+    return node_sensor(mbs, node, exu.OutputVariableType.Coordinates)
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:

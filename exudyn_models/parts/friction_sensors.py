@@ -10,7 +10,6 @@ from operator import mul
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import on_one_axis
@@ -21,12 +20,10 @@ from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact, present_item
+from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
-from exudyn_models.solver.model import IN_MEMORY
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 Quantity = Literal[
     "transmitted_moment",
@@ -216,14 +213,8 @@ class RingFriction:
             return [self.power(mbs, t)]
 
         watch_powers(rate, ["heat"])
-        node = self.mbs.AddNode(
-            items.NodeGenericODE1(
-                referenceCoordinates=[0.0], initialCoordinates=[0.0], numberOfODE1Coordinates=1
-            )
-        )
-        self.mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rate))
-        variable = exu.OutputVariableType.Coordinates
-        return self.mbs.AddSensor(items.SensorNode(nodeNumber=node, outputVariableType=variable, **options))
+        node = add_integrals(self.mbs, rate, [0.0])
+        return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""

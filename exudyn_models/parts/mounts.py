@@ -45,21 +45,10 @@ PARALLEL = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Side:
-    """One body of a contact.
+    """One body of a contact, by the ``name`` of its argument; ``node`` is None for the ground.
 
-    Parameters
-    ----------
-    name : str
-        Name of the argument.
-    node : NodeIndex or None
-        None for the ground.
-    kind : int
-        One of ``KINDS``, or ``GROUND``.
-    start, axes : array of shape (3,), (3, 3)
-        Fixed frame of a rotor or the ground, with its axes as columns.
-    place, rotation : array of shape (3,), (3, 3)
-        Frame of the contact on the body.
-
+    ``start``, shape (3,), and ``axes``, shape (3, 3), are the fixed frame of a rotor or the ground, with its axes as
+    columns; ``place`` and ``rotation`` are the frame of the contact on the body.
     """
 
     name: str

@@ -13,15 +13,13 @@ import math
 from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.parts.ring_friction import ContactPoints, checked_contact
+from exudyn_models.solver.items import items
 from reference_model.systems import positive_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 NORMAL_FORCE = 1.0
 """N of all points together, in N. Only the product μN matters, so μ is scaled to give it.

@@ -15,7 +15,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.laws.functions import checked_not_negative
@@ -38,10 +37,8 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
-from exudyn_models.solver.model import IN_MEMORY
+from exudyn_models.solver.items import IN_MEMORY, items
 from reference_model.systems import FloatArray, finite_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 Quantity = Literal["deflection", "force", "stored_energy", "power"]
 

@@ -41,7 +41,6 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from typing import Any, Protocol
 
-import exudyn.itemInterface
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick, constant_law
@@ -57,10 +56,9 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.parts.mounts import Side, check_axes, checked_sides, nodes_and_kinds
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact
+from exudyn_models.solver.items import items
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray, Place, checked_places, finite_number, positive_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 UNREGULARISED = 1e-200
 """Value of ε in m/s for exact stick, far below any slip of a sliding contact."""

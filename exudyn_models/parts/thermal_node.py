@@ -13,14 +13,11 @@ from functools import cached_property
 from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.load_and_coefficient import Coefficient
-from exudyn_models.solver.model import IN_MEMORY
+from exudyn_models.solver.items import add_integrals, node_sensor
 from reference_model.systems import finite_number, positive_number
-
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
 
 ARGUMENT = "temperature"
 
@@ -65,10 +62,7 @@ class ThermalNode:
         ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
         ``mbs.GetSensorStoredData`` and writes no file.
         """
-        variable = exu.OutputVariableType.Coordinates
-        return self.mbs.AddSensor(
-            items.SensorNode(nodeNumber=self.node, outputVariableType=variable, **IN_MEMORY | options)
-        )
+        return node_sensor(self.mbs, self.node, exu.OutputVariableType.Coordinates, **options)
 
     def heated_by(self, power: Callable[[Any, float], float]) -> None:
         """Add a heating power in W, a function of ``mbs`` and the time in s, such as ``RingFriction.power``."""
@@ -131,10 +125,8 @@ def add_thermal_node(
 
     """
     capacity = positive_number("heat_capacity", heat_capacity, "J/K")
-    loss, outside = (
-        checked_not_negative("conductance", conductance, " W/K"),
-        finite_number("surroundings", surroundings),
-    )
+    loss = checked_not_negative("conductance", conductance, " W/K")
+    outside = finite_number("surroundings", surroundings)
     first = outside if start is None else finite_number("start", start)
     sources: list[Callable[[Any, float], float]] = []
 
@@ -142,10 +134,5 @@ def add_thermal_node(
         to_outside = loss * (state[0] - outside)
         return [(sum(source(mbs, t) for source in sources) - to_outside) / capacity, to_outside]
 
-    node = mbs.AddNode(
-        items.NodeGenericODE1(
-            referenceCoordinates=[0.0, 0.0], initialCoordinates=[first, 0.0], numberOfODE1Coordinates=2
-        )
-    )
-    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
+    node = add_integrals(mbs, rates, [first, 0.0])
     return ThermalNode(mbs, node, capacity, loss, outside, sources)

@@ -9,6 +9,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
+from exudyn_models.solver.repeated_steps import kept
 from reference_model.systems import finite_number
 
 GAP = 1e-13
@@ -32,30 +33,30 @@ def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
 def parts_of_run(
     mbs: Any, settings: Any, breaks: Sequence[float], update_initial_values: bool
 ) -> Generator[bool, None, None]:
-    """Set the ``settings`` for one part of the run after the other.
-
-    Yield whether its end becomes the next initial state.
+    """Set the ``settings`` for one part of the run after the other; yield whether its end is the next initial state.
 
     Steps are at most as long as those of the whole run. Files and sensors record all parts. After the last part all
     settings are restored, and the initial values too unless ``update_initial_values``.
     """
     options, outputs = settings.timeIntegration, settings.solution
     start, end, steps = options.startTime, options.endTime, options.numberOfSteps
-    kept = outputs.file.append, outputs.sensors.append, outputs.file.writeInitialValues
     initial = mbs.systemData.GetSystemState(exu.ConfigurationType.Initial) if breaks else None
     gaps = [max(GAP * (end - start), 4.0 * np.spacing(abs(value))) for value in breaks]
     starts = [start, *(value + gap for value, gap in zip(breaks, gaps, strict=True))]
     ends = [*(value - gap for value, gap in zip(breaks, gaps, strict=True)), end]
-    try:
-        for i, (first, last) in enumerate(zip(starts, ends, strict=True)):
-            options.startTime, options.endTime = first, last
-            options.numberOfSteps = max(1, math.ceil((last - first) / (end - start) * steps - 1e-6))
-            if i > 0:
-                outputs.file.append = outputs.sensors.append = True
-                outputs.file.writeInitialValues = False
-            yield update_initial_values or last != end
-    finally:
-        options.startTime, options.endTime, options.numberOfSteps = start, end, steps
-        outputs.file.append, outputs.sensors.append, outputs.file.writeInitialValues = kept
-        if initial is not None and not update_initial_values:
-            mbs.systemData.SetSystemState(initial, exu.ConfigurationType.Initial)
+    with (
+        kept(options, "startTime", "endTime", "numberOfSteps"),
+        kept(outputs.file, "append", "writeInitialValues"),
+        kept(outputs.sensors, "append"),
+    ):
+        try:
+            for i, (first, last) in enumerate(zip(starts, ends, strict=True)):
+                options.startTime, options.endTime = first, last
+                options.numberOfSteps = max(1, math.ceil((last - first) / (end - start) * steps - 1e-6))
+                if i > 0:
+                    outputs.file.append = outputs.sensors.append = True
+                    outputs.file.writeInitialValues = False
+                yield update_initial_values or last != end
+        finally:
+            if initial is not None and not update_initial_values:
+                mbs.systemData.SetSystemState(initial, exu.ConfigurationType.Initial)

@@ -20,25 +20,11 @@ _CONTACTS = "friction contacts"
 
 @dataclass(eq=False)
 class Contact:
-    """A friction contact between two nodes.
+    """A friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
-    Parameters
-    ----------
-    kinds : Kinds
-        Kinds of the nodes of master and disc.
-    reference : array of shape (n,)
-        Their reference coordinates.
-    factors : LoadAndCoefficient
-        Load and sliding coefficient.
-    functions : dict
-        Its "force" and "jacobian" as user functions for Exudyn.
-    stick : AxialStick or None
-        Its exact stick, None if it is regularised.
-    built_in : bool
-        Whether its connector is Exudyn's ``ObjectConnectorCoordinateSpringDamperExt``.
-    name : str
-        Name of its connector, set by ``register``.
-
+    ``functions`` contains its "force" and "jacobian" as user functions for Exudyn. ``stick`` is None if the contact
+    is regularised. Its connector is Exudyn's ``ObjectConnectorCoordinateSpringDamperExt`` if it is ``built_in``, and
+    has the ``name`` that ``register`` chooses.
     """
 
     kinds: Kinds
@@ -53,7 +39,6 @@ class Contact:
     def dampers(self) -> StickDampers:
         """Equivalent dampers of the contact while it sticks by its regularised law."""
         return StickDampers(self.kinds, self.reference, self.factors)
-
 
     def lock_name(self, direction: int) -> str:
         """Return the name of the constraint that locks a direction of slip."""

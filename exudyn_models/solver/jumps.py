@@ -37,14 +37,7 @@ TOGETHER = 4096
 
 
 class JumpCheck:
-    """Checks the powers of an assembled model in an implicit run, and warns at its end.
-
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The assembled model.
-
-    """
+    """Checks the powers of an assembled model in an implicit run, and warns at its end."""
 
     def __init__(self, mbs: Any) -> None:
         self._names, self._units, self._places = _powers(mbs)

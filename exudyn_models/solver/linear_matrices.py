@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import exudyn as exu
@@ -28,40 +30,36 @@ def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray,
 
     They cover all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
     """
+    size = mbs.systemData.ODE2Size()
+    with _mass_and_solver(mbs, t) as (mass, solver):
+
+        def jacobian(**factors: float) -> FloatArray:
+            zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
+            solver.ComputeJacobianODE2RHS(mbs, **(zero | factors))
+            return np.array(solver.GetSystemJacobian())[:size, :size]
+
+        return mass, jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
+
+
+@contextmanager
+def _mass_and_solver(mbs: Any, t: float) -> Iterator[tuple[FloatArray, Any]]:
+    """Yield the mass matrix, and a solver that evaluates the model at its initial values and the time t (s)."""
     solver: Any = exu.MainSolverStatic()  # its Jacobian contains no terms of time integration
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
     settings.staticSolver.loadStepStart = t
     size = mbs.systemData.ODE2Size()
-
-    def part(matrix: Any) -> FloatArray:
-        return np.array(matrix)[:size, :size]
-
-    def jacobian(**factors: float) -> FloatArray:
-        zero = {"scalarFactor_ODE2": 0.0, "scalarFactor_ODE2_t": 0.0, "scalarFactor_ODE1": 0.0}
-        solver.ComputeJacobianODE2RHS(mbs, **(zero | factors))
-        return part(solver.GetSystemJacobian())
-
     with quiet():
         solver.InitializeSolver(mbs, settings)
         solver.ComputeMassMatrix(mbs)
-        mass = part(solver.GetSystemMassMatrix())
-        stiffness, damping = jacobian(scalarFactor_ODE2=-1.0), jacobian(scalarFactor_ODE2_t=-1.0)
+        yield np.array(solver.GetSystemMassMatrix())[:size, :size], solver
         solver.FinalizeSolver(mbs, settings)
-    return mass, stiffness, damping
 
 
 def singular_mass(mbs: Any) -> str:
     """Return a message about coordinates of an assembled model without mass, or ""."""
-    solver: Any = exu.MainSolverStatic()
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = settings.solution.sensors.active = False
-    size = mbs.systemData.ODE2Size()
-    with quiet():
-        solver.InitializeSolver(mbs, settings)
-        solver.ComputeMassMatrix(mbs)
-        mass = np.array(solver.GetSystemMassMatrix())[:size, :size]
-        solver.FinalizeSolver(mbs, settings)
+    with _mass_and_solver(mbs, 0.0) as (mass, _):
+        pass
     for node in range(mbs.systemData.NumberOfNodes()):
         if (
             mbs.GetNode(node)["nodeType"] == "RigidBodyEP"

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from typing import Any
 
 import exudyn as exu
 
-WITHOUT_RESTART = {
+WITHOUT_RESTART: dict[str, Any] = {
     "modifiedNewtonContractivity": 1e300,
     "maxModifiedNewtonIterations": 1,  # then a new Jacobian in each iteration, as in full Newton
     "maxModifiedNewtonRestartIterations": 1_000_000,
@@ -24,17 +24,28 @@ WITHOUT_RESTART = {
 
 
 @contextmanager
-def newton_without_restart(mbs: Any, newton: Any) -> Iterator[None]:
-    """Make modified Newton renew its Jacobian instead of restarting, if the model has first-order coordinates."""
-    values = WITHOUT_RESTART if mbs.systemData.ODE1Size() else {}
-    before = {name: getattr(newton, name) for name in values}
+def kept(settings: Any, *names: str) -> Iterator[None]:
+    """Restore the named ``settings`` at the end."""
+    before = {name: getattr(settings, name) for name in names}
     try:
-        for name, value in values.items():
-            setattr(newton, name, value)
         yield
     finally:
         for name, value in before.items():
-            setattr(newton, name, value)
+            setattr(settings, name, value)
+
+
+@contextmanager
+def changed(settings: Any, **values: Any) -> Iterator[None]:
+    """Give ``settings`` other values, and restore those before at the end."""
+    with kept(settings, *values):
+        for name, value in values.items():
+            setattr(settings, name, value)
+        yield
+
+
+def newton_without_restart(mbs: Any, newton: Any) -> AbstractContextManager[None]:
+    """Make modified Newton renew its Jacobian instead of restarting, if the model has first-order coordinates."""
+    return changed(newton, **WITHOUT_RESTART if mbs.systemData.ODE1Size() else {})
 
 
 @contextmanager

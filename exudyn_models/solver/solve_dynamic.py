@@ -188,7 +188,6 @@ def _solve(
 
 
 def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) -> None:
-    """Repair rates, repeated steps and peaks of friction in a run of an implicit solver."""
     repairs.enter_context(starting_rates(mbs, options.startTime))
     repairs.enter_context(newton_without_restart(mbs, options.newton))
     repairs.enter_context(peaks_resolved(mbs, options))

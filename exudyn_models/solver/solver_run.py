@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -12,8 +12,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.solver.model import Model
-from exudyn_models.solver.repeated_steps import restored_accelerations, user_function
+from exudyn_models.solver.repeated_steps import changed, restored_accelerations, user_function
 from reference_model import trajectory
 from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
@@ -23,20 +22,27 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 
 
 @dataclass(frozen=True)
+class Model:
+    """An assembled model of a system, with sensors for the state of one body.
+
+    ``container`` owns ``mbs`` and must live as long. The body's coordinates are the coordinates first, ..., first +
+    size − 1 of ``mbs``. ``sensors`` record them and their first and second time derivatives at every step.
+    """
+
+    container: Any
+    mbs: Any
+    first: int
+    size: int
+    sensors: tuple[Any, Any, Any]
+
+
+@dataclass(frozen=True)
 class Steps:
     """The states at the start and after every step of a solver.
 
-    Parameters
-    ----------
-    times : array of shape (n,)
-        Times in s.
-    states : array of shape (n, 2d)
-        The d coordinates of the system (m, rad) and their d velocities (m/s, rad/s).
-    accelerations : array of shape (n, d)
-        Accelerations in m/s², rad/s².
-    evaluations : int
-        Number of evaluations of the equations of motion.
-
+    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities (m/s,
+    rad/s); ``accelerations``, shape (n, d), in m/s², rad/s²; and the number of ``evaluations`` of the equations of
+    motion.
     """
 
     times: FloatArray
@@ -110,37 +116,16 @@ def solve(
 ) -> Steps:
     """Run ``model`` from its initial values at ``start`` (s) to ``end`` or to where ``watch`` ends it.
 
-    Parameters
-    ----------
-    model : Model
-        The assembled model.
-    start, end : float
-        Times in s, start <= end.
-    integrator : str
-        One of ``EXPLICIT`` or ``FIXED_STEP``.
-    step : float
-        Step in s, for DOPRI5 the largest one.
-    tolerance : float
-        Absolute local error of DOPRI5; for the implicit solvers the residual force in N.
-    watch : callable, optional
-        Called after every step.
-    first_step : float
-        First step of DOPRI5, in s.
-    quasi_static : bool
-        Whether generalised-α follows a motion without inertia. Forces then balance at the end of each step, and
-        accelerations are derivatives of the velocities, because the balance determines them only to its residual.
-    balanced : bool
-        Whether such a motion also starts in balance, so that its forces give the first acceleration; otherwise it is
-        0.
-    count : StepCount, optional
-        Step count of the whole motion, which also gives the unit of time of a model that is not in SI units.
+    ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``, ``step`` in s, for DOPRI5 the largest one and
+    ``first_step`` its first. ``tolerance`` is the absolute local error of DOPRI5, or the residual force in N of the
+    implicit solvers. If the run is ``quasi_static``, generalised-α follows a motion without inertia. Forces then
+    balance at the end of each step, and accelerations are derivatives of the velocities, because the balance
+    determines them only to its residual. If it is ``balanced`` too, the forces give the first acceleration, otherwise
+    it is 0. ``count`` counts the steps of the whole motion and gives the unit of time of a model that is not in SI
+    units.
 
-    Raises
-    ------
-    SimulationError
-        If a state is not finite, Newton's method fails, the step falls below the resolution of time, or there are too
-        many steps.
-
+    Raises ``SimulationError`` if a state is not finite, Newton's method fails, the step falls below the resolution of
+    time, or there are too many steps.
     """
     if start == end:
         return _no_steps(model, start)
@@ -308,15 +293,9 @@ def raise_interrupt(error: exu.ExudynError) -> None:
         raise KeyboardInterrupt from error
 
 
-@contextmanager
-def quiet() -> Iterator[None]:
+def quiet() -> AbstractContextManager[None]:
     """Suppress Exudyn's output, and its warnings that Python functions allocate memory."""
-    before = exu.config.printToConsole, exu.config.suppressWarnings
-    exu.config.printToConsole, exu.config.suppressWarnings = False, True
-    try:
-        yield
-    finally:
-        exu.config.printToConsole, exu.config.suppressWarnings = before
+    return changed(exu.config, printToConsole=False, suppressWarnings=True)
 
 
 def advice(integrator: str, time: float, what: str) -> str:

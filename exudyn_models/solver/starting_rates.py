@@ -15,7 +15,6 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.solver.solver_run import quiet
-from reference_model.systems import FloatArray
 
 
 @contextmanager
@@ -26,7 +25,9 @@ def starting_rates(mbs: Any, t: float) -> Iterator[None]:
         yield
         return
     before = np.array(data.GetODE1Coordinates_t(initial))
-    rates = _rates(mbs, t)
+    with initialised_solver(mbs, t) as solver:
+        solver.ComputeODE1RHS(mbs)
+        rates = np.array(solver.GetSystemResidual())[data.ODE2Size() :][: data.ODE1Size()]
     if np.all(np.isfinite(rates)):  # otherwise the run will report it
         data.SetODE1Coordinates_t(rates, initial)
     try:
@@ -34,14 +35,6 @@ def starting_rates(mbs: Any, t: float) -> Iterator[None]:
     except BaseException:
         data.SetODE1Coordinates_t(before, initial)
         raise
-
-
-def _rates(mbs: Any, t: float) -> FloatArray:
-    """Return the rates at the initial values, shape (n,)."""
-    with initialised_solver(mbs, t) as solver:
-        solver.ComputeODE1RHS(mbs)
-        first, size = mbs.systemData.ODE2Size(), mbs.systemData.ODE1Size()
-        return np.array(solver.GetSystemResidual())[first : first + size]
 
 
 @contextmanager

@@ -38,13 +38,8 @@ INTERVALS = {
 class ModelInStick:
     """A model with all contacts in stick, linearised about its initial values.
 
-    Parameters
-    ----------
-    mass, damping : array of shape (n, n)
-        Matrices of its n second-order coordinates; ``damping`` excludes contacts.
-    contacts : tuple
-        Coordinates and dampers of each contact.
-
+    ``mass`` and ``damping``, shape (n, n), are the matrices of its n second-order coordinates; ``damping`` excludes
+    ``contacts``, which are coordinates and dampers of each contact.
     """
 
     mass: FloatArray
@@ -141,18 +136,7 @@ LOOKS = 100
 
 
 class StepCheck:
-    """Warns once about a fixed step that is too large for stick.
-
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The assembled model.
-    solver : str
-        Name of the solver type.
-    options : exudyn TimeIntegrationSettings
-        Settings of the run.
-
-    """
+    """Warns once about a fixed step that is too large for stick, in a run with the ``options``."""
 
     def __init__(self, mbs: Any, solver: str, options: Any) -> None:
         self._solver, self._span = solver, options.endTime - options.startTime

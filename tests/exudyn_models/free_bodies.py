@@ -3,11 +3,16 @@
 from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import exudyn.rigidBodyUtilities
 import numpy as np
 
-items: Any = exudyn.itemInterface
+from exudyn_models import solve_dynamic
+from exudyn_models.solver.items import add_rotor as rotor
+from exudyn_models.solver.items import coordinate_marker as coordinate
+from exudyn_models.solver.items import items, node_sensor
+
+__all__ = ["coordinate", "items", "node_sensor", "rotor"]
+
 rotations: Any = exudyn.rigidBodyUtilities
 
 
@@ -21,12 +26,18 @@ def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], ve
     return node
 
 
-def rotor(mbs: Any, inertia: float, speed: float) -> Any:
-    node = mbs.AddNode(
-        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[0.0], initialVelocities=[speed])
+def ball(
+    mbs: Any, kind: Any, mass: float, inertia: float, place: Any, velocity: Any, spin: Any, axes: Any = None
+) -> Any:
+    """Add a body with a node of ``kind``, the same inertia about all axes, and ``axes`` as columns."""
+    return mbs.CreateRigidBody(
+        inertia=rotations.RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3)),
+        nodeType=kind,
+        referencePosition=place,
+        referenceRotationMatrix=np.eye(3) if axes is None else axes,
+        initialVelocity=velocity,
+        initialAngularVelocity=spin,
     )
-    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
-    return node
 
 
 def settings_of(end: float, steps: int, start: float = 0.0, newton: float | None = None) -> Any:
@@ -50,9 +61,12 @@ def new_model() -> Any:
     return exu.SystemContainer().AddSystem()
 
 
-def coordinate(mbs: Any, node: Any, place: int = 0) -> Any:
-    """Add a marker on one coordinate of a node."""
-    return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=place))
+def changes_of(
+    mbs: Any, end: float, step: float, solver: Any = exu.DynamicSolverType.TrapezoidalIndex2, **options: Any
+) -> list[tuple[float, int, int, int]]:
+    """Return the changes of mode in a run as (time, contact, before, after)."""
+    changes = solve_dynamic(mbs, settings_of(end, round(end / step)), solver, **options)
+    return [(change.time, change.contact, int(change.before), int(change.after)) for change in changes]
 
 
 def drive(mbs: Any, node: Any, load: Any) -> None:
@@ -75,10 +89,7 @@ def all_states(mbs: Any) -> np.ndarray:
 
 def felt_accelerations(mbs: Any, node: Any) -> Any:
     """Add a sensor of the second derivatives of a node's coordinates."""
-    kind = exu.OutputVariableType.Coordinates_tt
-    return mbs.AddSensor(
-        items.SensorNode(nodeNumber=node, outputVariableType=kind, storeInternal=True, writeToFile=False)
-    )
+    return node_sensor(mbs, node, exu.OutputVariableType.Coordinates_tt)
 
 
 def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -28,19 +28,10 @@ Checked = Callable[[float, float, float, float], float]
 
 @dataclass(frozen=True, eq=False)
 class LawFunction:
-    """A coefficient or load that is a function, for compiled code.
+    """A coefficient or load that is a function of ``arguments``, in the order of ``ARGUMENTS``, for compiled code.
 
-    Parameters
-    ----------
-    arguments : tuple of str
-        Its arguments, in the order of ``ARGUMENTS``.
-    positional : callable
-        The function of just these arguments.
-    checked : callable
-        The function of all ``ARGUMENTS``, which raises an error for an invalid result.
-    address : float
-        Address of its machine code, 0 for a Python function.
-
+    ``positional`` takes just these arguments, ``checked`` takes all ``ARGUMENTS`` and raises an error for an invalid
+    result. ``address`` is that of the machine code, 0 for a Python function.
     """
 
     arguments: tuple[str, ...]

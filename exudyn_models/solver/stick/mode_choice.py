@@ -30,23 +30,10 @@ MOST_CHANGES = 100
 
 
 class ModeChoice:
-    """Choice of the modes of contacts in an assembled model at its initial values.
+    """Choice of the modes of contacts, which have their first modes, in an assembled model at its initial values.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    t : float
-        Time of the start in s.
-    contacts : list of StickingContact
-        All contacts, with their first modes.
-    slides : SlidingSteps
-        The steps of contacts that slide in the plane.
-    step : float
-        Step of the run in s.
-    at_start : callable
-        Computes the initial accelerations and calls a function with the time (s) before the first step.
-
+    ``at_start`` computes the initial accelerations and calls a function with the time (s) before the first step,
+    which has the length ``step`` (s).
     """
 
     def __init__(
@@ -134,7 +121,6 @@ class ModeChoice:
         contact.enter(self._mbs, mode)
 
     def _free_motion(self, contact: PlanarContact) -> SlipMotion:
-        """Return the motion of a contact at its start in the present modes."""
         found: SlipMotion | None = None
 
         def look(t: float) -> None:

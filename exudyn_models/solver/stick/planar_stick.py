@@ -20,7 +20,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
-from exudyn_models.forces.slip_kinematics import jacobian_of_slip
+from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     linear_friction,
@@ -42,19 +42,11 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 class PlanarStick(AxialStick):
     """Friction between any two bodies, which sticks exactly; the joints of the model may hold them on one axis.
 
-    Parameters
-    ----------
-    sliding : tuple of callable
-        User functions for force and Jacobian of Coulomb friction.
-    on_axis : bool
-        Whether joints hold both bodies on one axis, so that it is an ``AxialStick``.
-    basis : array of shape (3, k)
-        Directions of slip (m/s, m/s, rad/s) that the locks of this contact hold.
-    allowed : array of shape (3, k)
-        Directions of slip that the joints of the model allow; other locked contacts may hold some of them.
-    direction : array of shape (3,)
-        Slip into which the load has released the contact, scaled to P = 1 m/s and normal to the limit surface.
-
+    ``sliding`` are the user functions for force and Jacobian of Coulomb friction. If ``on_axis`` it is an
+    ``AxialStick``. ``basis``, shape (3, k), are the directions of slip (m/s, m/s, rad/s) that its locks hold, and
+    ``allowed`` those that the joints of the model leave free; other locked contacts may hold some of them.
+    ``direction``, shape (3,), is the slip into which the load has released the contact, scaled to P = 1 m/s and
+    normal to the limit surface.
     """
 
     sliding: tuple[Callable[..., Any], ...] = ()
@@ -101,7 +93,7 @@ class PlanarStick(AxialStick):
 
     def slip_map(self, coordinates: FloatArray) -> FloatArray:
         """Return J, the map of the nodes' velocities to the slip, shape (3, n)."""
-        return np.asarray(jacobian_of_slip(self.kinds, coordinates)[0])
+        return np.asarray(slip_and_place_of_nodes(self.kinds, coordinates)[0])
 
     def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray) -> SlipMotion:
         """Return the motion for coordinates without reference values, and their derivatives."""

@@ -29,13 +29,7 @@ FULL_TURN = 0.3
 class SlidingSteps:
     """Choice of the next step for the ``contacts`` in the plane of a model, at most the ``step`` (s) of the run.
 
-    Attributes
-    ----------
-    rests : bool
-        Whether a contact rests at the end of the last step.
-    pauses : bool
-        Whether the next step must have another size than the run's.
-
+    A contact ``rests`` at the end of the last step, and the run ``pauses`` if the next step must have another size.
     """
 
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:

@@ -22,7 +22,6 @@ from exudyn_models.forces.slip_kinematics import (
     TRANSLATIONS,
     Kinds,
     slip_and_place,
-    slip_jacobian,
 )
 from reference_model.systems import FloatArray
 
@@ -39,21 +38,11 @@ RESOLVED = 1e-6
 class SlipMotion(NamedTuple):
     """Motion of a contact that sticks exactly.
 
-    Parameters
-    ----------
-    slip, rate : array of shape (3,)
-        (u, S) in m/s and rad/s, and its rate of change in m/s² and rad/s².
-    bias : array of shape (3,)
-        Rate of change without accelerations, J̇·q̇.
-    gradient : array of shape (3,)
-        Derivatives of P by the slip, zero at rest.
-    radius : float
-        Distance of the disc's centre from the axis of the master, in m.
-    rate_potential : float
-        P of the rate, in m/s².
-    largest_term : float
-        Largest speed in m/s that enters the slip. The rounding error of the slip is proportional to it.
-
+    ``slip`` is (u, S) in m/s and rad/s, ``rate`` its rate of change in m/s² and rad/s², and ``bias`` the rate without
+    accelerations, J̇·q̇, each of shape (3,). ``gradient``, shape (3,), contains the derivatives of P by the slip,
+    zero at rest; ``radius`` is the distance of the disc's centre from the axis of the master, in m;
+    ``rate_potential`` is P of the rate, in m/s². The rounding error of the slip is proportional to ``largest_term``,
+    the largest speed in m/s that enters it.
     """
 
     slip: FloatArray
@@ -89,13 +78,12 @@ class SlipMotion(NamedTuple):
 def _slip_motion(
     kinds: Kinds, contact: Contact, q: FloatArray, q_t: FloatArray, q_tt: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, float, float, float]:
-    """Return the components of a ``SlipMotion``."""
     to_slip, _, _, (x, y) = slip_and_place(kinds, q)
     stepped = q.astype(np.complex128)
     rates = _coordinate_rates(kinds, q, q_t)
     for k in range(len(q)):
         stepped[k] += 1j * IMAGINARY_STEP * rates[k]
-    stepped_map = slip_jacobian(kinds, stepped)[0]
+    stepped_map = slip_and_place(kinds, stepped)[0]
     slip, rate, bias, gradient = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
     largest = 0.0
     for i in range(3):
@@ -130,7 +118,7 @@ def _linear_friction(
     The derivatives are weighted sums of those by coordinates and by velocities. ``slope`` is 1, or 0 for forces that
     do not depend on the slip.
     """
-    to_slip, _, turned = slip_jacobian(kinds, q)
+    to_slip, _, turned, _ = slip_and_place(kinds, q)
     slip = slip_of_nodes(to_slip, q_t)
     unit = _unit_friction(start, contact)
     by_slip = slope * friction * derivatives_by_slip(start[0], start[1], start[2], 0.0, contact)[2]

@@ -47,22 +47,13 @@ class ModeChange:
 
 @dataclass(frozen=True, eq=False)
 class StickingContact:
-    """Contact on one axis that sticks exactly, in an assembled model.
-
-    Parameters
-    ----------
-    item : int
-        Object number of the connector.
-    stick : AxialStick
-        Law of friction and present mode.
-    places : array of int
-        Positions of its coordinates among those of the model.
-
-    """
+    """Contact on one axis that sticks exactly, in an assembled model."""
 
     item: int
+    """Object number of the connector."""
     stick: AxialStick
     places: NDArray[Any]
+    """Positions of its coordinates among those of the model."""
 
     rest_share: ClassVar[float] = 1e-9
     """Time, as a share of the step, within which a contact stops that counts as resting."""

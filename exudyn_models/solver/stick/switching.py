@@ -16,7 +16,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_models.forces.axial_pairs import Mode
-from exudyn_models.solver.repeated_steps import user_function
+from exudyn_models.solver.repeated_steps import kept, user_function
 from exudyn_models.solver.starting_rates import starting_rates
 from exudyn_models.solver.stick.mode_choice import MOST_CHANGES, ModeChoice
 from exudyn_models.solver.stick.sensor_rows import ON_GRID, SensorRows
@@ -63,8 +63,6 @@ def run_switching(
 
 
 class _Run:
-    """Run of ``run_switching``."""
-
     def __init__(self, mbs: Any, settings: Any, solver: Any, contacts: list[StickingContact]) -> None:
         self._mbs, self._settings, self._solver, self._contacts = mbs, settings, solver, contacts
         self._options = options = settings.timeIntegration
@@ -110,24 +108,22 @@ class _Run:
     def _kept_settings(self) -> Iterator[None]:
         options, file, sensors = self._options, self._settings.solution.file, self._settings.solution.sensors
         alpha, newton = options.generalizedAlpha, options.newton
-        kept = file.append, sensors.append, file.writeInitialValues
-        computes = alpha.computeInitialAccelerations
-        modified, tolerance = newton.useModifiedNewton, newton.relativeTolerance
-        iterations = newton.maxIterations
-        newton.maxIterations = max(iterations, ITERATIONS)
-        if self._planar:
-            newton.useModifiedNewton = False  # the direction of friction turns too fast for an old Jacobian
-            self._tolerances = tolerance, min(tolerance, FORCES)
-        try:
-            yield
-        finally:
-            options.startTime, options.endTime, options.numberOfSteps = self._start, self._end, self._steps
-            file.append, sensors.append, file.writeInitialValues = kept
-            alpha.computeInitialAccelerations = computes
-            newton.useModifiedNewton, newton.relativeTolerance = modified, tolerance
-            newton.maxIterations = iterations
-            file.write = self._writes_file
-            self._sensors.restore()
+        with (
+            kept(options, "startTime", "endTime", "numberOfSteps"),
+            kept(file, "append", "write", "writeInitialValues"),
+            kept(sensors, "append"),
+            kept(alpha, "computeInitialAccelerations"),
+            kept(newton, "useModifiedNewton", "relativeTolerance", "maxIterations"),
+        ):
+            newton.maxIterations = max(newton.maxIterations, ITERATIONS)
+            if self._planar:
+                # The direction of friction turns too fast for an old Jacobian.
+                newton.useModifiedNewton = False
+                self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
+            try:
+                yield
+            finally:
+                self._sensors.restore()
 
     def _before_step(self, own: Callable[[Any, float], bool]) -> Callable[[Any, float], bool]:
         def prepare(mbs: Any, t: float) -> bool:
@@ -219,7 +215,6 @@ class _Run:
         return passed
 
     def _take_back(self) -> None:
-        """Return to the start of the step."""
         data = self._mbs.systemData
         state = data.GetSystemState(exu.ConfigurationType.StartOfStep)
         data.SetSystemState(state, exu.ConfigurationType.Current)
@@ -307,7 +302,6 @@ class _Run:
             self._modes.enter(contact, Mode.LOCKED)
 
     def _step_to(self, t: float) -> None:
-        """Step to the time t (s) of a change."""
         self._part(t, 1, lambda time: True, write=False, keep=True)
 
     def _note(self, before: Sequence[Mode]) -> None:

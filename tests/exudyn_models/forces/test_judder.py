@@ -1,17 +1,13 @@
 """A clutch disc on a torsional spring that a drive drags, with friction that falls with the slip: judder."""
 
 import math
-from typing import Any
 
 import exudyn as exu
-import exudyn.itemInterface
 import numpy as np
 import pytest
-from free_bodies import rotor, run_explicitly
+from free_bodies import coordinate, items, new_model, node_sensor, rotor, run_explicitly, settings_of
 
 from exudyn_models import add_ring_friction, solve_dynamic
-
-items: Any = exudyn.itemInterface
 
 INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
 SPEED, RADIUS, LOAD, COEFFICIENT = 50.0, 0.1, 1000.0, 0.5
@@ -22,13 +18,10 @@ FALLS = [-1.0, 0.0, 0.9, 1.1, 4.0]
 
 
 def juddering(fall, push, epsilon=1e-3):
-    mbs = exu.SystemContainer().AddSystem()
+    mbs = new_model()
     drive, disc = rotor(mbs, 1e12, SPEED), rotor(mbs, INERTIA, push)
     mbs.SetNodeParameter(disc, "initialCoordinates", [MOMENT / STIFFNESS])
-    ends = [
-        mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
-        for node in (mbs.AddNode(items.NodePointGround()), disc)
-    ]
+    ends = [coordinate(mbs, None), coordinate(mbs, disc)]
     mbs.AddObject(items.CoordinateSpringDamper(markerNumbers=ends, stiffness=STIFFNESS, damping=DAMPING))
     add_ring_friction(
         mbs,
@@ -40,10 +33,7 @@ def juddering(fall, push, epsilon=1e-3):
         regularisation=epsilon,
     )
     kinds = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t
-    sensors = [
-        mbs.AddSensor(items.SensorNode(nodeNumber=disc, storeInternal=True, outputVariableType=kind))
-        for kind in kinds
-    ]
+    sensors = [node_sensor(mbs, disc, kind) for kind in kinds]
     mbs.Assemble()
     return mbs, sensors
 
@@ -77,11 +67,9 @@ def test_a_pushed_disc_vibrates_by_the_closed_form_while_it_slips(fall):
 
 def test_judder_that_has_grown_sticks_once_in_a_period_and_never_passes_the_drive():
     mbs, (_, of_speed) = juddering(2.0, push=40.0)
-    settings = exu.SimulationSettings()
-    settings.solution.file.write = False
+    settings = settings_of(0.6, 600)
     settings.solution.sensors.writePeriod = 0.0  # every step
     options = settings.timeIntegration
-    options.endTime, options.numberOfSteps, options.verboseMode = 0.6, 600, 0
     options.absoluteTolerance, options.relativeTolerance = 1e-8, 0.0
     solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
     t, speed = mbs.GetSensorStoredData(of_speed).T

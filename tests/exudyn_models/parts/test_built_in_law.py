@@ -36,7 +36,7 @@ def kind_of(contact):
 
 def end_of(load, grounded, solver, **contact):
     """Return the speeds and the heat of a run that ends in stick."""
-    mbs, disc, friction = braked(load, grounded, **contact)
+    mbs, disc, friction = braked(load, grounded, -20.0 if grounded else 20.0, **contact)
     drive(mbs, disc, 3.0)
     heat = friction.add_sensor("heat")
     settings = settings_of(1.2, 3000, newton=1e-12)
@@ -53,18 +53,6 @@ def test_motion_and_heat_are_those_of_the_user_function_to_rounding(solver, grou
     by_function, second = end_of(in_python, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
     assert (first, second) == (BUILT_IN, USER_FUNCTION)
     np.testing.assert_allclose(built_in, by_function, rtol=1e-11, atol=1e-11)
-
-
-@pytest.mark.parametrize("grounded", [False, True])
-@pytest.mark.parametrize("spin", [0.0, 1e-9, 0.05, -0.05, 0.0834, -7.0])
-def test_moments_are_those_of_the_user_function_to_rounding(spin, grounded):
-    def accelerations(load):
-        mbs, *_ = braked(load, grounded, spin)
-        mbs.Assemble()
-        mbs.SolveDynamic(settings_of(1e-9, 1), SOLVERS.GeneralizedAlpha)
-        return mbs.systemData.GetODE2Coordinates_tt()
-
-    np.testing.assert_allclose(accelerations(LOAD), accelerations(in_python), rtol=1e-9, atol=1e-15)
 
 
 def test_the_solvers_know_the_damping_of_creep():

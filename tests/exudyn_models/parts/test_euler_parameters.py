@@ -16,7 +16,11 @@ from exudyn_models import (
 )
 
 PAIRS = [(EULER, EULER), ("rotor", EULER), (EULER, "planar")]
-RING = {"contact_radius": 0.12, "friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
+LAW = {
+    "friction_coefficient": 0.25,
+    "normal_load": lambda radius: 2.0 + radius,
+}  # compiled for other tests too
+RING = LAW | {"contact_radius": 0.12, "regularisation": 0.01}
 FRICTION = pytest.mark.parametrize("friction", [True, False], ids=["friction", "support"])
 
 

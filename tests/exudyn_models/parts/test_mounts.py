@@ -5,8 +5,8 @@ from itertools import product
 import exudyn as exu
 import numpy as np
 import pytest
-from exudyn.utilities import RigidBodyInertia
 from free_bodies import (
+    ball,
     items,
     new_model,
     planar_body,
@@ -51,14 +51,7 @@ def body_of(mbs, kind, axes, place, velocity=NONE, spin=NONE, mass=1.0, inertia=
         node = mbs.AddNode(items.Node1D(referenceCoordinates=[0.3], initialVelocities=[axes[:, 2] @ spin]))
         frame = {"referencePosition": place, "referenceRotation": axes @ rotations.RotationMatrixZ(-0.3)}
         return mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia, **frame))
-    return mbs.CreateRigidBody(
-        inertia=RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3)),
-        nodeType=SPATIAL[kind],
-        referencePosition=place,
-        referenceRotationMatrix=axes,
-        initialVelocity=velocity,
-        initialAngularVelocity=spin,
-    )
+    return ball(mbs, SPATIAL[kind], mass, inertia, place, velocity, spin, axes)
 
 
 def marker_on(mbs, body, place):
@@ -93,7 +86,7 @@ def motion(kinds, turned, own):
         vectors = [turned @ vector for vector in (place, velocity, spin)]
         bodies.append(body_of(mbs, kind, turned @ axes, *vectors, *numbers))
         rotation.append(axes.T)
-    add_ring_friction(mbs, *bodies, **THREE, master_rotation=rotation[0], disc_rotation=rotation[1])
+    add_ring_friction(mbs, *bodies, **WITH_RADIUS, master_rotation=rotation[0], disc_rotation=rotation[1])
     if "Tait-Bryan" in kinds:  # the trapezoidal rule would err differently in every orientation
         mbs.Assemble()
         run_explicitly(mbs, 0.05, 40)

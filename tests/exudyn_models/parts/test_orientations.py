@@ -3,10 +3,9 @@
 from itertools import permutations, product
 
 import exudyn as exu
-import exudyn.utilities
 import numpy as np
 import pytest
-from free_bodies import items, new_model, rotor, settings_of
+from free_bodies import ball, items, new_model, rotor, settings_of
 
 from exudyn_models import add_native_friction, add_ring_friction, solve_dynamic
 from exudyn_models.solver.linear_matrices import singular_mass
@@ -24,21 +23,13 @@ LAW = {"friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
 POINTS = LAW | {"contact_radius": 0.12, "contact_points": 4}  # which a quarter turn takes into each other
 
 
-def ball(mbs, node, axes, mass, inertia, *motion):
-    """Add a body with ``axes`` in global coordinates and its position, velocity and angular velocity."""
-    names = "referencePosition", "initialVelocity", "initialAngularVelocity"
-    moving = dict(zip(names, motion, strict=True))
-    whole = exudyn.utilities.RigidBodyInertia(mass=mass, inertiaTensor=inertia * np.eye(3))
-    return mbs.CreateRigidBody(inertia=whole, nodeType=node, referenceRotationMatrix=axes, **moving)
-
-
 def motion(node, master_axes, disc_axes):
     """Return positions, velocities and angular velocities of both bodies at 0.1 s, in the master's first axes."""
     mbs = new_model()
     master = [0.1, 0.2, 0.3], [0.1, 0.05, 0.0], [0.0, 0.0, 2.0]
     disc = [0.15, 0.18, 0.3], [-0.2, 0.3, 0.0], [0.0, 0.0, -1.0]
     bodies = [
-        ball(mbs, node, axes, *numbers, *[master_axes @ np.array(vector) for vector in vectors])
+        ball(mbs, node, *numbers, *[master_axes @ np.array(vector) for vector in vectors], axes)
         for axes, numbers, vectors in (
             (master_axes, (2.0, 0.7), master),
             (master_axes @ disc_axes, (1.0, 0.02), disc),
@@ -66,7 +57,7 @@ def test_all_orientations_of_both_bodies_give_the_same_motion(node):
 def test_only_a_body_without_inertia_is_said_to_have_none_in_any_orientation(inertia):
     for axes in AXES:
         mbs = new_model()
-        ball(mbs, exu.NodeType.RotationEulerParameters, axes, 1.0, inertia, *np.zeros((3, 3)))
+        ball(mbs, exu.NodeType.RotationEulerParameters, 1.0, inertia, *np.zeros((3, 3)), axes)
         mbs.Assemble()
         assert singular_mass(mbs) == "" if inertia else "coordinate 6 of node 0" in singular_mass(mbs)
 
@@ -88,11 +79,11 @@ def test_the_built_in_contact_refuses_a_rotor_or_a_ground_off_the_global_z_axis(
 @NODES
 def test_a_body_that_spins_across_the_axis_of_the_contact_is_refused(node, is_master):
     mbs = new_model()
-    body = ball(mbs, node, np.eye(3), 1.0, 0.1, np.zeros(3), np.zeros(3), [50.0, 0.0, 1.0])
+    body = ball(mbs, node, 1.0, 0.1, np.zeros(3), np.zeros(3), [50.0, 0.0, 1.0])
     bodies = (body, rotor(mbs, 1.0, 0.0)) if is_master else (None, body)
     with pytest.raises(ValueError, match=r"_node 0 initially spins about \[50.0, 0.0, 1.0\]"):
         add_ring_friction(mbs, *bodies, **POINTS)
     add_ring_friction(mbs, *bodies, **LAW, contact_radius=0.0)  # a pin exerts no moment
-    tilted = ball(mbs, node, ACROSS, 1.0, 0.1, *np.zeros((3, 3)))
+    tilted = ball(mbs, node, 1.0, 0.1, *np.zeros((3, 3)), ACROSS)
     with pytest.raises(ValueError, match=r"disc_node .* turns about"):
         add_ring_friction(mbs, tilted, rotor(mbs, 1.0, 0.0), **POINTS)

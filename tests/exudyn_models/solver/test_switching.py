@@ -6,7 +6,8 @@ import math
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import drive, new_model, planar_body, rotations, rotor, settings_of
+from free_bodies import ball, drive, new_model, planar_body, rotations, rotor, settings_of
+from free_bodies import changes_of as run
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
 
@@ -23,14 +24,6 @@ def braked(speed, moment):
     drive(mbs, wheel, moment)
     friction = add_ring_friction(mbs, None, wheel, **BRAKE)
     return mbs, friction
-
-
-def run(mbs, end, step, solver=SOLVERS.TrapezoidalIndex2, **options):
-    """Return the changes of mode as (time, contact, before, after)."""
-    if not mbs.systemIsConsistent:
-        mbs.Assemble()
-    changes = solve_dynamic(mbs, settings_of(end, round(end / step)), solver, **options)
-    return [(change.time, change.contact, int(change.before), int(change.after)) for change in changes]
 
 
 def angle(mbs):
@@ -184,18 +177,15 @@ def two_discs(kind, solver, step):
     bodies = []
     for scale, speed in ((3.0, 0.0), (1.0, 4.0)):
         place = [0.3, -0.2, 0.1 * scale]
-        body = mbs.CreateRigidBody(
-            inertia=scaled_inertia(scale),
-            referencePosition=place,
-            referenceRotationMatrix=rotations.RotationMatrixZ(0.7),
-            initialAngularVelocity=[0.0, 0.0, speed],
-            nodeType=getattr(exu.NodeType, kind),
+        turned = rotations.RotationMatrixZ(0.7)
+        body = ball(
+            mbs, getattr(exu.NodeType, kind), 2.0 * scale, scale, place, [0.0] * 3, [0.0, 0.0, speed], turned
         )
         mbs.CreateRevoluteJoint(itemNumbers=[ground, body], position=place, axis=[0, 0, 1])
         bodies.append(body)
     law = {"contact_radius": 0.5, "friction_coefficient": 0.4, "normal_load": 10.0}
     add_ring_friction(mbs, *bodies, **law)
-    ((time, _, *modes),) = run(mbs, 3.0, step, solver)
+    ((time, _, *modes),) = run(mbs, 1.6, step, solver)
     assert modes == [1, 0]
     spins = [mbs.GetObjectOutputBody(body, exu.OutputVariableType.AngularVelocity)[2] for body in bodies]
     return time - 1.5, spins
@@ -211,11 +201,6 @@ def test_bodies_in_space_that_joints_hold_on_one_axis_stick_exactly(kind, solver
         assert (coarse, fine) == pytest.approx((0.0, 0.0), abs=1e-10)
     assert spins == pytest.approx([1.0, 1.0], abs=2.0 * abs(fine) + 1e-10)
     assert abs(spins[1] - spins[0]) <= 1e-12
-
-
-def scaled_inertia(scale):
-    """Inertia of a disc with the moment of ``scale`` kg m² about its axis."""
-    return rotations.RigidBodyInertia(mass=2.0 * scale, inertiaTensor=np.diag([0.6, 0.6, 1.0]) * scale)
 
 
 def test_sensors_and_the_solution_file_show_the_kink_and_keep_their_times(tmp_path):

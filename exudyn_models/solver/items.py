@@ -1,0 +1,48 @@
+"""Exudyn's items, and those that several parts of a model need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import exudyn.itemInterface
+
+items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+
+IN_MEMORY: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
+"""Options of a sensor that stores its values for ``mbs.GetSensorStoredData`` and writes no file."""
+
+
+def add_rotor(mbs: Any, inertia: float, speed: float, angle: float = 0.0) -> Any:
+    """Add a rotor on the global z-axis with an inertia in kg m²; return its ``NodeIndex``."""
+    node = mbs.AddNode(
+        items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[speed])
+    )
+    mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=inertia))
+    return node
+
+
+def coordinate_marker(mbs: Any, node: Any, coordinate: int = 0) -> Any:
+    """Add a marker of one coordinate of a node, or of the ground if it is None; return its ``MarkerIndex``."""
+    node = mbs.AddNode(items.NodePointGround()) if node is None else node
+    return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
+
+
+def node_sensor(mbs: Any, node: Any, variable: Any, **options: Any) -> Any:
+    """Add a sensor of an output variable of a node; return its ``SensorIndex``."""
+    return mbs.AddSensor(
+        items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY | options)
+    )
+
+
+def add_integrals(mbs: Any, rates: Callable[..., list[float]], start: Sequence[float]) -> Any:
+    """Add first-order coordinates with their ``rates``, a user function; return their ``NodeIndex``."""
+    node = mbs.AddNode(
+        items.NodeGenericODE1(
+            referenceCoordinates=[0.0] * len(start),
+            initialCoordinates=list(start),
+            numberOfODE1Coordinates=len(start),
+        )
+    )
+    mbs.AddObject(items.ObjectGenericODE1(nodeNumbers=[node], rhsUserFunction=rates))
+    return node
