@@ -170,4 +170,4 @@ def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray
 def _null_space(rows: FloatArray) -> FloatArray:
     """Return a basis of the vectors that ``rows``, shape (m, n), map to zero, shape (n, k)."""
     # SciPy 1.12 fails for a matrix without rows
-    return scipy.linalg.null_space(rows) if rows.size else np.eye(rows.shape[1])
+    return np.asarray(scipy.linalg.null_space(rows) if rows.size else np.eye(rows.shape[1]))

@@ -113,7 +113,7 @@ class PlanarStick(AxialStick):
             return self.taken_over
         count = self.basis.shape[1]
         forces = [mbs.GetObjectOutput(lock, exu.OutputVariableType.Force) for lock in self.locks[:count]]
-        return self.taken_over - self._to_basis.T @ np.array(forces, dtype=float)
+        return np.asarray(self.taken_over - self._to_basis.T @ np.array(forces, dtype=float))
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` on the disc needs, and the slip that it resists.
