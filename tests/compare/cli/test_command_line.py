@@ -153,11 +153,12 @@ def test_a_report_without_differences_prints_its_totals_and_nothing_else(tmp_pat
     assert [study["name"] for study in results["studies"]] == ["agreement"]
 
 
-def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
 
+
+def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())
     assert report("agreement", output=tmp_path) == 0
@@ -248,10 +249,6 @@ def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, capsys):
 
 
 def test_simulate_shows_the_elapsed_time_on_a_terminal(monkeypatch, capsys):
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
-
     monkeypatch.setenv("TERM", "xterm")
     shown = []
     for patience in (0.0, 60.0):

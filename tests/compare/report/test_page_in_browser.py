@@ -35,7 +35,7 @@ def opened(request, browser, reported):
 
 @pytest.fixture
 def page(browser, reported):
-    """The page at one width, for what does not depend on it."""
+    """The page at one width, to test behaviour that is the same at every width."""
     with page_at(browser, reported) as (page, _):
         yield page
 
