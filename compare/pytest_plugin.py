@@ -260,7 +260,7 @@ class Counts:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Count the result of a test."""
         if report.when == "call":
-            self.found[_engine_of(report), _why_none(report) or report.outcome] += 1
+            self.found[_property(report, ENGINE), _why_none(report) or report.outcome] += 1
 
     def pytest_unconfigure(self) -> None:
         """End the measuring process."""
@@ -325,9 +325,12 @@ def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] 
 
 def _why_none(report: pytest.TestReport) -> str:
     """Return why a test has no verdict; "" if it has one or is not a claim."""
-    if report.when != "call" or not report.skipped:
-        return ""
-    return next((str(value) for name, value in report.user_properties if name == PROPERTY), "")
+    return _property(report, PROPERTY) if report.when == "call" and report.skipped else ""
+
+
+def _property(report: pytest.TestReport, name: str) -> str:
+    """Return a property of a claim's test; "" if the test is not a claim."""
+    return str(dict(report.user_properties).get(name, ""))
 
 
 @pytest.hookimpl(trylast=True)
@@ -345,18 +348,13 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
         session.exitstatus = NOTHING_SHOWN
 
 
-def _engine_of(report: pytest.TestReport) -> str:
-    """Return the engine of a test, "" if the test is not a claim."""
-    return next((str(value) for name, value in report.user_properties if name == ENGINE), "")
-
-
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
     """Write the diagnosis of failed engines, and each reason for missing verdicts once."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
         from compare.diagnosis.run import in_short
 
-        fails = Counter(filter(None, map(_engine_of, failed)))
+        fails = Counter(engine for report in failed if (engine := _property(report, ENGINE)))
         for line, number in zip(in_short(fails), fails.values(), strict=True):
             terminalreporter.write_line(
                 f"{number} claim{'s' if number > 1 else ''} failed. Tests with single blocks alone find: {line}"

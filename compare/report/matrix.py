@@ -265,7 +265,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
         if isinstance(outcome, Findings):
             for claim in outcome.claims:
                 claims.setdefault((claim.sentence, claim.equation), {}).setdefault(column, []).append(claim)
-    gaps = {column: gap for column in columns if (gap := _gap(run, study, column)) is not None}
+    gaps = {column: gap for column in columns if (gap := gap_of(run, study.name, column)) is not None}
     rows: list[Row] = []
     for (sentence, equation), found in claims.items():
         theory_only = set(found) == {THEORY}
@@ -328,9 +328,9 @@ def _agrees(cell: Cell | None) -> bool:
     return cell is not None and cell.state is State.AGREES
 
 
-def _gap(run: Run, study: Study, column: str) -> Cell | None:
+def gap_of(run: Run, study: str, column: str) -> Cell | None:
     """Return the cell that replaces missing claims of ``column``; None if none are missing."""
-    outcome = run.outcomes.get((study.name, column))
+    outcome = run.outcomes.get((study, column))
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
     if isinstance(outcome, Failure):

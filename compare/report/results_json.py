@@ -28,7 +28,7 @@ from compare.claims.prose import slug
 from compare.claims.study import Study
 from compare.output.outside_text import all_printable, printable
 from compare.report.at_a_glance import glances
-from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, Row, State
+from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, Row, State, gap_of
 from compare.report.numbers import worst
 from compare.report.quotes import filled
 from compare.run.runner import Run
@@ -320,16 +320,11 @@ def _deciding(claim: Claim) -> dict[str, Any]:
 
 
 def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
-    outcome = run.outcomes.get((study, column))
-    state, reason = State.MISSING.value, ""
-    if isinstance(outcome, Failure):
-        state, reason = (State.MISSING if outcome.unfinished else State.FAILED).value, outcome.reason
-    elif outcome is not None:
-        reason = outcome.not_simulated
-        state = State.NOT_SIMULATED.value if reason else "finished"
+    """Return state, reason for missing claims and duration of one measurement."""
+    gap = gap_of(run, study, column)
     return {
-        "state": state,
-        "reason": reason,
+        "state": "finished" if gap is None else gap.state.value,
+        "reason": gap.reason if gap is not None and (study, column) in run.outcomes else "",
         "seconds": run.seconds.get((study, column)),
     }
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from collections import defaultdict
+from collections.abc import Callable
+from typing import Any
 
 from compare.claims.study import Findings, Study
 from compare.run.runner import measured, pace
@@ -26,6 +28,7 @@ class Bench:
         self.seed = seed
         self._workers = Workers(1)
         self._limit, self._quick = limit, quick
+        self._ready: tuple[str, str] | None = None
         self._spent: defaultdict[tuple[str, str], float] = defaultdict(float)
         self._pace: dict[str, float] = {}
 
@@ -44,25 +47,25 @@ class Bench:
             return Findings(
                 not_simulated=f"would take about {estimate:.2g} s with {engine}; use --level full"
             )
-        self._workers.limit = self._limit + START_UP
-        self._workers.ask(
-            measured, study, engine, (NO_CLAIM,), self.seed, owner=engine
-        )  # imports do not count
-        began, self._workers.limit = time.monotonic(), left
-        found: Findings | Failure = self._workers.ask(
-            measured, study, engine, (part,), self.seed, owner=engine
-        )
+        if self._ready != key:  # imports do not count
+            self._ask(self._limit + START_UP, engine, measured, study, engine, (NO_CLAIM,), self.seed)
+        began = time.monotonic()
+        found: Findings | Failure = self._ask(left, engine, measured, study, engine, (part,), self.seed)
         self._spent[key] += time.monotonic() - began
+        self._ready = key if isinstance(found, Findings) else None  # a failure may have ended the process
         out_of_time = self._spent[key] >= self._limit and not isinstance(found, Findings)
         return Findings(not_simulated=longer) if out_of_time and self._quick else found
 
     def _pace_of(self, engine: str) -> float:
         """Return the wall-clock time for a second of motion, 0 if the engine has no fixed step or no result."""
         if engine not in self._pace:
-            self._workers.limit = self._limit + START_UP
-            found = self._workers.ask(pace, engine, owner=engine)
+            found = self._ask(self._limit + START_UP, engine, pace, engine)
             self._pace[engine] = found if isinstance(found, float) else 0.0
         return self._pace[engine]
+
+    def _ask(self, limit: float, engine: str, function: Callable[..., Any], *arguments: Any) -> Any:
+        self._workers.limit = limit
+        return self._workers.ask(function, *arguments, owner=engine)
 
     def close(self) -> None:
         """End the measuring process."""

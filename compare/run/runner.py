@@ -153,76 +153,67 @@ def run(
         versions={one.name: engine_version(one.name, one.kin, one.version) for one in engines},
         seed=next((engine.seed for engine in engines), None),
     )
-    runner = _Runner(result, folder, jobs, expected or {}, progress)
-    with Workers(jobs, limit, runner.show) as workers:
+    with Workers(jobs, limit) as workers:
+        runner = _Runner(result, workers, jobs, Store(folder), DrawingStore(folder), expected or {}, progress)
+        workers.watch = runner.show
         try:
-            runner.work(workers, {e.name: e for e in engines}, resume)
+            runner.work({engine.name: engine for engine in engines}, resume)
         except KeyboardInterrupt:
             result.interrupted = True
     return result
 
 
+@dataclass
 class _Runner:
     """Scheduler of the measurements, and of each study's drawing after its last one unless a stored drawing fits."""
 
-    _workers: Workers
+    result: Run
+    workers: Workers
+    jobs: int
+    store: Store
+    drawings: DrawingStore
+    expected: Mapping[tuple[str, str], float]
+    progress: Progress
+    began: dict[Hashable, float] = field(default_factory=dict)
+    stamps: dict[str, str | None] = field(default_factory=dict)
+    drawn_from: dict[str, str] = field(default_factory=dict)
 
-    def __init__(
-        self,
-        result: Run,
-        folder: Path,
-        jobs: int,
-        expected: Mapping[tuple[str, str], float],
-        progress: Progress,
-    ) -> None:
-        self._result = result
-        self._jobs = jobs
-        self._expected = expected
-        self._began: dict[Hashable, float] = {}
-        self._store = Store(folder)
-        self._drawings = DrawingStore(folder)
-        self._progress = progress
-        self._stamps: dict[str, str | None] = {}
-        self._drawn_from: dict[str, str] = {}
-
-    def work(self, workers: Workers, engines: Mapping[str, Engine], resume: bool) -> None:
-        self._workers, result = workers, self._result
+    def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
+        result = self.result
         work = {
             (study.name, column): (study, engines.get(column))
             for study in sorted(result.studies, key=lambda study: -study.seconds)
             for column in result.columns(study)
         }
-        self._stamps = {
-            column: engine_stamp(engines.get(column)) for column in {column for _, column in work}
-        }
+        self.stamps = {column: engine_stamp(engines.get(column)) for column in {column for _, column in work}}
         for key, (study, engine) in work.items():
-            found = self._store.find(*key, self._stamps[key[1]], study.identities) if resume else None
+            found = self.store.find(*key, self.stamps[key[1]], study.identities) if resume else None
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             else:
-                self._workers.submit(key, measured, study, engine, owner=owner_of(engine))
+                self.workers.submit(key, measured, study, engine, owner=owner_of(engine))
         for study in result.studies:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):
-            self._workers.submit(("errata", i), erratum.evidence)
-        for finished in workers.finished():
+            self.workers.submit(("errata", i), erratum.evidence)
+        for finished in self.workers.finished():
             self._take(finished)
         self.show([])
 
     def show(self, running: Collection[Hashable]) -> None:
         """Report the names of the running work, and the remaining time by the durations of an earlier run."""
-        result, now = self._result, time.monotonic()
-        self._began = {key: self._began.get(key, now) for key in running}
+        result, now = self.result, time.monotonic()
+        self.began = {key: self.began.get(key, now) for key in running}
         left: dict[Hashable, float] = {}
         for study in result.studies:
             for column in result.columns(study):
                 if (key := (study.name, column)) not in result.outcomes:
-                    spent = now - self._began.get(key, now)
-                    left[key] = max(self._expected.get(key, study.seconds) - spent, 0.0)
+                    spent = now - self.began.get(key, now)
+                    left[key] = max(self.expected.get(key, study.seconds) - spent, 0.0)
         total = sum(len(result.columns(study)) + 1 for study in result.studies) + len(result.errata)
         names = ", ".join(_name_of(key) for key in running)
-        seconds = max(sum(left.values()) / self._jobs, *left.values(), 0.0)
-        self._progress(result.done, total, names, seconds)
+        seconds = max(sum(left.values()) / self.jobs, *left.values(), 0.0)
+        self.progress(result.done, total, names, seconds)
 
     def _take(self, done: Done) -> None:
         """Store a finished piece of work."""
@@ -230,30 +221,30 @@ class _Runner:
         name: Any
         kind, name = done.key  # type: ignore[misc]
         if kind == "errata":
-            self._result.evidence[name] = done.value
+            self.result.evidence[name] = done.value
             return
         if kind == "draw":
-            self._result.drawings[name] = done.value
+            self.result.drawings[name] = done.value
             if isinstance(done.value, Drawing):
-                self._drawings.keep(name, self._drawn_from[name], done.value)
+                self.drawings.keep(name, self.drawn_from[name], done.value)
             return
-        self._result.outcomes[kind, name] = done.value
-        self._result.seconds[kind, name] = done.seconds
+        self.result.outcomes[kind, name] = done.value
+        self.result.seconds[kind, name] = done.seconds
         if isinstance(done.value, Findings):
-            self._store.keep(kind, name, self._stamps[name], done.value, done.seconds)
+            self.store.keep(kind, name, self.stamps[name], done.value, done.seconds)
         self._draw_if_complete(kind)
 
     def _draw_if_complete(self, name: str) -> None:
-        study = next(study for study in self._result.studies if study.name == name)
-        if any((name, column) not in self._result.outcomes for column in self._result.columns(study)):
+        study = next(study for study in self.result.studies if study.name == name)
+        if any((name, column) not in self.result.outcomes for column in self.result.columns(study)):
             return
-        data = self._result.data(study)
-        self._drawn_from[name] = drawing_stamp(data)
-        found = self._drawings.find(name, self._drawn_from[name], study.figures)
+        data = self.result.data(study)
+        self.drawn_from[name] = drawing_stamp(data)
+        found = self.drawings.find(name, self.drawn_from[name], study.figures)
         if found is not None:
-            self._result.drawings[name] = found
+            self.result.drawings[name] = found
         else:
-            self._workers.submit(("draw", name), drawn, study, data, first=True)
+            self.workers.submit(("draw", name), drawn, study, data, first=True)
 
 
 def _name_of(key: Any) -> str:

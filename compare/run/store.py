@@ -33,14 +33,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class _Archives:
-    """A folder with one archive for each finished piece of work.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder, made with the first archive.
-
-    """
+    """A folder, made with its first archive, with one archive for each finished piece of work."""
 
     folder: Path
 

@@ -96,12 +96,10 @@ class Workers:
     Leaving the context kills all processes.
     """
 
-    def __init__(
-        self, jobs: int = 1, limit: float | None = None, watch: Callable[[list[Hashable]], None] | None = None
-    ) -> None:
+    def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
         self._jobs = jobs
         self.limit = limit
-        self._watch = watch
+        self.watch: Callable[[list[Hashable]], None] = lambda running: None
         self._queue: deque[_Work] = deque()
         self._processes: list[_Worker] = []
         self._temporary = tempfile.TemporaryDirectory(prefix="friction-discs-", ignore_cleanup_errors=True)
@@ -139,8 +137,7 @@ class Workers:
         """Yield each result as soon as it is available, until no work is left; you may submit more meanwhile."""
         while self._queue or any(worker.key is not None for worker in self._processes):
             yield from self._start()
-            if self._watch:
-                self._watch([worker.key for worker in self._processes if worker.key is not None])
+            self.watch([worker.key for worker in self._processes if worker.key is not None])
             yield from self._collect()
 
     def ask(self, function: Callable[..., Any], *arguments: Any, owner: str = "") -> Any:

@@ -192,18 +192,6 @@ AGREEMENT = fake("agreement", "A claim that holds", "One half.", measure_agreeme
 COUNTED = fake("counted", "A claim that leaves a mark", "One half.", measure_agreement_and_count)
 
 
-MEASURED = []
-"""Names of the engines that ``measure_motion`` was called with."""
-
-
-def measure_motion(engine):
-    MEASURED.append(engine.name)
-    return Findings(data={"end": engine.simulate(FIG5, [0.1, 0.0, 0.03, 0.0], [0.0, 1.0]).at_end})
-
-
-MOTION = fake("motion", "Where a pin is after 1 s", "Somewhere.", measure_motion)
-
-
 def measure_too_roughly(engine):
     return Findings((claim("Nothing is shown", engine.name, 2.0, 2.1, 0.5),))
 

@@ -275,7 +275,7 @@ def test_the_example_fails_without_its_error_and_passes_with_it(example, monkeyp
         "rough:honest": {"passed", "skipped"},
     }
     monkeypatch.setattr("compare.diagnosis.run.PROBES", ())
-    left_out = ("hardens", "range", "play", "Momentum")
+    left_out = ("hardens", "range", "play", "Momentum", "Position")
     chosen = ("-k", " and ".join(f"not {word}" for word in left_out))
     _, output, cases = judge(example, "trajectories", *allowed, options=chosen)
     asked = {claim for claim in CLAIMS["trajectories"] if not any(word in claim for word in left_out)}

@@ -153,11 +153,12 @@ def test_a_report_without_differences_prints_its_totals_and_nothing_else(tmp_pat
     assert [study["name"] for study in results["studies"]] == ["agreement"]
 
 
-def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
+class Terminal(io.StringIO):
+    def isatty(self):
+        return True
 
+
+def test_on_a_terminal_there_is_a_progress_bar(tmp_path, monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setattr(sys, "stderr", Terminal())
     assert report("agreement", output=tmp_path) == 0
@@ -192,24 +193,17 @@ SIMULATE = ("--engine", "fake_studies:straight", "--samples", "3", "--until", "2
 UNITS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "spin": "rad/s"}
 OF_PIN = {name: unit for name, unit in UNITS.items() if name not in ("angle", "spin")}
 MOTIONS = {
-    "pin": (FIG5, OF_PIN, (), [0.1, 0.0, 0.03, 0.0]),
     "pin with changes": (
         replace(FIG5, mass=2.0, disc_speed=-1.25),
         OF_PIN,
         ("--set", "mass=2", "--set", "disc_speed=-1.25", "--start", "-0.1", "0", "-3e-2", "1"),
         [-0.1, 0.0, -0.03, 1.0],
     ),
-    "disc": (
-        FIG11,
-        UNITS,
-        ("--start", "0.1", "0", "-0.5", "0.25", "0", "1.25"),
-        [0.1, 0.0, -0.5, 0.25, 0.0, 1.25],
-    ),
     "disc of 6 points": (
         replace(FIG11, contact_points=6),
         UNITS,
-        ("--set", "contact_points=6", "--start", *"000100"),
-        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        ("--set", "contact_points=6", "--start", "0.1", "0", "-0.5", "0.25", "0", "1.25"),
+        [0.1, 0.0, -0.5, 0.25, 0.0, 1.25],
     ),
     "disc of none": (
         replace(FIG11, shaft_speed=-1.0),
@@ -247,19 +241,14 @@ def test_simulate_prints_a_table_or_writes_files(motion, tmp_path, monkeypatch, 
     assert content["solution"]["tolerance"] == 1e-9
 
 
-@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
-def test_simulate_draws_the_motion_in_place_of_a_table(suffix, tmp_path, capsys):
-    picture = tmp_path / f"motion{suffix}"
+def test_simulate_draws_the_motion_in_place_of_a_table(tmp_path, capsys):
+    picture = tmp_path / "motion.pdf"
     assert cli.status(["simulate", "pin", *SIMULATE, "--plot", str(picture)]) == 0
     assert capsys.readouterr() == ("", "")
-    assert picture.read_bytes().startswith({".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}[suffix])
+    assert picture.read_bytes().startswith(b"%PDF")
 
 
 def test_simulate_shows_the_elapsed_time_on_a_terminal(monkeypatch, capsys):
-    class Terminal(io.StringIO):
-        def isatty(self):
-            return True
-
     monkeypatch.setenv("TERM", "xterm")
     shown = []
     for patience in (0.0, 60.0):
@@ -288,12 +277,7 @@ def test_files_are_kept_if_the_engine_fails(tmp_path):
     assert [path.read_text() for path in tmp_path.iterdir()] == ["precious"]
 
 
-needs_full = pytest.mark.skipif(
-    not os.path.exists("/dev/full"), reason="there is no device that is always full"
-)
-
-
-@needs_full
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no device that is always full")
 @pytest.mark.parametrize("arguments", ["list", "simulate pin --until 1", "simulate pin --output full.csv"])
 def test_a_full_disk_gives_a_message_of_one_line(arguments, tmp_path, monkeypatch, capsys):
     (tmp_path / "full.csv").symlink_to("/dev/full")
@@ -362,27 +346,19 @@ def test_lack_of_memory_is_reported(monkeypatch, tmp_path, capsys):
 
 
 ENDS_OF_PROCESSES = [
-    (["simulate", "pin", "--set", "mass=-1"], os.devnull, 2, "mass = -1 kg: it must be > 0\n"),
-    pytest.param(
-        ["list"], "/dev/full", 2, "cannot write to the output: No space left on device\n", marks=needs_full
-    ),
-    (["interrupted while it loads"], os.devnull, 130, "Interrupted.\n"),
+    (["simulate", "pin", "--set", "mass=-1"], 2, "mass = -1 kg: it must be > 0\n"),
+    (["interrupted while it loads"], 130, "Interrupted.\n"),
 ]
 
 
-@pytest.mark.parametrize(("arguments", "output", "status", "sentence"), ENDS_OF_PROCESSES)
-def test_a_process_ends_with_status_and_message(arguments, output, status, sentence, tmp_path):
+@pytest.mark.parametrize(("arguments", "status", "sentence"), ENDS_OF_PROCESSES)
+def test_a_process_ends_with_status_and_message(arguments, status, sentence, tmp_path):
     if status == 130:
         (tmp_path / "typer.py").write_text("raise KeyboardInterrupt")
     path = os.pathsep.join([str(tmp_path), environment()["PYTHONPATH"]])
-    with open(output, "w") as stream:
-        done = subprocess.run(
-            [*REAL, *arguments],
-            env=environment(PYTHONPATH=path),
-            stdout=stream,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+    done = subprocess.run(
+        [*REAL, *arguments], env=environment(PYTHONPATH=path), capture_output=True, text=True
+    )
     assert (done.returncode, done.stderr) == (status, sentence)
 
 

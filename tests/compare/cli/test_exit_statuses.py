@@ -42,9 +42,7 @@ RAISING = [
     ("simulate pin --engine hostile:leaving", 1),
 ]
 ENDING = [
-    ("report asking --jobs 1 --engine hostile:dying", 1),
     ("report asking --jobs 1 --engine exiting:simulate", 2),
-    ("matrix --engine exiting:simulate", 2),
     ("simulate pin --engine hostile:dying", 1),
 ]
 """Ends its own process."""

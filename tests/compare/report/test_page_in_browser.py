@@ -16,12 +16,12 @@ WIDTHS = 1280, 390
 
 
 @contextmanager
-def page_at(width, browser, reported):
-    """Yield the page at a width, with the addresses that it requested."""
-    page = browser.new_page(viewport={"width": width, "height": 800})
+def page_at(browser, reported, where="", **options):
+    """Yield the page, with the addresses that it requested; ``where`` is the end of its link."""
+    page = browser.new_page(**options)
     asked = []
     page.on("request", lambda sent: asked.append(sent.url))
-    page.goto((reported[1] / "index.html").as_uri(), wait_until="load")
+    page.goto((reported[1] / "index.html").as_uri() + where, wait_until="load")
     yield page, asked
     page.close()
 
@@ -29,8 +29,15 @@ def page_at(width, browser, reported):
 @pytest.fixture(params=WIDTHS)
 def opened(request, browser, reported):
     """The page, and the addresses that it requested."""
-    with page_at(request.param, browser, reported) as opened:
+    with page_at(browser, reported, viewport={"width": request.param, "height": 800}) as opened:
         yield opened
+
+
+@pytest.fixture
+def page(browser, reported):
+    """The page at one width, to test behaviour that is the same at every width."""
+    with page_at(browser, reported) as (page, _):
+        yield page
 
 
 def overhang(page):
@@ -68,8 +75,7 @@ def test_the_first_screen_shows_totals_differences_and_grades(opened):
     assert page.locator("#engines .badge").all_inner_texts()[:2] == ["differs", "differs"]
 
 
-def test_all_images_are_decoded_when_visible(opened):
-    page, _ = opened
+def test_all_images_are_decoded_when_visible(page):
     page.evaluate("location.hash = '#verdicts'")
     page.evaluate("[...document.images].forEach(image => { image.loading = 'eager'; })")
     page.wait_for_function("[...document.images].every(image => image.complete)")
@@ -100,19 +106,16 @@ def test_the_link_of_an_engine_leads_to_its_claims(opened):
     assert page.locator("#studies").bounding_box()["y"] < 800
 
 
-def test_the_link_to_the_claims_opens_none(opened):
-    page, _ = opened
+def test_the_link_to_the_claims_opens_none(page):
     page.locator(".ways a", has_text="Check one claim").click()
     assert page.locator("main details[open]").count() == 0
 
 
 def test_the_page_is_readable_without_scripts(browser, reported):
-    page = browser.new_page(java_script_enabled=False)
-    page.goto((reported[1] / "index.html").as_uri() + f"#{CLAIM}")
-    page.locator(f'[id="{CLAIM}"] > summary').click()  # the browser opens its study
-    assert page.locator(f'[data-claim="{CLAIM}"]').is_visible()
-    assert not page.locator("#find").is_visible()
-    page.close()
+    with page_at(browser, reported, f"#{CLAIM}", java_script_enabled=False) as (page, _):
+        page.locator(f'[id="{CLAIM}"] > summary').click()  # the browser opens its study
+        assert page.locator(f'[data-claim="{CLAIM}"]').is_visible()
+        assert not page.locator("#find").is_visible()
 
 
 def shown(page):
@@ -120,8 +123,7 @@ def shown(page):
     return page.evaluate("[...document.querySelectorAll('details.claim:not([hidden])')].map(one => one.id)")
 
 
-def test_filters_select_claims_and_are_stored_in_the_link(opened, reported):
-    page, _ = opened
+def test_filters_select_claims_and_are_stored_in_the_link(page):
     everything = shown(page)
     page.select_option("[name=verdict]", "differs")
     assert shown(page) == [CLAIM]
@@ -149,14 +151,11 @@ def test_filters_select_claims_and_are_stored_in_the_link(opened, reported):
     ],
 )
 def test_a_link_may_contain_a_filter(browser, reported, asked):
-    page = browser.new_page()
-    page.goto((reported[1] / "index.html").as_uri() + f"?{asked}")
-    assert len(shown(page)) == 1
-    page.close()
+    with page_at(browser, reported, f"?{asked}") as (page, _):
+        assert len(shown(page)) == 1
 
 
-def test_keys_move_to_the_search_and_between_claims(opened):
-    page, _ = opened
+def test_keys_move_to_the_search_and_between_claims(page):
     page.keyboard.press("/")
     assert page.evaluate("document.activeElement.name") == "q"
     page.keyboard.type("semicircle")
@@ -167,8 +166,7 @@ def test_keys_move_to_the_search_and_between_claims(opened):
     assert page.locator("details.claim[open]").count() == 1
 
 
-def test_an_animation_plays_where_its_study_opens_and_pauses_on_request(opened):
-    page, _ = opened
+def test_an_animation_plays_where_its_study_opens_and_pauses_on_request(page):
     page.evaluate("location.hash = '#figure/fake-motion'")
     image, button = page.locator(".moves img"), page.locator(".moves .play")
     for suffix, word in (
@@ -184,11 +182,9 @@ def test_an_animation_plays_where_its_study_opens_and_pauses_on_request(opened):
 
 
 def test_an_animation_stands_still_for_readers_who_prefer_it(browser, reported):
-    page = browser.new_page(reduced_motion="reduce")
-    page.goto((reported[1] / "index.html").as_uri() + "#figure/fake-motion")
-    page.wait_for_timeout(100)
-    assert page.locator(".moves img").get_attribute("src").endswith(".png")
-    page.close()
+    with page_at(browser, reported, "#figure/fake-motion", reduced_motion="reduce") as (page, _):
+        page.wait_for_timeout(100)
+        assert page.locator(".moves img").get_attribute("src").endswith(".png")
 
 
 CONTRASTS = """() => {
@@ -219,25 +215,22 @@ CONTRASTS = """() => {
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_text_contrasts_with_its_background(browser, reported, scheme):
-    page = browser.new_page(color_scheme=scheme)
-    page.goto((reported[1] / "index.html").as_uri())
-    contrast, *where = page.evaluate(CONTRASTS)
-    assert contrast >= 4.5, where
-    dark = page.evaluate("getComputedStyle(document.body).backgroundColor") != "rgb(255, 255, 255)"
-    assert dark == (scheme == "dark")
-    page.close()
+    with page_at(browser, reported, color_scheme=scheme) as (page, _):
+        contrast, *where = page.evaluate(CONTRASTS)
+        assert contrast >= 4.5, where
+        dark = page.evaluate("getComputedStyle(document.body).backgroundColor") != "rgb(255, 255, 255)"
+        assert dark == (scheme == "dark")
 
 
 def test_the_print_fits_the_paper(browser, reported):
-    page = browser.new_page(viewport={"width": 688, "height": 1000})  # A4 without margins
-    page.goto((reported[1] / "index.html").as_uri())
-    page.emulate_media(media="print")
-    assert overhang(page) <= 0
-    page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert page.locator("#verdicts figure").first.is_visible()
-    claims = page.locator("table.claims").all()
-    assert claims
-    assert all(one.is_visible() for one in claims)
-    assert not page.locator("#contents").is_visible()
-    assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
-    page.close()
+    a4_without_margins = {"width": 688, "height": 1000}
+    with page_at(browser, reported, viewport=a4_without_margins) as (page, _):
+        page.emulate_media(media="print")
+        assert overhang(page) <= 0
+        page.evaluate("dispatchEvent(new Event('beforeprint'))")
+        assert page.locator("#verdicts figure").first.is_visible()
+        claims = page.locator("table.claims").all()
+        assert claims
+        assert all(one.is_visible() for one in claims)
+        assert not page.locator("#contents").is_visible()
+        assert page.pdf(prefer_css_page_size=True).startswith(b"%PDF")
