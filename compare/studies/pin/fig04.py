@@ -25,8 +25,6 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-# --- Speeds and offsets of the measurements
-
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 """ω in rad/s. The paper does not print its range. Below 1.15 rad/s, this whirl is close to its fold."""
 
@@ -44,11 +42,7 @@ SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFS
 
 
 def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
-    """Return the pin of Fig. 4 at ω = ``speed`` in rad/s and X0 = ``offset`` in m."""
     return replace(FIG4, disc_speed=float(speed), offset=offset)
-
-
-# --- Eq. 18 and the exact first-order response over the speed, and the error of (18)
 
 
 def curves() -> Data:
@@ -135,12 +129,8 @@ def response(engine: Engine, speed: float) -> Measured:
 )
 def order(engine: Engine, speed: float) -> Measured:
     means = over_offset(engine, speed)
-    gaps = np.array(
-        [
-            _complex(mean) - complex(*first_order_whirl_shift(pin_at(speed, offset)))
-            for mean, offset in zip(means.value, OFFSETS, strict=True)
-        ]
-    )
+    exact = [complex(*first_order_whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
+    gaps = means.value[:, 0] + 1j * means.value[:, 1] - exact
     noise = np.hypot(*means.error[:, :2].T) / np.abs(gaps)  # relative error of each gap
     orders = np.log2(np.abs(gaps[:-1] / gaps[1:]))
     # The error is a series in odd powers of X0, so the observed order tends to 3 like X0².
@@ -169,18 +159,15 @@ def order(engine: Engine, speed: float) -> Measured:
 def limit(engine: Engine, speed: float) -> Measured:
     pin = pin_at(speed, OFFSETS[-1])
     means = over_offset(engine, speed)
-    relative = np.array(
-        [
-            complex(*whirl_shift(pin_at(speed, offset))) / _complex(mean) - 1.0
-            for mean, offset in zip(means.value, OFFSETS, strict=True)
-        ]
-    )
+    measured = means.value[:, 0] + 1j * means.value[:, 1]
+    shifts = [complex(*whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
+    relative = np.array([shift / mean - 1.0 for shift, mean in zip(shifts, measured.tolist(), strict=True)])
     coarser, extrapolated = towards_zero(relative)
     predicted = whirl_shift_error_limit(pin)
     return Measured(
         predicted=[predicted.real, predicted.imag],
         value=[extrapolated.real, extrapolated.imag],
-        error=float(np.hypot(*means.error[2, :2])) / abs(_complex(means.value[2])) * 2.0,
+        error=float(np.hypot(*means.error[2, :2])) / abs(measured[2]) * 2.0,
         model=float(abs(extrapolated - coarser)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
@@ -213,7 +200,6 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 @functools.lru_cache(maxsize=len(CLAIM_SPEEDS))
 def over_offset(engine: Engine, speed: float) -> Measurement:
-    """Return ``harmonics`` for all ``OFFSETS``, shape (n, 4)."""
     found = [harmonics(engine, pin_at(speed, offset), WORKING) for offset in OFFSETS]
     return Measurement(*(np.array(each) for each in zip(*found, strict=True)))
 
@@ -235,12 +221,6 @@ def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | N
     # A residual of the orbit shifts its mean by about the same amount.
     return refined(found, tolerance).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
 
-
-def _complex(point: FloatArray) -> complex:
-    return complex(point[0], point[1])
-
-
-# --- Figure
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (

@@ -86,7 +86,6 @@ def curves() -> Data:
 
 @functools.cache
 def exact_whirl(pin: PinOnDisc) -> Orbit:
-    """Return the whirl of ``pin`` by shooting with the reference."""
     return whirl_of(Engine("reference", simulate), pin, 3.0 * TRUTH)
 
 
@@ -314,7 +313,6 @@ def growth_ends(engine: Engine) -> Measured:
     data: Data = {}
 
     def radius_at_end(name: str, load: float, tolerance: float) -> float:
-        """Return the radius of a pin without damping after it has stuck."""
         pin = replace(PINS[name], damping=0.0, friction_force=load)
         drawn = load == GROWING_LOADS[-1] and tolerance == GROWN
         times = np.linspace(0.0, growing_time(pin), 401 if drawn else 2)

@@ -69,7 +69,6 @@ def laws(data: ByEngine) -> Figure:
 
 
 def errors(data: ByEngine) -> Figure:
-    """Draw the distance of the laws from the ring, and mark its largest value."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
         if "theory" in data:

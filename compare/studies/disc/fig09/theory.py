@@ -25,8 +25,6 @@ from reference_model.steady.stability import turning_frame_jacobian, whirl_eigen
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
 """Disc without offset, whose whirl is a circle."""
@@ -107,7 +105,6 @@ def circle_of(load: float, which: int) -> SpinningWhirl:
 
 
 def rest_of(load: float) -> SpinningEquilibrium:
-    """Return the self-centred equilibrium of the ring at μN = ``load`` in N."""
     return equilibrium_of(with_load(RING, load))
 
 
@@ -134,12 +131,6 @@ def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> 
     """Return the reference's whirl with an offset: the outer one, or the inner, unstable one if ``which`` is 1."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
-
-
-def extent(orbit: Orbit) -> FloatArray:
-    """Return the smallest and largest distance from the axis in m."""
-    radius = orbit.trajectory.radius
-    return np.array([np.min(radius), np.max(radius)])
 
 
 def radius_of_pin(load: float) -> float:
@@ -257,7 +248,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
     """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
-    return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
+    return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
@@ -319,9 +310,10 @@ def smooth(found: Sequence[Orbit]) -> Data:
     }
 
 
-def rests() -> Data:
-    """Return μN, radius and spin of the equilibria, and the largest μN of stable equilibria."""
+def rests_and_sticking() -> Data:
+    """Return μN, radius and spin of equilibria, the largest μN of stable ones, and μN and radius (9) of stick."""
     end = last_load(RING)
+    sticking = np.geomspace(end, LARGEST_LOAD, 100)[1:]
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer if the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
     return {
@@ -329,14 +321,7 @@ def rests() -> Data:
             [(load, math.hypot(one.x, one.y), one.spin) for load, one in zip(loads, found, strict=True)]
         ),
         "last stable load": np.array([last_stable_load(RING)]),
-    }
-
-
-def sticking() -> Data:
-    """Return friction forces that allow permanent stick, and the radius (9)."""
-    loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
-    return {
-        "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])
+        "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in sticking]),
     }
 
 
@@ -352,8 +337,6 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
         "folds": np.array(folds),
     }
 
-
-# --- The study
 
 STUDY = Study.beside(
     __file__, "fig09", source=SOURCE, system=RING, seconds=7.0, words={"own": f"{RING.offset:g}"}

@@ -124,7 +124,6 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
 
 
 def whirls_by_law() -> list[SteadyWhirl]:
-    """Return the whirls on the continuous ring, on six points and by (23)."""
     return [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
 
 
@@ -220,7 +219,6 @@ def extremes_of(trajectory: Trajectory) -> FloatArray:
 
 
 def disc_at(offset: float) -> DiscOnDisc:
-    """Return the disc of Fig. 11 with another X0 in m."""
     return replace(FIG11, offset=offset)
 
 
@@ -272,7 +270,6 @@ def _whirl_of_reference() -> Orbit:
 
 @functools.cache
 def critical_offset_of_reference() -> float:
-    """Return the critical X0 in m by the reference."""
     return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
 
 

@@ -28,8 +28,6 @@ from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 TABLE = replace(
     FIG8,
     polar_inertia=FIG8.mass * FIG8.contact_radius**2,
@@ -140,15 +138,11 @@ def deviation(nearness: ArrayLike) -> FloatArray:
     return np.asarray(8.0 * np.exp(-2.0 - np.asarray(nearness)))
 
 
-def approach_constant(sliding: float, rim: float, near: float = NEAR) -> float:
-    """Return A in s, for g = 1 m/s² and c = 1, from U > 0 and W > 0 in m/s, evaluated at |δ| = ``near``."""
-    return float(Slowing(1.0).stop(sliding, rim, near).left * nearness(near))
-
-
 @functools.cache
 def expected_approach(throw: Throw, near: float = NEAR) -> float:
-    """Return A in s for a throw."""
-    return approach_constant(throw.sliding, abs(throw.rim), near) / DECELERATION
+    """Return A in s for a throw with c = 1, evaluated at |δ| = ``near``."""
+    left = Slowing(1.0).stop(throw.sliding, abs(throw.rim), near).left
+    return float(left * nearness(near)) / DECELERATION
 
 
 def curves() -> Data:
@@ -187,7 +181,6 @@ def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
 
 
 def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return equally spaced times until the ring rests, in s."""
     return np.linspace(0.0, roughly_rest(engine, throw), INTERVALS + 1)[:-1]
 
 

@@ -35,7 +35,6 @@ SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are our choice"
 
 
 def at(**changes: Any) -> DiscOnDisc:
-    """Return the disc of Fig. 11 with some parameters changed."""
     return replace(DISC, **changes)
 
 
@@ -225,7 +224,6 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
 
 
 def changes(disc: DiscOnDisc) -> str:
-    """Return the parameters that differ from those of Fig. 11, as text."""
     differing = [
         f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
@@ -239,7 +237,6 @@ def border(name: str, unit: str, digits: int = 3) -> str:
 
 
 def borders(parameter: str, unit: str, digits: int = 3) -> str:
-    """Return templates that quote both borders in one parameter."""
     return " and ".join(border(f"{side} {parameter}", unit, digits) for side in ("lower", "upper"))
 
 

@@ -100,7 +100,6 @@ def saddle(pin: PinOnDisc) -> StickSlipOrbit:
 
 
 def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the saddle with the tolerance ``ON_BOUNDARY``."""
     orbit = saddle(pin)
     return replace(orbit, problem=replace(orbit.problem, tolerance=ON_BOUNDARY))
 
@@ -133,12 +132,10 @@ def beyond_equilibrium(state: FloatArray) -> float:
 
 
 def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
-    """Return states, shape (n, 4)."""
     return np.column_stack((x, np.zeros_like(x), vx, np.zeros_like(x)))
 
 
 def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatArray) -> Ensemble:
-    """Return the ends of ``starts`` of shape (n, 4)."""
     return simulate_ensemble(pin, starts, duration=UNTIL, parameters=parameters)
 
 
@@ -150,7 +147,6 @@ def places_on_grid(side: int) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
-    """Return the ends, shape (side, side)."""
     return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
 
 

@@ -72,7 +72,6 @@ FAST = (10.0, 30.0, 100.0)
 
 
 def pin_at(speed: float) -> PinOnDisc:
-    """Return the pin of this study at another disc speed in rad/s."""
     return replace(PIN, disc_speed=speed)
 
 
@@ -158,7 +157,6 @@ def two_revolutions(
 
 
 def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement:
-    """Return the displacements of ``two_revolutions`` and their errors."""
     found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
     # Zero displacements have no scale for rounding, so the rounding of a turn counts.
     return found.plus(ROUNDING)
@@ -241,7 +239,6 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
     def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
-        """Return the bracket for another tolerance, which moves the radius only slightly."""
         return near if np.all(np.isfinite(near)) else _anywhere(pin)
 
     def radii(tolerance: float) -> FloatArray:
