@@ -18,26 +18,19 @@ from reference_model import onset_load, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.systems import DiscOnDisc, FloatArray
 
-SIDE = 60
-"""Discs along each side of the plane."""
+SIDE = 60  # discs along each side of the plane
 
 DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)
 """Damping β in N s/m and shaft damping b in N m s/rad."""
 
-START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
-"""Initial state x, y, angle, vx, vy, spin, close to the axis."""
-
-UNTIL = 12000.0
-"""Duration in s until the slowest motions have settled."""
-
-TOLERANCE = 10.0 * WORKING
-"""Tolerance of the simulations, which only determine the kind of final motion."""
+START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # initial state x, y, angle, vx, vy, spin, close to the axis
+UNTIL = 12000.0  # duration in s until the slowest motions have settled
+TOLERANCE = 10.0 * WORKING  # tolerance of the simulations, which only determine the kind of final motion
 
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5
-"""Stride of the discs, in both directions, whose whirls' eigenvalues are computed."""
+EVERY = 5  # stride of the discs, in both directions, whose whirls' eigenvalues are computed
 
 GROWN = 15.0
 """Re λ times the duration that lets motions leave an unstable whirl; deviations have grown by exp(15)."""

@@ -27,29 +27,17 @@ from reference_model.systems import FloatArray, PinOnDisc
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
-LIMIT = largest_load_with_equilibrium(PIN)
-"""Limit (5) in N."""
-
-START = (0.1, 0.05, 0.0, 0.0)
-"""x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium."""
-
-LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)
-"""Friction forces μN in N, within (5)."""
-
-DURATION = 520.0
-"""Duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value."""
-
-DELAY = 60.0
-"""Final part of a run in s, which yields the estimate of the remaining transient."""
+LIMIT = largest_load_with_equilibrium(PIN)  # limit (5) in N
+START = (0.1, 0.05, 0.0, 0.0)  # x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium
+LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # friction forces μN in N, within (5)
+DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value
+DELAY = 60.0  # final part of a run in s, which yields the estimate of the remaining transient
 
 TOLERANCE = 0.03 * WORKING
 """Tolerance of the claims on the position of rest, whose resolution is 1e-9 of X0."""
 
-SHARES = (0.98, 0.999, 1.05, 1.2)
-"""Friction forces near the limit (5), relative to it."""
-
-SETTLING = 300.0
-"""Duration in s from the axis to the equilibrium, for friction forces below the limit."""
+SHARES = (0.98, 0.999, 1.05, 1.2)  # friction forces near the limit (5), relative to it
+SETTLING = 300.0  # duration in s from the axis to the equilibrium, for friction forces below the limit
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
 """Period of the disc in s. Above the limit, the pin sticks at once, and two periods suffice."""

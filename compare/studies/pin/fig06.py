@@ -36,8 +36,7 @@ WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N. The paper does not print the range of its axis; a range up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102
-"""μN in N, between C·X0 and the end of the stick–slip cycle."""
+CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
 
 CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 """Relative distance of the starts from the cycle, and number of turns."""
@@ -45,8 +44,7 @@ CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 TOLERANCE = 10.0 * WORKING
 """Tolerance of all claims except the end of the whirl, which is measured to 1e-8 N."""
 
-INNERMOST = 0.012
-"""Crossing of the x axis in m that ends the branch towards the axis."""
+INNERMOST = 0.012  # crossing of the x axis in m that ends the branch towards the axis
 
 ON_THE_WAY = 1e-8
 """Tolerance of the drawn branch, which leads to the cycle; its friction forces have errors below 1e-10 N."""

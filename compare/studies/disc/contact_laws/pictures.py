@@ -27,8 +27,7 @@ LOOKS = {
 }
 """Labels and colours of the laws in the figure of errors."""
 
-NEAR = (0.2, 5.0)
-"""Range of U/W with visible errors."""
+NEAR = (0.2, 5.0)  # range of U/W with visible errors
 
 
 def draw(data: ByEngine) -> Figures:

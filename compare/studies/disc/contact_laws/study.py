@@ -25,14 +25,12 @@ SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
 
-SPEED = 0.3
-"""Speed √(U² + W²) in m/s, ν̄_r of (22)."""
+SPEED = 0.3  # speed √(U² + W²) in m/s, ν̄_r of (22)
 
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
 """Position of the disc's centre as x + iy in m, direction of its slip in rad and angle of the disc in rad."""
 
-STEP = 2e-3
-"""Time step in s of the velocities whose differences give the initial acceleration."""
+STEP = 2e-3  # time step in s of the velocities whose differences give the initial acceleration
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
@@ -49,8 +47,7 @@ RESTING = (INNER, 0.75 * R, R)
 RINGS = (8, 9, 10, 11, 12)
 """Numbers of rings on either side of that radius, few enough for errors well above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)
-"""Widths of thin annuli, in units of their mean radius."""
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli, in units of their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)

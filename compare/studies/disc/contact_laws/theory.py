@@ -18,22 +18,16 @@ from reference_model.systems import FloatArray
 
 R = FIG11.contact_radius
 
-NUMBERS = (6, 12, 24)
-"""Numbers of points on the ring."""
-
-ZOOMS = 30
-"""Number of times the search range for the points' largest error is halved."""
-
-INNER = 2.0 / 3.0 * R
-"""Inner radius in m of the annulus with the outer radius R."""
+NUMBERS = (6, 12, 24)  # numbers of points on the ring
+ZOOMS = 30  # number of times the search range for the points' largest error is halved
+INNER = 2.0 / 3.0 * R  # inner radius in m of the annulus with the outer radius R
 
 # --- Friction on a contact ring by (20) to (22)
 # These functions do not use the reference's closed forms, which claims compare with them. ``slip`` is the slip of the
 # disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x, F_y, M)
 # in units of μN and μN·R.
 
-EVEN = 16
-"""Number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15."""
+EVEN = 16  # number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15
 
 
 def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
@@ -82,8 +76,7 @@ def average_of_expansion(slip: complex, rim: float) -> FloatArray:
 
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 
-QUADRATURE = 1e-11
-"""Error of an integral, ten times the requested tolerance of the quadrature."""
+QUADRATURE = 1e-11  # error of an integral, ten times the requested tolerance of the quadrature
 
 
 def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> FloatArray:

@@ -28,9 +28,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
 """Disc without offset, whose whirl is a circle."""
-
-PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
-"""Contact law (23)."""
+PAPER_LAW = ThreeTermRing(FIG9.contact_radius)  # contact law (23)
 
 SOURCE = (
     'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
@@ -42,8 +40,7 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)
-"""Circles far from the fold, each with twice the friction force of the one before."""
+ORDERS = slice(2, 5)  # circles far from the fold, each with twice the friction force of the one before
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -57,16 +54,13 @@ STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
 """Friction forces in N and initial radii, in units of (9), of sticking discs."""
-
-LATEST = 1.1
-"""Duration of the simulation of a disc outside, in units of the release time (7)."""
+LATEST = 1.1  # duration of the simulation of a disc outside, in units of the release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 """Friction force in N and duration in s of deviations from the whirl, and from equilibria."""
 
-DISPLACED = 1e-4
-"""Initial size of a deviation, in units of the distance from the axis."""
+DISPLACED = 1e-4  # initial size of a deviation, in units of the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
 """Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
@@ -83,14 +77,12 @@ BRANCH_STEP = 0.24
 """First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the relative
 decrease of successive crossings."""
 
-OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
-"""Friction forces in N of whirls before the branch."""
+OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # friction forces in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
 """Friction force slightly above the fold's, in units of C·X0, and its smallest value in N."""
 
-FOLD_STEP = 0.12
-"""Relative step of the branch to the fold."""
+FOLD_STEP = 0.12  # relative step of the branch to the fold
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)

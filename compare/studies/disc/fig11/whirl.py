@@ -30,17 +30,10 @@ SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
 
 SLIDING = np.linspace(0.0, 100.0, 101)
 
-OF_CYCLE = 10 * WORKING
-"""Tolerance of the motion that settles on the modulated cycle."""
-
-AMPLITUDE = 1e-4
-"""Initial size of a deviation, in units of the whirl's radius."""
-
-DURATION = 200.0
-"""Duration in s, about a period of the modulation; the deviation grows tenfold."""
-
-TOLERANCE = 2000 * WORKING
-"""Tolerance for deviations, small compared with ``AMPLITUDE``."""
+OF_CYCLE = 10 * WORKING  # tolerance of the motion that settles on the modulated cycle
+AMPLITUDE = 1e-4  # initial size of a deviation, in units of the whirl's radius
+DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
+TOLERANCE = 2000 * WORKING  # tolerance for deviations, small compared with ``AMPLITUDE``
 
 
 GROWTH_NOTE = (

@@ -164,8 +164,7 @@ SLOWLY_SETTLED = 2400.0
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3
-"""Radius in units of R below which a motion counts as rotation about the axis."""
+AXIS = 1e-3  # radius in units of R below which a motion counts as rotation about the axis
 
 MODULATED = 0.05
 """Smallest (largest − smallest)/(largest + smallest) radius of a motion that counts as modulated."""

@@ -28,16 +28,12 @@ UNTIL = 400.0
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20
-"""Turns of the whirl after a run; the last one is averaged."""
-
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)
-"""A start near the whirl that leads to permanent slip (our choice)."""
+FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
+SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # A start near the whirl that leads to permanent slip (our choice)
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
-CAPTURE = 1e-6
-"""Required accuracy of the critical initial velocity in m/s."""
+CAPTURE = 1e-6  # required accuracy of the critical initial velocity in m/s
 
 AFTERWARDS = 220.0
 """Duration in s. A deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
