@@ -113,7 +113,8 @@ def response(engine: Engine, speed: float) -> Measured:
         error=2.0 * float(np.max(found.error[1:])) / pin.offset,
         model=float(np.max(np.abs(extrapolated - coarser))),
         components=("mean x", "mean y", "real part of the second harmonic", "its imaginary part"),
-        **_of_offsets(pin),
+        system=pin,
+        source=SOURCE_OF_OFFSETS,
     )
 
 
@@ -141,7 +142,8 @@ def order(engine: Engine, speed: float) -> Measured:
         note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0. Model error: the change "
         "due to extrapolation.",
         data={f"means at {speed:g}": means.value[:, :2]},
-        **_of_offsets(pin_at(speed, OFFSETS[-1])),
+        system=pin_at(speed, OFFSETS[-1]),
+        source=SOURCE_OF_OFFSETS,
     )
 
 
@@ -169,13 +171,9 @@ def limit(engine: Engine, speed: float) -> Measured:
         model=float(abs(extrapolated - coarser)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
-        **_of_offsets(pin),
+        system=pin,
+        source=SOURCE_OF_OFFSETS,
     )
-
-
-def _of_offsets(pin: PinOnDisc) -> dict[str, Any]:
-    """Return the parameters and the source of claims about decreasing offsets; ``pin`` has the last offset."""
-    return {"system": pin, "source": SOURCE_OF_OFFSETS}
 
 
 def towards_zero(values: FloatArray) -> FloatArray:
