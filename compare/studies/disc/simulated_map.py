@@ -3,41 +3,34 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of
 from compare.claims.parameters import FIG11
+from compare.claims.shares import Ends
 from compare.output.figures import BLACK, GREEN, GREY, ORANGE, PURPLE, SKY, axis, new_figure
 from compare.studies.toolkit.fig11 import KINDS, curves_in
 from reference_model import onset_load, whirls
+from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
-SIDE = 60
-"""Discs along each side of the plane."""
+SIDE = 60  # discs along each side of the plane
 
 DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)
 """Damping β in N s/m and shaft damping b in N m s/rad."""
 
-START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
-"""Initial state x, y, angle, vx, vy, spin, close to the axis."""
-
-UNTIL = 12000.0
-"""Duration in s until the slowest motions have settled."""
-
-TOLERANCE = 10.0 * WORKING
-"""Tolerance of the simulations, which only determine the kind of final motion."""
+START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # initial state x, y, angle, vx, vy, spin, close to the axis
+UNTIL = 12000.0  # duration in s until the slowest motions have settled
+TOLERANCE = 10.0 * WORKING  # tolerance of the simulations, which only determine the kind of final motion
 
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5
-"""Stride of the discs, in both directions, whose whirls' eigenvalues are computed."""
+EVERY = 5  # stride of the discs, in both directions, whose whirls' eigenvalues are computed
 
 GROWN = 15.0
 """Re λ times the duration that lets motions leave an unstable whirl; deviations have grown by exp(15)."""
@@ -46,25 +39,19 @@ UNDECIDED_IS_OPEN = 2.0
 """Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
 
 
-# --- Final motions by the compiled ensemble, and the curves of the stability map
-
-Ends = NDArray[np.uint8]
-
-
-def discs() -> list[DiscOnDisc]:
-    """Return all discs, row by row; each row has one shaft damping."""
-    return [
-        replace(FIG11, damping=beta, shaft_damping=b)
-        for b in SHAFT_DAMPING.tolist()
-        for beta in DAMPING.tolist()
-    ]
+def on_plane(quantity: Callable[[DiscOnDisc], float], stride: slice = slice(None)) -> FloatArray:
+    """Return a quantity of every disc; each row has one shaft damping."""
+    return np.array(
+        [
+            [quantity(replace(FIG11, damping=beta, shaft_damping=b)) for beta in DAMPING[stride].tolist()]
+            for b in SHAFT_DAMPING[stride].tolist()
+        ]
+    )
 
 
 @functools.cache
 def simulated() -> Ends:
     """Return the ``EndState`` of each disc, shape (SIDE, SIDE)."""
-    from reference_model.ensemble import simulate_ensemble
-
     beta, b = np.meshgrid(DAMPING, SHAFT_DAMPING)
     found = simulate_ensemble(
         FIG11,
@@ -110,10 +97,8 @@ STUDY = Study.beside(
     swept=("damping", "shaft_damping"),
 )
 def leaves_axis(ends: Ends | None = None) -> Measured:
-    from reference_model.ensemble import EndState
-
     ends = simulated() if ends is None else ends
-    ratio = np.array([disc.friction_force / onset_load(disc) for disc in discs()]).reshape(ends.shape)
+    ratio = on_plane(lambda disc: disc.friction_force / onset_load(disc))
     asked = (np.abs(ratio - 1.0) > MARGIN) & (ends != EndState.STUCK)
     right = (ratio < 1.0) == (ends == EndState.SELF_CENTRED)
     return answers_of(
@@ -131,16 +116,9 @@ def leaves_axis(ends: Ends | None = None) -> Measured:
     swept=("damping", "shaft_damping"),
 )
 def no_unstable_whirl(ends: Ends | None = None) -> Measured:
-    from reference_model.ensemble import EndState
-
     ends = simulated() if ends is None else ends
     rows = slice(EVERY // 2, None, EVERY)
-    rates = np.array(
-        [
-            [growth(replace(FIG11, damping=beta, shaft_damping=b)) for beta in DAMPING[rows].tolist()]
-            for b in SHAFT_DAMPING[rows].tolist()
-        ]
-    )
+    rates = on_plane(growth, rows)
     unstable, left = rates * UNTIL > GROWN, ends[rows, rows]
     return answers_of(
         (left != EndState.WHIRL)[unstable],
@@ -149,8 +127,6 @@ def no_unstable_whirl(ends: Ends | None = None) -> Measured:
         "they have no other whirl.",
     )
 
-
-# --- Figure
 
 DARK = "#3d3d3d"
 
@@ -175,8 +151,6 @@ def draw(data: ByEngine) -> Figures:
     from matplotlib.colors import ListedColormap
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
-
-    from reference_model.ensemble import EndState
 
     found = data["theory"]
     figure, (plane,) = new_figure(width=8.4, height=4.4)
@@ -215,7 +189,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _edges(values: FloatArray) -> tuple[float, float]:
-    """Return the limits of an image of ``values``, half a step beyond both ends."""
     half = 0.5 * (values[1] - values[0])
     return float(values[0] - half), float(values[-1] + half)
 

@@ -24,40 +24,23 @@ from reference_model.formulas.pin import (
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 3, whose parameters the paper does not print, and the measurements
-
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
-LIMIT = largest_load_with_equilibrium(PIN)
-"""Limit (5) in N."""
-
-START = (0.1, 0.05, 0.0, 0.0)
-"""x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium."""
-
-LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)
-"""Friction forces μN in N, within (5)."""
-
-DURATION = 520.0
-"""Duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value."""
-
-DELAY = 60.0
-"""Final part of a run in s, which yields the estimate of the remaining transient."""
+LIMIT = largest_load_with_equilibrium(PIN)  # limit (5) in N
+START = (0.1, 0.05, 0.0, 0.0)  # x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium
+LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # friction forces μN in N, within (5)
+DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value
+DELAY = 60.0  # final part of a run in s, which yields the estimate of the remaining transient
 
 TOLERANCE = 0.03 * WORKING
 """Tolerance of the claims on the position of rest, whose resolution is 1e-9 of X0."""
 
-SHARES = (0.98, 0.999, 1.05, 1.2)
-"""Friction forces near the limit (5), relative to it."""
-
-SETTLING = 300.0
-"""Duration in s from the axis to the equilibrium, for friction forces below the limit."""
+SHARES = (0.98, 0.999, 1.05, 1.2)  # friction forces near the limit (5), relative to it
+SETTLING = 300.0  # duration in s from the axis to the equilibrium, for friction forces below the limit
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
-"""Period of the disc in s."""
-
-REVOLUTIONS = 2.0
-"""Duration in periods for friction forces above the limit, where the pin sticks at once."""
+"""Period of the disc in s. Above the limit, the pin sticks at once, and two periods suffice."""
 
 FLOW_DURATION = 0.3
 """Duration in s of the simulations for eigenvalues, short enough to show strongly damped ones."""
@@ -70,9 +53,6 @@ GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
 
 def with_load(load: float) -> PinOnDisc:
     return replace(PIN, friction_force=load)
-
-
-# --- The position of rest and its eigenvalues over the friction force, and the end of measured positions
 
 
 def curves() -> Data:
@@ -162,8 +142,7 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
             tolerance=TOLERANCE,
         )
         places.append(end.value)
-        # One component may be right by chance, so the larger error counts for both. At rest, two runs may agree
-        # better than the tolerance, which is then added.
+        # One component may be right by chance. At rest, two runs may agree better than the tolerance.
         errors.append(np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset)
     return np.array(places), np.array(errors)
 
@@ -215,7 +194,7 @@ def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
     x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:
-        end = SETTLING if share < 1.0 else REVOLUTIONS * REVOLUTION
+        end = SETTLING if share < 1.0 else 2.0 * REVOLUTION
         found = refined(functools.partial(_turning, engine, LIMIT * share, x, end), 1e-7)
         speed, *radii = found.value
         speeds.append(speed / PIN.disc_speed)
@@ -302,9 +281,6 @@ def stable_on_a_grid() -> Measured:
         may_be_open=values.size // 1000,
         source="assumption: a grid of friction forces, disc speeds and dampings",
     )
-
-
-# --- Figures
 
 
 def draw(data: ByEngine) -> Figures:

@@ -25,30 +25,22 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-# --- Speeds and offsets of the measurements
-
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 """ω in rad/s. The paper does not print its range. Below 1.15 rad/s, this whirl is close to its fold."""
 
-CLAIM_SPEEDS = (1.2, 1.5, 3.0)
-"""Speeds of the claims in rad/s."""
+CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # speeds of the claims in rad/s
 
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m for the orders; each is half of the previous one and far below the whirl's radius of 1.2 m."""
 
-SHIFT_TOLERANCE = 1e3 * WORKING
-"""Tolerance of the means over ω; (18) has an error of a few per cent."""
+SHIFT_TOLERANCE = 1e3 * WORKING  # tolerance of the means over ω; (18) has an error of a few per cent
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"
 
 
 def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
-    """Return the pin of Fig. 4 at ω = ``speed`` in rad/s and X0 = ``offset`` in m."""
     return replace(FIG4, disc_speed=float(speed), offset=offset)
-
-
-# --- Eq. 18 and the exact first-order response over the speed, and the error of (18)
 
 
 def curves() -> Data:
@@ -121,7 +113,8 @@ def response(engine: Engine, speed: float) -> Measured:
         error=2.0 * float(np.max(found.error[1:])) / pin.offset,
         model=float(np.max(np.abs(extrapolated - coarser))),
         components=("mean x", "mean y", "real part of the second harmonic", "its imaginary part"),
-        **_of_offsets(pin),
+        system=pin,
+        source=SOURCE_OF_OFFSETS,
     )
 
 
@@ -135,12 +128,8 @@ def response(engine: Engine, speed: float) -> Measured:
 )
 def order(engine: Engine, speed: float) -> Measured:
     means = over_offset(engine, speed)
-    gaps = np.array(
-        [
-            _complex(mean) - complex(*first_order_whirl_shift(pin_at(speed, offset)))
-            for mean, offset in zip(means.value, OFFSETS, strict=True)
-        ]
-    )
+    exact = [complex(*first_order_whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
+    gaps = means.value[:, 0] + 1j * means.value[:, 1] - exact
     noise = np.hypot(*means.error[:, :2].T) / np.abs(gaps)  # relative error of each gap
     orders = np.log2(np.abs(gaps[:-1] / gaps[1:]))
     # The error is a series in odd powers of X0, so the observed order tends to 3 like X0².
@@ -153,7 +142,8 @@ def order(engine: Engine, speed: float) -> Measured:
         note=f"Observed orders {orders[0]:.4f} and {orders[1]:.4f}, extrapolated to X0 = 0. Model error: the change "
         "due to extrapolation.",
         data={f"means at {speed:g}": means.value[:, :2]},
-        **_of_offsets(pin_at(speed, OFFSETS[-1])),
+        system=pin_at(speed, OFFSETS[-1]),
+        source=SOURCE_OF_OFFSETS,
     )
 
 
@@ -169,28 +159,21 @@ def order(engine: Engine, speed: float) -> Measured:
 def limit(engine: Engine, speed: float) -> Measured:
     pin = pin_at(speed, OFFSETS[-1])
     means = over_offset(engine, speed)
-    relative = np.array(
-        [
-            complex(*whirl_shift(pin_at(speed, offset))) / _complex(mean) - 1.0
-            for mean, offset in zip(means.value, OFFSETS, strict=True)
-        ]
-    )
+    measured = means.value[:, 0] + 1j * means.value[:, 1]
+    shifts = [complex(*whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
+    relative = np.array([shift / mean - 1.0 for shift, mean in zip(shifts, measured.tolist(), strict=True)])
     coarser, extrapolated = towards_zero(relative)
     predicted = whirl_shift_error_limit(pin)
     return Measured(
         predicted=[predicted.real, predicted.imag],
         value=[extrapolated.real, extrapolated.imag],
-        error=float(np.hypot(*means.error[2, :2])) / abs(_complex(means.value[2])) * 2.0,
+        error=float(np.hypot(*means.error[2, :2])) / abs(measured[2]) * 2.0,
         model=float(abs(extrapolated - coarser)),
         resolution=1e-3 * abs(predicted),
         components=("real part", "imaginary part"),
-        **_of_offsets(pin),
+        system=pin,
+        source=SOURCE_OF_OFFSETS,
     )
-
-
-def _of_offsets(pin: PinOnDisc) -> dict[str, Any]:
-    """Return the parameters and the source of claims about decreasing offsets; ``pin`` has the last offset."""
-    return {"system": pin, "source": SOURCE_OF_OFFSETS}
 
 
 def towards_zero(values: FloatArray) -> FloatArray:
@@ -213,7 +196,6 @@ def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
 
 @functools.lru_cache(maxsize=len(CLAIM_SPEEDS))
 def over_offset(engine: Engine, speed: float) -> Measurement:
-    """Return ``harmonics`` for all ``OFFSETS``, shape (n, 4)."""
     found = [harmonics(engine, pin_at(speed, offset), WORKING) for offset in OFFSETS]
     return Measurement(*(np.array(each) for each in zip(*found, strict=True)))
 
@@ -235,12 +217,6 @@ def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | N
     # A residual of the orbit shifts its mean by about the same amount.
     return refined(found, tolerance).plus(first_orbit.residual * float(np.max(np.abs(first_orbit.state))))
 
-
-def _complex(point: FloatArray) -> complex:
-    return complex(point[0], point[1])
-
-
-# --- Figure
 
 DOTTED = (0.0, (1.0, 1.5))
 FORMULAS: tuple[tuple[Callable[[PinOnDisc], tuple[float, float]], Any], ...] = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,8 +26,6 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray
 
-# --- The pin of Fig. 6 and the friction forces of the measurements
-
 FIG6 = replace(FIG4, disc_speed=1.2)
 
 SOURCE = "Fig. 6: Fig. 4 with ω = 1.2 rad/s; the friction forces are our choice, the paper prints no range"
@@ -38,18 +36,15 @@ WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N. The paper does not print the range of its axis; a range up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102
-"""μN in N, between C·X0 and the end of the stick–slip cycle."""
+CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
 
-CYCLE_DEVIATION = 0.01
-CYCLE_TURNS = 5
+CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 """Relative distance of the starts from the cycle, and number of turns."""
 
 TOLERANCE = 10.0 * WORKING
 """Tolerance of all claims except the end of the whirl, which is measured to 1e-8 N."""
 
-INNERMOST = 0.012
-"""Crossing of the x axis in m that ends the branch towards the axis."""
+INNERMOST = 0.012  # crossing of the x axis in m that ends the branch towards the axis
 
 ON_THE_WAY = 1e-8
 """Tolerance of the drawn branch, which leads to the cycle; its friction forces have errors below 1e-10 N."""
@@ -57,9 +52,6 @@ ON_THE_WAY = 1e-8
 
 def with_load(load: float) -> PinOnDisc:
     return replace(FIG6, friction_force=float(load))
-
-
-# --- The branches of Fig. 6
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
@@ -76,14 +68,10 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
         "branch extent": np.array([extent(orbit) for orbit in branch]),
         "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
         "equilibrium load": loads,
-        "equilibrium radius": _along(loads, equilibrium_radius),
+        "equilibrium radius": np.array([equilibrium_radius(with_load(load)) for load in loads]),
         "sticking load": sticking,
-        "sticking radius": _along(sticking, sticking_radius),
+        "sticking radius": np.array([sticking_radius(with_load(load)) for load in sticking]),
     }
-
-
-def _along(loads: FloatArray, formula: Callable[[PinOnDisc], float]) -> FloatArray:
-    return np.array([float(formula(with_load(load))) for load in loads])
 
 
 UNIT_MULTIPLIER_ERROR = 1e-5
@@ -112,18 +100,12 @@ def load_of_unit_multiplier() -> float:
 @functools.cache
 def cycle() -> Orbit:
     """Return the stable stick–slip cycle at ``CYCLE_LOAD``, by continuation of the branch of whirls."""
-    start = whirl_orbit(with_load(0.08), tolerance=ON_THE_WAY)
-    *_, orbit = whirl_branch(start, 0.06, step=0.4, samples=2)
+    *_, orbit = whirl_branch(whirl_orbit(with_load(0.08), tolerance=ON_THE_WAY), 0.06, step=0.4, samples=2)
     return whirl_orbit(replace(FIG6, friction_force=CYCLE_LOAD), guess=orbit)
 
 
 STUDY = Study.beside(
-    __file__,
-    "fig06",
-    words={"innermost": f"{INNERMOST:g}"},
-    source=SOURCE,
-    system=FIG6,
-    seconds=3.5,
+    __file__, "fig06", words={"innermost": f"{INNERMOST:g}"}, source=SOURCE, system=FIG6, seconds=3.5
 )
 
 
@@ -268,10 +250,11 @@ def coexist(engine: Engine) -> Measured:
 def cycle_exists(engine: Engine) -> Measured:
     orbit = cycle()
     times = np.linspace(0.0, orbit.period, 65)
-    found = refined(
-        lambda tolerance: engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states,
-        TOLERANCE,
-    )
+
+    def states(tolerance: float) -> FloatArray:
+        return engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
+
+    found = refined(states, TOLERANCE)
     radius = np.hypot(found.value[:, 0], found.value[:, 1])
     return Measured(
         predicted=simulate(orbit.system, orbit.state, times, tolerance=TRUTH).states,
@@ -320,9 +303,6 @@ def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: 
     (first, last), (first_below, last_below) = ends
     ratio = (last - last_below) / (first - first_below)
     return ratio ** (1.0 / CYCLE_TURNS) if ratio > 0.0 else math.nan
-
-
-# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

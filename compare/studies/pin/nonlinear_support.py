@@ -40,8 +40,7 @@ LOADS = (0.04, 0.1, 0.2)  # μN in N; at the smallest one, the pin does not reac
 
 SHIFTED = [replace(pin, offset=FIG4.offset) for pin in PINS.values()]
 
-SUPPORTS = {"support": tuple(PINS)}
-"""Labels of the elements that belong to each support."""
+SUPPORTS = {"support": tuple(PINS)}  # labels of the elements that belong to each support
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 """X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""
@@ -49,8 +48,7 @@ OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 RESTING = {"offset": 0.8, "friction_force": 0.9}
 """Offset in m and friction force in N that put the equilibrium into the nonlinear range of either law."""
 
-BESIDE = 0.005
-"""Distance in m of the starts from the equilibrium."""
+BESIDE = 0.005  # distance in m of the starts from the equilibrium
 
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
 SLIDING_TIMES = np.linspace(0.0, 50.0, 51)
@@ -86,7 +84,6 @@ def curves() -> Data:
 
 @functools.cache
 def exact_whirl(pin: PinOnDisc) -> Orbit:
-    """Return the whirl of ``pin`` by shooting with the reference."""
     return whirl_of(Engine("reference", simulate), pin, 3.0 * TRUTH)
 
 
@@ -314,7 +311,6 @@ def growth_ends(engine: Engine) -> Measured:
     data: Data = {}
 
     def radius_at_end(name: str, load: float, tolerance: float) -> float:
-        """Return the radius of a pin without damping after it has stuck."""
         pin = replace(PINS[name], damping=0.0, friction_force=load)
         drawn = load == GROWING_LOADS[-1] and tolerance == GROWN
         times = np.linspace(0.0, growing_time(pin), 401 if drawn else 2)

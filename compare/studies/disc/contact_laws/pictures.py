@@ -27,8 +27,7 @@ LOOKS = {
 }
 """Labels and colours of the laws in the figure of errors."""
 
-NEAR = (0.2, 5.0)
-"""Range of U/W with visible errors."""
+NEAR = (0.2, 5.0)  # range of U/W with visible errors
 
 
 def draw(data: ByEngine) -> Figures:
@@ -69,7 +68,6 @@ def laws(data: ByEngine) -> Figure:
 
 
 def errors(data: ByEngine) -> Figure:
-    """Draw the distance of the laws from the ring, and mark its largest value."""
     figure, panels = new_figure(ncols=2, width=11.0, height=3.9)
     for i, panel in enumerate(panels):
         if "theory" in data:

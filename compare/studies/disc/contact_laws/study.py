@@ -1,4 +1,4 @@
-"""Claims."""
+"""Friction on a disc in an engine, and contact laws against the integral, each other and the textbook."""
 
 from __future__ import annotations
 
@@ -9,48 +9,49 @@ from typing import Any
 
 import numpy as np
 
+import compare.studies.disc.contact_laws.theory as theory
 from compare.claims import ROUNDING, TIGHTEST, Measured, Study, observed_exponent, refined
+from compare.claims.parameters import FIG11
 from compare.engines import Engine
-from compare.studies.disc.contact_laws.theory import (
-    ANGLE,
-    CENTRE,
-    COMPARED,
-    DIFFERENCES,
-    DIRECTION,
-    DISC,
-    INNER,
-    NUMBERS,
-    QUADRATURE,
-    RATIOS,
-    RESTING,
-    RING,
-    RINGS,
-    SIX,
-    SOURCE,
-    SOURCE_OF_LAWS,
-    SPEED,
-    STEP,
-    WIDTHS,
-    R,
-    curves,
-    friction,
-    greatest_errors_of_expansion,
-    greatest_errors_of_points,
-    ring_by_quadrature,
-    sum_of_points,
-)
+from compare.studies.disc.contact_laws.theory import INNER, NUMBERS, QUADRATURE, RING, R
+from compare.studies.toolkit.fig11 import SIX
 from reference_model.contact.annulus import ORDER, SLOPE_ORDER, Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
 
-STUDY = Study.beside(
-    __file__,
-    "contact-laws",
-    source=SOURCE,
-    seconds=1.5,
-    quick=True,
-    contact=True,
+SOURCE = "Fig. 11; the motion of the disc is our choice"
+
+SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
+
+RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
+"""Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
+
+SPEED = 0.3  # speed √(U² + W²) in m/s, ν̄_r of (22)
+
+CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
+"""Position of the disc's centre as x + iy in m, direction of its slip in rad and angle of the disc in rad."""
+
+STEP = 2e-3  # time step in s of the velocities whose differences give the initial acceleration
+
+DIFFERENCES = (
+    (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
+    (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
 )
-STUDY.provides(curves=curves)
+"""Finite-difference weights of fourth and third order for the derivative at the first of five times."""
+
+COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
+"""Ratios U/W, including 1, for the comparison of the closed form with the integral."""
+
+RESTING = (INNER, 0.75 * R, R)
+"""Radii in m of the resting point of the annulus whose convergence is measured."""
+
+RINGS = (8, 9, 10, 11, 12)
+"""Numbers of rings on either side of that radius, few enough for errors well above rounding."""
+
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli, in units of their mean radius
+
+
+STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)
+STUDY.provides(curves=theory.curves)
 
 
 # --- Friction on a disc in an engine, from its acceleration
@@ -67,8 +68,8 @@ NOTE = (
 )
 def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     """``ratios`` contains U/W."""
-    predicted = [ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
-    return friction_on(engine, DISC, ratios, "ring", predicted)
+    predicted = [theory.ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
+    return friction_on(engine, FIG11, ratios, "ring", predicted)
 
 
 @STUDY.claim(
@@ -79,7 +80,7 @@ def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
 )
 def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     """``ratios`` contains U/W."""
-    predicted = [sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
+    predicted = [theory.sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
     return friction_on(engine, SIX, ratios, "points6", predicted)
 
 
@@ -154,14 +155,13 @@ PARTS = ("force", "moment")
     note="F_x, F_y over μN and M over μN·R. Predicted: adaptive quadrature, whose own estimate is the error.",
 )
 def closed_form() -> Measured:
-    predicted, measured, errors = [], [], []
+    rows = []
     for sign in (1.0, -1.0):
         for i, ratio in enumerate(COMPARED):
             slip = ratio * complex(math.cos(i), math.sin(i))
-            integral, error = ring_by_quadrature(slip, sign)
-            predicted.append(integral)
-            measured.append(friction(RING, slip, sign))
-            errors.append([error + ROUNDING] * 3)
+            integral, error = theory.ring_by_quadrature(slip, sign)
+            rows.append((integral, theory.friction(RING, slip, sign), [error + ROUNDING] * 3))
+    predicted, measured, errors = zip(*rows, strict=True)
     return of_laws(
         predicted=predicted,
         value=measured,
@@ -172,7 +172,6 @@ def closed_form() -> Measured:
 
 
 def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> Measured:
-    """Return a result for contact laws, whose only parameters are one or two radii."""
     return Measured(
         parameters={"contact_radius": R} | dict(parameters or {}), source=SOURCE_OF_LAWS, **measured
     )
@@ -185,7 +184,7 @@ def of_laws(parameters: Mapping[str, float] | None = None, **measured: Any) -> M
     note=f"{OF_EXPANSION}.",
 )
 def error_of_expansion() -> Measured:
-    integrals, formulas = greatest_errors_of_expansion()
+    integrals, formulas = theory.greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 1],
         value=formulas[:, 1],
@@ -202,7 +201,7 @@ def error_of_expansion() -> Measured:
     note=f"U/W. {OF_EXPANSION}, and the resulting uncertainty of the position of the maximum.",
 )
 def place_of_expansion_error() -> Measured:
-    integrals, formulas = greatest_errors_of_expansion()
+    integrals, formulas = theory.greatest_errors_of_expansion()
     return of_laws(
         predicted=integrals[:, 0],
         value=formulas[:, 0],
@@ -219,7 +218,7 @@ def place_of_expansion_error() -> Measured:
     f"unfavourable direction, and the other points contribute a sum of sines. {OF_POINTS} step.",
 )
 def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
-    found = greatest_errors_of_points(numbers)
+    found = theory.greatest_errors_of_points(numbers)
     return of_laws(
         predicted=[[1.0 / n + 2.0 / math.pi - 1.0 / (n * math.tan(0.5 * math.pi / n))] * 2 for n in numbers],
         value=found[:, :, 1],
@@ -237,7 +236,7 @@ def error_of_points(numbers: Sequence[int] = NUMBERS) -> Measured:
     note=f"U/W. {OF_POINTS} change of the position.",
 )
 def place_of_points_error(numbers: Sequence[int] = NUMBERS) -> Measured:
-    found = greatest_errors_of_points(numbers)
+    found = theory.greatest_errors_of_points(numbers)
     return of_laws(
         predicted=np.ones(found.shape[:2]),
         value=found[:, :, 0],
@@ -283,14 +282,17 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
         found = np.array([function(Annulus(INNER, R, rings=n), radius, 1.0) for n in RINGS])
         errors = np.linalg.norm(found / exact - 1.0, axis=1)
         observed.append(observed_exponent(fineness, errors, next_term=2.0, noise=ROUNDING))
+    return of_orders(observed, order, at={"radius in m": RESTING}, parameters={"inner_radius": INNER})
+
+
+def of_orders(observed: Sequence[tuple[float, float, float]], order: float, **more: Any) -> Measured:
     exponents, numerical, model = np.array(observed).T
     return of_laws(
-        predicted=np.full(len(RESTING), float(order)),
+        predicted=np.full(len(exponents), float(order)),
         value=exponents,
         error=numerical,
         model=float(np.max(model)),
-        at={"radius in m": RESTING},
-        parameters={"inner_radius": INNER},
+        **more,
     )
 
 
@@ -310,14 +312,8 @@ def thin_annulus() -> Measured:
         found = np.array([law.shares(slip, 1.0) for law in laws])
         errors = np.abs(found / np.array(RING.shares(slip, 1.0)) - 1.0)
         observed += [observed_exponent(widths, error, next_term=2.0, noise=ROUNDING) for error in errors.T]
-    exponents, numerical, model = np.array(observed).T
-    return of_laws(
-        predicted=np.full(len(exponents), 2.0),
-        value=exponents,
-        error=numerical,
-        model=float(np.max(model)),
-        components=[f"{part} at U = {slip / R:g} W" for slip in slips for part in PARTS],
-    )
+    components = [f"{part} at U = {slip / R:g} W" for slip in slips for part in PARTS]
+    return of_orders(observed, 2.0, components=components)
 
 
 @STUDY.claim(

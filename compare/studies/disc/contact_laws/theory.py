@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,65 +16,18 @@ from reference_model.contact.contact_law import Contact, Ring, ThreeTermRing
 from reference_model.contact.points import PointsOnRing
 from reference_model.systems import FloatArray
 
-# --- Parameters
-
-DISC = FIG11
-
-SIX = replace(FIG11, contact_points=6)
-
-SOURCE = "Fig. 11; the motion of the disc is our choice"
-
-SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
-
-RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
-"""Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
-
-SPEED = 0.3
-"""Speed √(U² + W²) in m/s, ν̄_r of (22)."""
-
-CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Position of the disc's centre as x + iy in m, direction of its slip in rad and angle of the disc in rad."""
-
-STEP = 2e-3
-"""Time step in s of the velocities whose differences give the initial acceleration."""
-
-DIFFERENCES = (
-    (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
-    (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
-)
-"""Finite-difference weights of fourth and third order for the derivative at the first of five times."""
-
 R = FIG11.contact_radius
 
-COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""Ratios U/W, including 1, for the comparison of the closed form with the integral."""
-
-NUMBERS = (6, 12, 24)
-"""Numbers of points on the ring."""
-
-ZOOMS = 30
-"""Number of times the search range for the points' largest error is halved."""
-
-INNER = 2.0 / 3.0 * R
-"""Inner radius in m of the annulus with the outer radius R."""
-
-RESTING = (INNER, 0.75 * R, R)
-"""Radii in m of the resting point of the annulus whose convergence is measured."""
-
-RINGS = (8, 9, 10, 11, 12)
-"""Numbers of rings on either side of that radius, few enough for errors well above rounding."""
-
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)
-"""Widths of thin annuli, in units of their mean radius."""
-
+NUMBERS = (6, 12, 24)  # numbers of points on the ring
+ZOOMS = 30  # number of times the search range for the points' largest error is halved
+INNER = 2.0 / 3.0 * R  # inner radius in m of the annulus with the outer radius R
 
 # --- Friction on a contact ring by (20) to (22)
 # These functions do not use the reference's closed forms, which claims compare with them. ``slip`` is the slip of the
 # disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x, F_y, M)
 # in units of μN and μN·R.
 
-EVEN = 16
-"""Number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15."""
+EVEN = 16  # number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15
 
 
 def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
@@ -124,8 +76,7 @@ def average_of_expansion(slip: complex, rim: float) -> FloatArray:
 
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 
-QUADRATURE = 1e-11
-"""Error of an integral, ten times the requested tolerance of the quadrature."""
+QUADRATURE = 1e-11  # error of an integral, ten times the requested tolerance of the quadrature
 
 
 def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> FloatArray:
@@ -141,16 +92,17 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
     Both arrays contain U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
 
-    def by_integrals(i: int) -> Callable[[float], float]:
-        return lambda ratio: abs(
-            float((average_of_expansion(ratio, 1.0) - ring_by_quadrature(ratio, 1.0)[0])[i])
-        )
+    def by_integrals(ratio: float) -> FloatArray:
+        return average_of_expansion(ratio, 1.0) - ring_by_quadrature(ratio, 1.0)[0]
 
-    def by_formulas(i: int) -> Callable[[float], float]:
-        return lambda ratio: abs(float((friction(EXPANSION, ratio, 1.0) - friction(RING, ratio, 1.0))[i]))
+    def by_formulas(ratio: float) -> FloatArray:
+        return friction(EXPANSION, ratio, 1.0) - friction(RING, ratio, 1.0)
+
+    def largest(difference: Callable[[float], FloatArray], part: int) -> tuple[float, float, float]:
+        return top(lambda ratio: abs(float(difference(ratio)[part])), QUADRATURE)
 
     integrals, formulas = (
-        np.array([top(by(i), QUADRATURE) for i in (0, 2)]) for by in (by_integrals, by_formulas)
+        np.array([largest(difference, part) for part in (0, 2)]) for difference in (by_integrals, by_formulas)
     )
     return integrals, formulas
 

@@ -35,8 +35,7 @@ RING = FIG8
 SIX = replace(RING, contact_points=6)
 """The disc on the continuous ring (20), and that of the paper's simulations."""
 
-PAPER_LAW = ThreeTermRing(FIG8.contact_radius)
-"""Contact law (23)."""
+PAPER_LAW = ThreeTermRing(FIG8.contact_radius)  # contact law (23)
 
 SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper omits; the friction forces are our choice"
 
@@ -51,8 +50,7 @@ DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """Friction forces in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)
-"""Friction forces in units of the largest one with an equilibrium."""
+STICKING_RATIOS = (0.98, 1.02, 1.05)  # friction forces in units of the largest one with an equilibrium
 
 STICKING_TIME = 80.0
 """Time in s within which friction can accelerate a disc from 95 % to the speed of the master disc."""
@@ -60,14 +58,9 @@ STICKING_TIME = 80.0
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """Offsets X0 in m; the paper does not print X0, 0.1 m is the value of Figs. 4 to 6."""
 
-TOLERANCE = WORKING / 10
-"""Tolerance of motions to a position of rest, which the claims resolve to 1e-9."""
-
-BALANCED = 1e-9
-"""Largest residual force over μN due to rounding; (26) as printed leaves far more."""
-
-RESOLUTION = 1e-9
-"""Resolution of positions in m and spins in rad/s on the continuous ring."""
+TOLERANCE = WORKING / 10  # tolerance of motions to a position of rest, which the claims resolve to 1e-9
+BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
+RESOLUTION = 1e-9  # resolution of positions in m and spins in rad/s on the continuous ring
 
 
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:

@@ -116,8 +116,7 @@ def _growth(
 
 # --- Discs that stick to the master disc
 
-REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed
-"""Period in s of the force that holds a sticking disc."""
+REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force that holds a sticking disc
 
 
 @STUDY.claim(

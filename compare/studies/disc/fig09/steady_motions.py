@@ -14,6 +14,7 @@ import compare.studies.disc.fig09.theory as theory
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09.theory import STUDY
+from compare.studies.toolkit.pins import extent
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
 from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
@@ -254,7 +255,7 @@ def orbit_of(
 def sizes_of(orbit: Orbit) -> FloatArray:
     """Return period, smallest and largest radius, smallest, largest and mean spin, in s, m and rad/s."""
     spin = orbit.trajectory.states[:-1, -1]
-    return np.array([orbit.period, *theory.extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
+    return np.array([orbit.period, *extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 
 
 @functools.lru_cache(maxsize=4)

@@ -25,14 +25,10 @@ from reference_model.steady.stability import turning_frame_jacobian, whirl_eigen
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
 """Disc without offset, whose whirl is a circle."""
-
-PAPER_LAW = ThreeTermRing(FIG9.contact_radius)
-"""Contact law (23)."""
+PAPER_LAW = ThreeTermRing(FIG9.contact_radius)  # contact law (23)
 
 SOURCE = (
     'Fig. 9; β and b as in Fig. 8 ("the same parameter values as above"); X0 = 0.1 m as in Figs. 4 to 6 and μN '
@@ -44,8 +40,7 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)
-"""Circles far from the fold, each with twice the friction force of the one before."""
+ORDERS = slice(2, 5)  # circles far from the fold, each with twice the friction force of the one before
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -59,16 +54,13 @@ STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
 """Friction forces in N and initial radii, in units of (9), of sticking discs."""
-
-LATEST = 1.1
-"""Duration of the simulation of a disc outside, in units of the release time (7)."""
+LATEST = 1.1  # duration of the simulation of a disc outside, in units of the release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 """Friction force in N and duration in s of deviations from the whirl, and from equilibria."""
 
-DISPLACED = 1e-4
-"""Initial size of a deviation, in units of the distance from the axis."""
+DISPLACED = 1e-4  # initial size of a deviation, in units of the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
 """Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
@@ -85,14 +77,12 @@ BRANCH_STEP = 0.24
 """First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the relative
 decrease of successive crossings."""
 
-OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)
-"""Friction forces in N of whirls before the branch."""
+OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # friction forces in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
 """Friction force slightly above the fold's, in units of C·X0, and its smallest value in N."""
 
-FOLD_STEP = 0.12
-"""Relative step of the branch to the fold."""
+FOLD_STEP = 0.12  # relative step of the branch to the fold
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
@@ -107,7 +97,6 @@ def circle_of(load: float, which: int) -> SpinningWhirl:
 
 
 def rest_of(load: float) -> SpinningEquilibrium:
-    """Return the self-centred equilibrium of the ring at μN = ``load`` in N."""
     return equilibrium_of(with_load(RING, load))
 
 
@@ -134,12 +123,6 @@ def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> 
     """Return the reference's whirl with an offset: the outer one, or the inner, unstable one if ``which`` is 1."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
-
-
-def extent(orbit: Orbit) -> FloatArray:
-    """Return the smallest and largest distance from the axis in m."""
-    radius = orbit.trajectory.radius
-    return np.array([np.min(radius), np.max(radius)])
 
 
 def radius_of_pin(load: float) -> float:
@@ -257,7 +240,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
     """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
-    return circles() | smooth(orbits()) | rests() | sticking() | ends(offsets, fold_offsets)
+    return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
 
 
 def circles() -> Data:
@@ -319,9 +302,10 @@ def smooth(found: Sequence[Orbit]) -> Data:
     }
 
 
-def rests() -> Data:
-    """Return μN, radius and spin of the equilibria, and the largest μN of stable equilibria."""
+def rests_and_sticking() -> Data:
+    """Return μN, radius and spin of equilibria, the largest μN of stable ones, and μN and radius (9) of stick."""
     end = last_load(RING)
+    sticking = np.geomspace(end, LARGEST_LOAD, 100)[1:]
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer if the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
     return {
@@ -329,14 +313,7 @@ def rests() -> Data:
             [(load, math.hypot(one.x, one.y), one.spin) for load, one in zip(loads, found, strict=True)]
         ),
         "last stable load": np.array([last_stable_load(RING)]),
-    }
-
-
-def sticking() -> Data:
-    """Return friction forces that allow permanent stick, and the radius (9)."""
-    loads = np.geomspace(last_load(RING), LARGEST_LOAD, 100)[1:]
-    return {
-        "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in loads])
+        "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in sticking]),
     }
 
 
@@ -352,8 +329,6 @@ def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
         "folds": np.array(folds),
     }
 
-
-# --- The study
 
 STUDY = Study.beside(
     __file__, "fig09", source=SOURCE, system=RING, seconds=7.0, words={"own": f"{RING.offset:g}"}

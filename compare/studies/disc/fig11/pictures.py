@@ -39,13 +39,11 @@ K = RING.natural_frequency
 
 EXPANDED = "(23)"
 
-ENLARGED = 20.0
-"""Factor on x in the paper's figure."""
+ENLARGED = 20.0  # factor on x in the paper's figure
 
 SIDE_BANDS = 5
 
-SETTLED = 230.0
-"""Start time in s of sections and spectra."""
+SETTLED = 230.0  # start time in s of sections and spectra
 
 X0_AXIS = 0.025
 

@@ -24,25 +24,21 @@ from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
 from reference_model.steady.stability import jacobian_without_angle, turning_frame_jacobian
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-EXPANSION = ThreeTermRing(RING.contact_radius)
-"""Contact law (23)."""
+EXPANSION = ThreeTermRing(RING.contact_radius)  # contact law (23)
 
 CENTRED = f"{SOURCE}: 0 here"
 
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
-UNTIL = 700.0
-"""Duration in s, three periods of the modulation."""
+UNTIL = 700.0  # duration in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
-TRIED = (0.0072, 0.00725, 0.0073)
-"""Offsets X0 in m between which the critical X0 is interpolated."""
+TRIED = (0.0072, 0.00725, 0.0073)  # offsets X0 in m between which the critical X0 is interpolated
 
 SAMPLES_A_TURN = 16
 
-BOTH_STABLE = 0.0073
-"""Offset X0 in m slightly above the critical one."""
+BOTH_STABLE = 0.0073  # offset X0 in m slightly above the critical one
 
 STUDY = Study.beside(
     __file__,
@@ -124,7 +120,6 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
 
 
 def whirls_by_law() -> list[SteadyWhirl]:
-    """Return the whirls on the continuous ring, on six points and by (23)."""
     return [*(steady_whirl(disc) for disc in DISCS.values()), steady_whirl(RING, EXPANSION)]
 
 
@@ -220,7 +215,6 @@ def extremes_of(trajectory: Trajectory) -> FloatArray:
 
 
 def disc_at(offset: float) -> DiscOnDisc:
-    """Return the disc of Fig. 11 with another X0 in m."""
     return replace(FIG11, offset=offset)
 
 
@@ -272,7 +266,6 @@ def _whirl_of_reference() -> Orbit:
 
 @functools.cache
 def critical_offset_of_reference() -> float:
-    """Return the critical X0 in m by the reference."""
     return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
 
 

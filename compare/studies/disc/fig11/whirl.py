@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import stdtrit
@@ -30,17 +31,10 @@ SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
 
 SLIDING = np.linspace(0.0, 100.0, 101)
 
-OF_CYCLE = 10 * WORKING
-"""Tolerance of the motion that settles on the modulated cycle."""
-
-AMPLITUDE = 1e-4
-"""Initial size of a deviation, in units of the whirl's radius."""
-
-DURATION = 200.0
-"""Duration in s, about a period of the modulation; the deviation grows tenfold."""
-
-TOLERANCE = 2000 * WORKING
-"""Tolerance for deviations, small compared with ``AMPLITUDE``."""
+OF_CYCLE = 10 * WORKING  # tolerance of the motion that settles on the modulated cycle
+AMPLITUDE = 1e-4  # initial size of a deviation, in units of the whirl's radius
+DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
+TOLERANCE = 2000 * WORKING  # tolerance for deviations, small compared with ``AMPLITUDE``
 
 
 GROWTH_NOTE = (
@@ -88,19 +82,9 @@ def slides(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def rate_of_growth(engine: Engine, contact: str) -> Measured:
-    found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
-    times, sizes = departure(engine, DISCS[contact], whirl)
-    return Measured(
-        predicted=whirl.eigenvalue.real,
-        value=found.value[0],
-        error=found.error[0],
-        resolution=1e-2 * abs(whirl.eigenvalue.real),
-        system=DISCS[contact],
-        source=theory.CENTRED,
-        note=_linearised(DISCS[contact]),
-        named={f"rate of growth on {contact}": 0},
-        data={f"{contact}: departure": np.column_stack((times, sizes))},
-    )
+    times, sizes = departure(engine, DISCS[contact], steady_whirl(DISCS[contact]))
+    data = {f"{contact}: departure": np.column_stack((times, sizes))}
+    return replace(_of_growth(engine, contact, 0, 1e-2, "rate"), data=data)
 
 
 @STUDY.claim(
@@ -112,25 +96,26 @@ def rate_of_growth(engine: Engine, contact: str) -> Measured:
     each=tuple(DISCS),
 )
 def frequency_of_growth(engine: Engine, contact: str) -> Measured:
+    return _of_growth(engine, contact, 1, 5e-3, "frequency")
+
+
+def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str) -> Measured:
+    """Compare rate (0) or frequency (1) of the growth with the eigenvalue, resolved to a ``share`` of it."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
+    predicted = (whirl.eigenvalue.real, whirl.eigenvalue.imag)[which]
+    note = "Predicted: the eigenvalues in the frame that turns with the whirl."
+    if DISCS[contact].contact_points is not None:
+        note = "Predicted: the multipliers of the whirl on points, which repeats up to a rotation after "
+        note += f"{whirl.period:.4g} s, by the reference."
     return Measured(
-        predicted=whirl.eigenvalue.imag,
-        value=found.value[1],
-        error=found.error[1],
-        resolution=5e-3 * abs(whirl.eigenvalue.imag),
+        predicted=predicted,
+        value=found.value[which],
+        error=found.error[which],
+        resolution=share * abs(predicted),
         system=DISCS[contact],
         source=theory.CENTRED,
-        note=_linearised(DISCS[contact]),
-        named={f"frequency of growth on {contact}": 0},
-    )
-
-
-def _linearised(disc: DiscOnDisc) -> str:
-    if disc.contact_points is None:
-        return "Predicted: the eigenvalues in the frame that turns with the whirl."
-    return (
-        "Predicted: the multipliers of the whirl on points, which repeats up to a rotation after "
-        f"{steady_whirl(disc).period:.4g} s, by the reference."
+        note=note,
+        named={f"{name} of growth on {contact}": 0},
     )
 
 

@@ -1,4 +1,4 @@
-"""Claims."""
+"""Ends of sliding and spinning, times and places of rest, heat, and the existence of a final ratio."""
 
 from __future__ import annotations
 

@@ -28,8 +28,6 @@ from compare.studies.toolkit.free_bodies import NEAR, Slowing
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 TABLE = replace(
     FIG8,
     polar_inertia=FIG8.mass * FIG8.contact_radius**2,
@@ -43,14 +41,9 @@ TABLE = replace(
 )
 """The ring of Fig. 8 without springs, dampers and shaft on a master disc at rest, J = mR²."""
 
-DECELERATION = TABLE.friction_force / TABLE.mass
-"""Deceleration g in m/s² of a ring that only slides."""
-
-SPEED = 0.3
-"""Initial √(U² + W²) in m/s, with the speeds U of the centre and W of the rim."""
-
-HEADING = 0.7
-"""Direction of the throw in rad from the x axis."""
+DECELERATION = TABLE.friction_force / TABLE.mass  # deceleration g in m/s² of a ring that only slides
+SPEED = 0.3  # initial √(U² + W²) in m/s, with the speeds U of the centre and W of the rim
+HEADING = 0.7  # direction of the throw in rad from the x axis
 
 
 @dataclass(frozen=True)
@@ -107,14 +100,12 @@ INTEGRATED = (*RINGS, *OTHERS)
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Throws with J/(mR²) outside 1/2 to 2."""
 
-INTERVALS = 400
-"""Number of intervals of the time to rest, for the heat and the figure."""
+INTERVALS = 400  # number of intervals of the time to rest, for the heat and the figure
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 """Remaining times of the samples close to rest, as fractions of the time to rest."""
 
-NEARNESSES = (7.0, 9.0)
-"""Values of A/t of the samples of the approach to the ratio 1."""
+NEARNESSES = (7.0, 9.0)  # values of A/t of the samples of the approach to the ratio 1
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
 """Remaining times for the fit of a power law, as fractions of the time to rest."""
@@ -140,15 +131,11 @@ def deviation(nearness: ArrayLike) -> FloatArray:
     return np.asarray(8.0 * np.exp(-2.0 - np.asarray(nearness)))
 
 
-def approach_constant(sliding: float, rim: float, near: float = NEAR) -> float:
-    """Return A in s, for g = 1 m/s² and c = 1, from U > 0 and W > 0 in m/s, evaluated at |δ| = ``near``."""
-    return float(Slowing(1.0).stop(sliding, rim, near).left * nearness(near))
-
-
 @functools.cache
 def expected_approach(throw: Throw, near: float = NEAR) -> float:
-    """Return A in s for a throw."""
-    return approach_constant(throw.sliding, abs(throw.rim), near) / DECELERATION
+    """Return A in s for a throw with c = 1, evaluated at |δ| = ``near``."""
+    left = Slowing(1.0).stop(throw.sliding, abs(throw.rim), near).left
+    return float(left * nearness(near)) / DECELERATION
 
 
 def curves() -> Data:
@@ -187,7 +174,6 @@ def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
 
 
 def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return equally spaced times until the ring rests, in s."""
     return np.linspace(0.0, roughly_rest(engine, throw), INTERVALS + 1)[:-1]
 
 

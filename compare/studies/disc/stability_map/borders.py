@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -26,14 +27,12 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
-BOTH_LAWS = "(19), (20), (23)"
-"""Equations of claims on both the ring and (23)."""
+BOTH_LAWS = "(19), (20), (23)"  # equations of claims on both the ring and (23)
 
 FAR_FROM_KINK = 0.02
 """Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
 
-ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)
-"""Speeds ω in rad/s of the onsets by eigenvalues."""
+ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)  # speeds ω in rad/s of the onsets by eigenvalues
 
 UNSTABLE_LOADS = (0.3, 0.7)
 """Friction forces as fractions of the interval from the fold to the Hopf point of (23)."""
@@ -114,18 +113,21 @@ def folds() -> Measured:
     swept=("friction_force",),
 )
 def crosses_line() -> Measured:
-    predicted: list[float] = []
-    measured: list[float] = []
-    errors: list[float] = []
+    rows: list[tuple[float, ...]] = []
     names: list[str] = []
     for law in LAWS:
         sets = theory.traced()["load", law, "Hopf"], curves_in("load", "Hopf", law, step=2.0 * FINE)
         fine, coarse = (theory.crossed(curves, theory.DISC.disc_speed) for curves in sets)
-        predicted.extend(crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]))
-        measured.extend(fine)
-        errors.extend(np.abs(fine - coarse))
+        predicted = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law])
+        rows.extend(zip(predicted, fine, np.abs(fine - coarse), strict=True))
         names.extend(f"{law}, crossing {1 + i}" for i in range(len(fine)))
-    return Measured(predicted=predicted, value=measured, error=errors, components=names)
+    return _of_rows(rows, names)
+
+
+def _of_rows(rows: Sequence[tuple[float, ...]], components: Sequence[str], **more: Any) -> Measured:
+    """Return predicted and measured numbers and their errors, a row each."""
+    predicted, measured, errors = np.transpose(rows)
+    return Measured(predicted=predicted, value=measured, error=errors, components=components, **more)
 
 
 @STUDY.claim(
@@ -138,7 +140,7 @@ def crosses_line() -> Measured:
     swept=("friction_force", "disc_speed"),
 )
 def onset() -> Measured:
-    predicted, measured, errors = [], [], []
+    rows = []
     for law in LAWS.values():
         for speed in ONSET_SPEEDS:
             disc = theory.at(disc_speed=speed)
@@ -151,15 +153,8 @@ def onset() -> Measured:
             load = brentq(growth, 1e-3 * sticking, (1.0 - 1e-3) * sticking, xtol=1e-15)
             step = 1e-3 * load
             slope = (growth(load + step) - growth(load - step)) / (2.0 * step)
-            predicted.append(onset_load(disc, law))
-            measured.append(load)
-            errors.append(16.0 * EPSILON * (theory.K / abs(slope) + load))
-    return Measured(
-        predicted=predicted,
-        value=measured,
-        error=errors,
-        components=[f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in ONSET_SPEEDS],
-    )
+            rows.append((onset_load(disc, law), load, 16.0 * EPSILON * (theory.K / abs(slope) + load)))
+    return _of_rows(rows, [f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in ONSET_SPEEDS])
 
 
 SLIP_SPEED = theory.DISC.disc_speed - theory.DISC.shaft_speed
@@ -182,9 +177,7 @@ WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
     named={f"{name} at the onset": i for i, name in enumerate(WAYS)},
 )
 def remedies() -> Measured:
-    predicted: list[float] = []
-    measured: list[float] = []
-    errors: list[float] = []
+    rows = []
     for disc_of, end in WAYS.values():
 
         def excess(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
@@ -193,13 +186,10 @@ def remedies() -> Measured:
         def growth(share: float, disc_of: Callable[[float], DiscOnDisc] = disc_of) -> float:
             return growth_of_rotation(disc_of(share))
 
-        predicted.append(brentq(excess, 1.0, end, xtol=1e-15))
-        measured.append(brentq(growth, 1.0, end, xtol=1e-15))
+        predicted, measured = (brentq(zero, 1.0, end, xtol=1e-15) for zero in (excess, growth))
         slope = (growth(end) - growth(1.0)) / (end - 1.0)
-        errors.append(16.0 * EPSILON * (theory.K / abs(slope) + 1.0))
-    return Measured(
-        predicted=predicted, value=measured, error=errors, components=tuple(WAYS), source=ONE_AT_A_TIME
-    )
+        rows.append((predicted, measured, 16.0 * EPSILON * (theory.K / abs(slope) + 1.0)))
+    return _of_rows(rows, tuple(WAYS), source=ONE_AT_A_TIME)
 
 
 @STUDY.claim(
@@ -208,8 +198,7 @@ def remedies() -> Measured:
     resolution=1e-8,
 )
 def by_whirls() -> Measured:
-    predicted: list[float] = []
-    found: list[tuple[float, float]] = []
+    rows: list[tuple[float, ...]] = []
     names: list[str] = []
     named: dict[str, int | None] = {}
     for law in LAWS:
@@ -219,16 +208,12 @@ def by_whirls() -> Measured:
                 borders = crossings(plane, "Hopf", fixed, getattr(theory.DISC, fixed), LAWS[law])
                 for value in theory.nearest(borders, here):
                     if law == "ring":
-                        named[f"{'lower' if value < here else 'upper'} {name}"] = len(predicted)
-                    predicted.append(value)
-                    found.append(theory.change_of_stability(name, value, LAWS[law]))
+                        named[f"{'lower' if value < here else 'upper'} {name}"] = len(rows)
+                    rows.append((value, *theory.change_of_stability(name, value, LAWS[law])))
                     names.append(f"{law}: {name} {value:.4g} ({100.0 * (value / here - 1.0):+.1f} %)")
-    measured, errors = np.transpose(found)
-    return Measured(
-        predicted=predicted,
-        value=measured,
-        error=errors,
-        components=names,
+    return _of_rows(
+        rows,
+        names,
         source=ONE_AT_A_TIME,
         note="Borders on either side of the point of Fig. 11, and their distances: "
         + "; ".join(dict.fromkeys(names))
@@ -298,9 +283,9 @@ def _side(law: str, sign: float) -> Measured:
         sign * values[0].real,
         error,
         source="Fig. 11 with X0 = 0",
-        note=f"Radius {whirl.radius:.5f} m, spin {whirl.spin:.5f} rad/s, eigenvalues {values[0].real:+.5f} ± "
-        f"{abs(values[0].imag):.5f}i 1/s. At this speed the whirl of this law is unstable up to μN = {near[0]:.5f} N."
-        "",
+        note=f"Radius {whirl.radius:.5f} m, spin {whirl.spin:.5f} rad/s, eigenvalues {values[0].real:+.5f} "
+        f"± {abs(values[0].imag):.5f}i 1/s. "
+        f"At this speed the whirl of this law is unstable up to μN = {near[0]:.5f} N.",
     )
 
 

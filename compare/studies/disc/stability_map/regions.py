@@ -29,14 +29,12 @@ LINES = (
 )
 """Lines of simulated discs on both sides of the ring's Hopf curves: plane, fixed parameter, its value."""
 
-ASIDE = 0.01
-"""Relative distance of these simulations from the curves."""
+ASIDE = 0.01  # relative distance of these simulations from the curves
 
 DEVIATION = 0.02
 """Initial deviation from the whirl, as a share of the distance to U = W, where a point of the ring comes to rest."""
 
-FLOW_TOLERANCE = 100 * WORKING
-"""Tolerance of simulations whose small differences are evaluated."""
+FLOW_TOLERANCE = 100 * WORKING  # tolerance of simulations whose small differences are evaluated
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
 """State x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""

@@ -35,7 +35,6 @@ SOURCE = "Fig. 11 with X0 = 0; the ranges of the map are our choice"
 
 
 def at(**changes: Any) -> DiscOnDisc:
-    """Return the disc of Fig. 11 with some parameters changed."""
     return replace(DISC, **changes)
 
 
@@ -165,8 +164,7 @@ SLOWLY_SETTLED = 2400.0
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3
-"""Radius in units of R below which a motion counts as rotation about the axis."""
+AXIS = 1e-3  # radius in units of R below which a motion counts as rotation about the axis
 
 MODULATED = 0.05
 """Smallest (largest − smallest)/(largest + smallest) radius of a motion that counts as modulated."""
@@ -225,7 +223,6 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
 
 
 def changes(disc: DiscOnDisc) -> str:
-    """Return the parameters that differ from those of Fig. 11, as text."""
     differing = [
         f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
     ]
@@ -239,7 +236,6 @@ def border(name: str, unit: str, digits: int = 3) -> str:
 
 
 def borders(parameter: str, unit: str, digits: int = 3) -> str:
-    """Return templates that quote both borders in one parameter."""
     return " and ".join(border(f"{side} {parameter}", unit, digits) for side in ("lower", "upper"))
 
 

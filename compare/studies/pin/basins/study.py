@@ -25,11 +25,8 @@ from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
 
-PLANE = ((-0.3, 0.5), (-0.4, 0.4))
-"""Ranges of x0 in m and vx0 in m/s; y0 and vy0 are zero."""
-
-RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
-"""The same ranges as text."""
+PLANE = ((-0.3, 0.5), (-0.4, 0.4))  # ranges of x0 in m and vx0 in m/s; y0 and vy0 are zero
+RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"  # the same ranges as text
 
 FROM_REST = "Fig. 5; starts from rest in y"
 
@@ -48,23 +45,12 @@ CELLS, ON_BOUNDARY = 8, 1e-5
 ASKED, BARELY = 64, 1e-6
 """Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
 
-UNTIL = 3000.0
-"""Duration in s until every start has reached its end."""
-
-SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())
-"""Disc speeds in rad/s."""
-
-STARTS, SEED = 2000, 5
-"""Number of random starts in the plane, the same at every speed, and seed."""
-
-RECOMPUTED = 16
-"""Starts that the plain reference recomputes, half of them near the boundary."""
-
-SETTLED = 250.0
-"""Duration in s until the plain reference has reached one of the two ends from these starts."""
-
-STEP = 5e-3
-"""Distance in rad of other releases from the saddle's, for an engine's multiplier."""
+UNTIL = 3000.0  # duration in s until every start has reached its end
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
+STARTS, SEED = 2000, 5  # number of random starts in the plane, the same at every speed, and seed
+RECOMPUTED = 16  # starts that the plain reference recomputes, half of them near the boundary
+SETTLED = 250.0  # duration in s until the plain reference has reached one of the two ends from these starts
+STEP = 5e-3  # distance in rad of other releases from the saddle's, for an engine's multiplier
 
 PLACES, ASIDE = 4, 5e-3
 """Number of starts on the boundary for each engine, and distance from it to either side in m and m/s."""
@@ -100,7 +86,6 @@ def saddle(pin: PinOnDisc) -> StickSlipOrbit:
 
 
 def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the saddle with the tolerance ``ON_BOUNDARY``."""
     orbit = saddle(pin)
     return replace(orbit, problem=replace(orbit.problem, tolerance=ON_BOUNDARY))
 
@@ -133,12 +118,10 @@ def beyond_equilibrium(state: FloatArray) -> float:
 
 
 def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
-    """Return states, shape (n, 4)."""
     return np.column_stack((x, np.zeros_like(x), vx, np.zeros_like(x)))
 
 
 def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatArray) -> Ensemble:
-    """Return the ends of ``starts`` of shape (n, 4)."""
     return simulate_ensemble(pin, starts, duration=UNTIL, parameters=parameters)
 
 
@@ -150,7 +133,6 @@ def places_on_grid(side: int) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
-    """Return the ends, shape (side, side)."""
     return ensemble_of(starts_at(*places_on_grid(side).T), pin).end.reshape(side, side)
 
 

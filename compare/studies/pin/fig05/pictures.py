@@ -46,8 +46,11 @@ def draw(data: ByEngine) -> Figures:
             if rank == 0:
                 _draw_lines(planes, history, data[engine], name, f"{name}, {engine}", look)
             else:
+                times, states, radius = (values[::37] for values in _motion(data[engine], name))
+                for panel in planes:
+                    panel.plot(states[:, 0], states[:, 1], **points(engine, "", markersize=3.0))
                 label = engine if name == "equilibrium" else ""
-                _draw_marks(planes, history, data[engine], name, engine, label)
+                history.plot(times, radius, **points(engine, label, markersize=3.0))
             _draw_errors(errors, data[engine], name, engine)
     for panel in (plane, near):
         panel.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
@@ -77,15 +80,6 @@ def _draw_lines(
     for start, end in found[f"{name}: sticks"].reshape(-1, 2):
         inside = (times >= start) & (times <= end)
         history.plot(times[inside], radius[inside], color=STUCK, linewidth=4.0)
-
-
-def _draw_marks(
-    planes: tuple[Axes, ...], history: Axes, found: Data, name: str, engine: str, label: str
-) -> None:
-    times, states, radius = (values[::37] for values in _motion(found, name))
-    for panel in planes:
-        panel.plot(states[:, 0], states[:, 1], **points(engine, "", markersize=3.0))
-    history.plot(times, radius, **points(engine, label, markersize=3.0))
 
 
 def _motion(found: Data, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -142,8 +136,6 @@ def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
 
 
 class _View:
-    """Panel of one motion on the turning disc."""
-
     TRAIL = 120  # samples
 
     def __init__(self, panel: Axes, name: str, found: Data) -> None:
@@ -160,11 +152,9 @@ class _View:
 
     @property
     def moving(self) -> tuple[Artist, ...]:
-        """All artists that change."""
         return (*self.spokes, self.trail, self.pin, self.title)
 
     def show(self, sample: int) -> None:
-        """Move all artists to their positions at a sample."""
         t = float(self.times[sample])
         for i, spoke in enumerate(self.spokes):
             angle = FIG5.disc_speed * t + i * math.pi / 3.0

@@ -21,8 +21,6 @@ from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
 
-# --- Starts, durations and tolerances of the motions of Fig. 5
-
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
@@ -30,16 +28,12 @@ UNTIL = 400.0
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20
-"""Turns of the whirl after a run; the last one is averaged."""
-
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)
-"""A start near the whirl that leads to permanent slip (our choice)."""
+FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
+SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # A start near the whirl that leads to permanent slip (our choice)
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
-CAPTURE = 1e-6
-"""Required accuracy of the critical initial velocity in m/s."""
+CAPTURE = 1e-6  # required accuracy of the critical initial velocity in m/s
 
 AFTERWARDS = 220.0
 """Duration in s. A deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
@@ -64,15 +58,6 @@ tolerances may be small by chance. Correct engines deviated by up to 1.2e-6 of t
 
 STICK_RESOLUTIONS = {"first": 1e-3, "all": 1e-2}
 """Resolutions in s of the first stick phase, and of all stick phases."""
-
-
-# --- The motions of Fig. 5 without an engine
-
-
-@functools.cache
-def sliding_in_polar_form(tolerance: float) -> FloatArray:
-    """Return the states of the sliding pin, shape (101, 4), by (10) and a separate integration."""
-    return simulate_polar_form(FIG5, np.array(SLIDING_START), SLIDING_TIMES, tolerance=tolerance)
 
 
 @functools.cache
@@ -152,24 +137,11 @@ def critical_velocity(engine: Engine, tolerance: float) -> float:
     return between(low, high)
 
 
-@functools.cache
-def predicted_critical_velocity() -> float:
-    """Return ``critical_velocity`` by the reference."""
-    return critical_velocity(Engine("reference", simulate), TIGHTEST)
-
-
-def outside_at_end(engine: Engine, velocity: float, tolerance: float) -> float:
-    """Return the final distance in m from the axis minus 2·X0, for vx(0) = ``velocity`` in m/s."""
-    trajectory = engine.simulate(FIG5, (0.1, 0.0, velocity, 0.0), [0.0, AFTERWARDS], tolerance=tolerance)
-    return float(trajectory.radius[-1]) - 2.0 * FIG5.offset
-
-
 STUDY = Study.beside(__file__, "fig05", source=SOURCE, system=FIG5, seconds=4.5)
 
 
 @functools.lru_cache(maxsize=8)
 def run_of(engine: Engine, name: str, tolerance: float) -> Trajectory:
-    """Return the run of Fig. 5 to the motion ``name``."""
     times = np.linspace(0.0, UNTIL, SAMPLES)
     return engine.simulate(FIG5, FIG5_STARTS[name], times, tolerance=tolerance)
 
@@ -185,7 +157,10 @@ def run_of(engine: Engine, name: str, tolerance: float) -> Trajectory:
 )
 def slides(engine: Engine) -> Measured:
     # The error of the other integrator is its change at a larger tolerance.
-    predicted, rougher = (sliding_in_polar_form(tolerance).ravel() for tolerance in (3e-14, 2e-13))
+    predicted, rougher = (
+        simulate_polar_form(FIG5, np.array(SLIDING_START), SLIDING_TIMES, tolerance=tolerance).ravel()
+        for tolerance in (3e-14, 2e-13)
+    )
     found = refined(
         lambda tolerance: engine.simulate(
             FIG5, SLIDING_START, SLIDING_TIMES, tolerance=tolerance
@@ -310,18 +285,14 @@ def _events(engine: Engine, name: str, which: str, size: int) -> Measurement:
 
     def times(tolerance: float) -> FloatArray:
         found = run_of(engine, name, tolerance).stick_times
-        return _padded(found[:size] if which == "first" else found, size)
+        events = found[:size] if which == "first" else found
+        return events if len(events) == size else np.full(size, np.nan)
 
     found = refined(times, RUNS_TOLERANCE)
     found = Measurement(found.value, np.maximum(found.error, LEAST_SHARE * STICK_RESOLUTIONS[which]))
     return open_where_coarse(
         found, refined(lambda tolerance: run_of(engine, name, tolerance).states, RUNS_TOLERANCE)
     )
-
-
-def _padded(events: FloatArray, size: int) -> FloatArray:
-    """Return ``events``, or NaN if their number is not ``size``."""
-    return events if len(events) == size else np.full(size, np.nan)
 
 
 @STUDY.claim(
@@ -337,7 +308,7 @@ def _padded(events: FloatArray, size: int) -> FloatArray:
 def critical(engine: Engine) -> Measured:
     found = _critical(engine)
     return Measured(
-        predicted=predicted_critical_velocity(),
+        predicted=critical_velocity(Engine("reference", simulate), TIGHTEST),
         value=found.value,
         error=found.largest,
         source=f"{SOURCE}; x(0) = 0.1, vx(0) between the two printed values",
@@ -358,18 +329,16 @@ def sides(engine: Engine) -> Measured:
     margins, errors = asked(functools.partial(_parted, engine), SIDES_TOLERANCE)
     if _critical(engine).largest > CAPTURE:  # the motions may then divide at another start
         errors = np.full_like(margins, math.inf)
-    return answers_of(
-        margins,
-        errors,
-        parameters={"tolerance": SIDES_TOLERANCE},
-    )
+    return answers_of(margins, errors, parameters={"tolerance": SIDES_TOLERANCE})
 
 
 def _parted(engine: Engine, tolerance: float) -> FloatArray:
-    """Return by how much in m starts below and above the critical velocity end inside and outside 2·X0."""
     middle = critical_velocity(engine, tolerance)
     if not math.isfinite(middle):
         return np.full(2, math.nan)
-    return np.array(
-        [side * outside_at_end(engine, middle + side * CAPTURE, tolerance) for side in (-1.0, 1.0)]
-    )
+    margins = []
+    for side in (-1.0, 1.0):
+        start = (0.1, 0.0, middle + side * CAPTURE, 0.0)
+        run = engine.simulate(FIG5, start, [0.0, AFTERWARDS], tolerance=tolerance)
+        margins.append(side * (float(run.radius[-1]) - 2.0 * FIG5.offset))
+    return np.array(margins)

@@ -31,24 +31,18 @@ PIN = FIG4
 SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are our choice"
 RESONANCE = resonant_disc_speed(PIN)
 
-SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)
-"""ω in rad/s of the starts inside and outside the radius (9)."""
+SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s of the starts inside and outside the radius (9)
 
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
 """Radii of the starts, relative to (9)."""
-
-CREEP = 1e-2
-"""Relative displacement of a stuck pin above which it is uncertain whether it sticks."""
+CREEP = 1e-2  # relative displacement of a stuck pin above which it is uncertain whether it sticks
 
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """The same for a pin just outside: creep by this fraction of its distance to the edge may hold it for too long."""
 
-LATEST = 1.1
-"""Duration for a pin outside, relative to the time that (7) predicts."""
-
-REVOLUTIONS = 2.0
-"""Duration for a pin inside; the holding force has the period of one revolution."""
+LATEST = 1.1  # duration for a pin outside, relative to the time that (7) predicts
+REVOLUTIONS = 2.0  # duration for a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
@@ -56,23 +50,16 @@ SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 BRACKET = (0.03, 4.0)
 """Initial bracket of the search, relative to X0. It does not use (9), so it cannot favour it."""
 
-PRECISION = 6e-5
-"""Relative accuracy of this search."""
+PRECISION = 6e-5  # relative accuracy of this search
 
 SEARCH_TOLERANCE = 1e-7
 
-TOLERANCE = 3e-8
-"""Moderate, because the cost of stick rises as a regularised law approaches Coulomb's."""
-
-DAMPINGS = np.geomspace(0.01, 1.3, 15)
-"""β in N s/m for the search of the largest radius (9)."""
-
-FAST = (10.0, 30.0, 100.0)
-"""ω in rad/s far above the resonance."""
+TOLERANCE = 3e-8  # moderate, because the cost of stick rises as a regularised law approaches Coulomb's
+DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m for the search of the largest radius (9)
+FAST = (10.0, 30.0, 100.0)  # ω in rad/s far above the resonance
 
 
 def pin_at(speed: float) -> PinOnDisc:
-    """Return the pin of this study at another disc speed in rad/s."""
     return replace(PIN, disc_speed=speed)
 
 
@@ -158,7 +145,6 @@ def two_revolutions(
 
 
 def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement:
-    """Return the displacements of ``two_revolutions`` and their errors."""
     found = refined(lambda tolerance: two_revolutions(engine, speeds, tolerance)[0], TOLERANCE)
     # Zero displacements have no scale for rounding, so the rounding of a turn counts.
     return found.plus(ROUNDING)
@@ -241,7 +227,6 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
     def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
-        """Return the bracket for another tolerance, which moves the radius only slightly."""
         return near if np.all(np.isfinite(near)) else _anywhere(pin)
 
     def radii(tolerance: float) -> FloatArray:

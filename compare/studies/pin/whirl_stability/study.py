@@ -321,7 +321,6 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
-    """Return the eigenvalues of the whirl at ``points``, ω in rad/s and β in N s/m."""
     pins = [pin_at(*point) for point in points]
     return measured_rates(
         engine,

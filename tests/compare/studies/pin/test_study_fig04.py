@@ -10,9 +10,7 @@ from compare.studies.pin.fig04 import STUDY
 from reference_model.formulas.pin import first_order_whirl_response, first_order_whirl_shift, whirl_shift
 
 
-@pytest.mark.parametrize(
-    ("factor", "seen"), [(1.108, {"shift", "limit"}), (1.01, {"shift", "limit"}), (1.0001, {"limit"})]
-)
+@pytest.mark.parametrize(("factor", "seen"), [(1.01, {"shift", "limit"}), (1.0001, {"limit"})])
 def test_a_wrong_equation_18_differs_from_a_correct_engine(monkeypatch, factor, seen):
     monkeypatch.setattr(study, "whirl_shift", lambda pin: tuple(factor * np.array(whirl_shift(pin))))
     assert those_that_differ() == seen
