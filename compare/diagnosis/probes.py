@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.integrate import simpson
@@ -286,25 +287,20 @@ SUPPORTS = {
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one, shape (3,).
+    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one, shape (3,)."""
+    times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
+    settled = _settled(engine, [(*motion, times) for motion in SUPPORTS.values()], tolerance, 1e-9)
+    return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
 
-    The exact motion starts from the engine's state after ``SETTLES_FOR``.
-    """
-    motions = [
-        (system, start, np.array([0.0, SETTLES_FOR, SLIDES_FOR])) for system, start in SUPPORTS.values()
-    ]
-    return np.array(
-        [
-            _share(
-                run.states[2, 2:],
-                simulate(system, run.states[1], times[1:]).states[-1, 2:],
-                run.states[1, 2:],
-            )
-            for (system, _, times), run in zip(
-                motions, engine.simulate_many(motions, tolerance=tolerance), strict=True
-            )
-        ]
-    )
+
+def _settled(
+    engine: Engine, motions: Sequence[Any], tolerance: float, exactly: float
+) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
+    """Yield the engine's states after ``SETTLES_FOR`` and at the end, and the exact end from the former."""
+    runs = engine.simulate_many(motions, tolerance=tolerance)
+    for (system, _, times), run in zip(motions, runs, strict=True):
+        begun, ended = run.states[1:]
+        yield begun, ended, simulate(system, begun, times[1:], tolerance=exactly).states[-1]
 
 
 def _share(found: FloatArray, exact: FloatArray, start: FloatArray) -> float:
@@ -337,16 +333,10 @@ def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], Float
 
 
 def moments(engine: Engine, points: int | None, tolerance: float) -> FloatArray:
-    """Return force and moment of friction over the exact ones, shape (6, 2); NaN where there is none.
-
-    The exact motion starts from the engine's state after ``SETTLES_FOR``.
-    """
+    """Return force and moment of friction over the exact ones, shape (6, 2); NaN where there is none."""
     motions, found = discs(points), []
-    for (disc, start, times), run in zip(
-        motions, engine.simulate_many(motions, tolerance=tolerance), strict=True
-    ):
-        begun, ended = run.states[1:]
-        exact = simulate(disc, begun, times[1:], tolerance=1e-12).states[-1]
+    settled = _settled(engine, motions, tolerance, 1e-12)
+    for (_, start, _), (begun, ended, exact) in zip(motions, settled, strict=True):
         force = _share(ended[3:5], exact[3:5], begun[3:5]) if start[3] else math.nan
         found.append([force, (ended[5] - begun[5]) / (exact[5] - begun[5]) if start[5] else math.nan])
     return np.array(found)

@@ -4,7 +4,6 @@ import functools
 import json
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +19,6 @@ from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, exudyn, plain, reference
-from compare.run.workers import Failure
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -262,16 +260,15 @@ def raises(system, start, times, *, tolerance):
     raise RuntimeError("out of order")
 
 
-def test_a_failed_probe_is_named_and_the_others_remain():
+def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
-    nobody = SimpleNamespace(ask=lambda *arguments, owner: Failure("out of order"))
     assert set(row.gaps) == set(PROBES) - {"lag", "moments"}
     assert row.sentences[0].startswith(
         "Undecided: no result for law, scales, creep, history, support, repeat: out of"
     )
     assert row.verdict == UNDECIDED
-    assert set(run._probed(broken, nobody).gaps) == {"law"}
+    assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
 
 
 def test_recorded_engines_have_rows_like_the_others(tmp_path):

@@ -59,15 +59,15 @@ def test_the_engine_is_named_after_its_folder_and_supports_the_planned_kinds(fol
     assert engine.lacking([FIG11]) == "motions does not simulate a disc on a continuous ring"
 
 
-def lines(change):
-    """Return a function of a text that applies ``change`` to its lines."""
-    return lambda text: "\n".join(change(text.splitlines())) + "\n"
+def with_line(place, *new):
+    """Return a function of a text that replaces the line at an index by none or one."""
+    return lambda text: "\n".join([*(rows := text.splitlines())[:place], *new, *rows[place + 1 :], ""])
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
-        (lines(lambda rows: rows[:-1]), "ends after 2 of 3 times, before t = 1 s"),
+        (with_line(3), "ends after 2 of 3 times, before t = 1 s"),
         (lambda text: "", "ends after 0 of 3 times, before t = 0 s"),
         (lambda text: text[: text.rindex(",")], "ends after 2 of 3 times, before t = 1 s"),
     ],
@@ -89,27 +89,15 @@ def test_a_missing_file_is_unsupported_not_wrong(answer, folder):
 @pytest.mark.parametrize(
     ("change", "kind", "reason"),
     [
-        (lines(lambda rows: [*rows, rows[-1]]), BadFileError, " has 4 rows: expected 3, one per time"),
+        (with_line(4, "1,2,3,4,5"), BadFileError, " has 4 rows: expected 3, one per time"),
         (
-            lines(lambda rows: [rows[0], rows[1], rows[2] + ",1", rows[3]]),
+            with_line(2, "1,2,3,4,5,6"),
             BadFileError,
             ", line 3, has 6 numbers: it must have 5, t, x, y, vx, vy",
         ),
-        (
-            lines(lambda rows: [rows[0], rows[1], "1,2,three,4,5", rows[3]]),
-            BadFileError,
-            ", line 3, does not consist of numbers: '1,2,three,4,5'",
-        ),
-        (
-            lines(lambda rows: [rows[0], rows[1], "0.3,2,nan,4,5", rows[3]]),
-            BadFileError,
-            ", line 3, has a number that is not finite",
-        ),
-        (
-            lines(lambda rows: [rows[0], rows[1], rows[1], rows[3]]),
-            BadTrajectoryError,
-            "times[1] = 0.0 s: expected 0.3333333333333333 s",
-        ),
+        (with_line(2, "1,2,3,4,x"), BadFileError, ", line 3, does not consist of numbers: '1,2,3,4,x'"),
+        (with_line(2, "0.3,2,nan,4,5"), BadFileError, ", line 3, has a number that is not finite"),
+        (with_line(2, "0,2,3,4,5"), BadTrajectoryError, "times[1] = 0.0 s: expected 0.3333333333333333 s"),
     ],
 )
 def test_an_invalid_file_is_reported_with_its_line(change, kind, reason, answer):
