@@ -111,10 +111,7 @@ def _shaft_of(body: System) -> tuple[float, float, float]:
 
 
 def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times (n,), states (n, 4 or 6) and integrals since the start (n, 6), phase after phase.
-
-    The columns are the integrals of :func:`_rates`.
-    """
+    """Return times (n,), states (n, 4 or 6) and the integrals of :func:`_rates` since the start (n, 6)."""
     times, states, integrals = [], [], []
     total = np.zeros(6)
     for kind, t, state in _spans(trajectory):

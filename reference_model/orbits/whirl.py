@@ -144,10 +144,7 @@ def modulated_cycle(
 
 
 def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
-    """Return state, period and rotation of the last recurrence between two similar maxima of the radius.
-
-    The state is rotated so that the centre lies on the x axis. Raises ``ValueError`` without a recurrence.
-    """
+    """Return state on the x axis, period and rotation of the last recurrence of a maximum of the radius."""
     states, times = trajectory.states, trajectory.times
     velocities = trajectory.system.state_size // 2
     z = states[:, 0] + 1j * states[:, 1]

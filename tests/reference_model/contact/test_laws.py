@@ -155,21 +155,6 @@ def test_at_rest_friction_is_zero_and_the_derivative_is_refused(law):
             law.jacobian(R * 2.0j, -2.0, 0.0)
 
 
-@given(motion=motions())
-def test_points_converge_to_the_ring_within_their_error_bound(motion):
-    slip, spin, _ = motion
-    exact, errors = friction(RING, motion), []
-    for points in (6, 24, 96):
-        errors.append(np.abs(friction(PointsOnRing(R, points), motion) - exact).max())
-        # The worst case has one point at rest; this is the mean of sin(χ/2) over the others.
-        others = 1.0 / math.tan(math.pi / (2.0 * points)) / points
-        assert errors[-1] < 1.0 / points + 2.0 / math.pi - others + 1e-9
-    ratio = min(abs(slip) / (R * abs(spin)), R * abs(spin) / abs(slip))
-    # The direction is analytic along the circle within a strip of width |ln(U/W)|.
-    assert errors[1] <= 2.0 * ratio**23 + 1e-14
-    assert errors[2] <= 2.0 * ratio**95 + 1e-14
-
-
 @pytest.mark.parametrize("law", [PointsOnRing(R, 3), PointsOnRing(R, 24), LAWS[-1]])
 @given(motion=motions())
 def test_friction_of_one_point_and_of_the_others_adds_up_to_the_total(law, motion):

@@ -22,8 +22,11 @@ from reference_model import (
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.recurrence import converged
+from reference_model.ensemble.pin import slip as pin_slip
 from reference_model.ensemble.pin.end_states import depth, equilibrium_region
 from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
+from reference_model.motion.pin_equations import SlipMotion
+from reference_model.motion.stick import release_delay, slip_from_rest
 
 ACCURACY = 1e-4
 """Relative distance from a periodic motion that may remain."""
@@ -226,6 +229,24 @@ def test_pin_that_still_creeps_at_the_end_is_stuck_at_its_final_radius():
 
 def law_of(pin):
     return laws.PinLaw(pin.stiffness, pin.damping, pin.friction_force, pin.disc_speed, pin.offset, 0.03, 0.0)
+
+
+def test_release_and_first_slip_agree_with_the_plain_reference():
+    motion, law, work = (
+        SlipMotion.of(FIG5),
+        law_of(FIG5),
+        np.zeros((6, pin_slip.MOST_TERMS + 2), dtype=complex),
+    )
+    for angle in np.linspace(0.0, 6.0, 9):
+        z = 0.05 * np.exp(1j * angle)
+        delay = release_delay(motion, z)
+        assert laws.release_delay(z, law) == pytest.approx(delay, rel=1e-12)
+        z *= np.exp(1j * FIG5.disc_speed * delay)
+        place, w, duration, distance = pin_slip.begin_slip.py_func(z, law, 1e-13, 100.0, work)
+        exact, exact_slip = slip_from_rest(motion, z).at(np.array([duration]))
+        assert abs(place - exact[0]) < 1e-13
+        assert abs(w - exact_slip[0]) < 1e-12
+        assert distance == pytest.approx(abs(w) * duration / 3.0, rel=0.1)  # slip is of order t²
 
 
 @pytest.mark.parametrize(

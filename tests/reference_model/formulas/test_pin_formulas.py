@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize_scalar, root
+from scipy.optimize import brentq, root
 
 from reference_model import plain
 from reference_model.formulas import pin as formulas
@@ -134,18 +134,6 @@ def test_largest_holding_force_at_the_sticking_radius_is_the_friction_force(pin)
 
 def test_sticking_radius_of_an_undamped_pin_is_infinite_at_its_natural_frequency():
     assert formulas.sticking_radius(replace(FIG_4, damping=0.0, disc_speed=-1.0)) == math.inf
-
-
-@pytest.mark.parametrize("pin", [FIG_4, replace(HEAVY, friction_force=1.0)])
-def test_sticking_radius_has_its_maximum_at_the_resonant_disc_speed(pin):
-    found = minimize_scalar(
-        lambda speed: -formulas.sticking_radius(replace(pin, disc_speed=speed)),
-        bounds=(0.0, 3.0),
-        method="bounded",
-        options={"xatol": 1e-9},
-    )
-    # A maximum is located to the root of the rounding of its value.
-    assert formulas.resonant_disc_speed(pin) == pytest.approx(found.x, rel=1e-7)
 
 
 @pytest.mark.parametrize("damping", [2.0, 3.0])

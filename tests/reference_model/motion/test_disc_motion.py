@@ -11,34 +11,15 @@ from plain_engines import release_after, stuck_state
 
 from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, simulate
-from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas.disc import held_pin
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
 from reference_model.systems import DiscOnDisc
 
-FREE = DiscOnDisc(
-    mass=2.0, polar_inertia=2.0 * 0.3**2, stiffness=0.0, damping=0.0, friction_force=0.4, disc_speed=0.0,
-    contact_radius=0.3, shaft_damping=0.0, shaft_speed=0.0,
-)  # fmt: skip
-
 
 def kinds(trajectory):
     return [phase.kind for phase in trajectory.phases]
-
-
-def test_motion_of_a_thin_annulus_differs_from_the_ring_to_second_order_in_its_width():
-    disc, start, times = STICKY, STICKING, np.linspace(0.0, 20.0, 31)
-    ring = simulate(disc, start, times)
-    errors = []
-    for half_width in (2e-3, 1e-3):
-        facing = Annulus(disc.contact_radius - half_width, disc.contact_radius + half_width)
-        annulus = simulate(disc, start, times, contact=facing)
-        assert kinds(annulus) == kinds(ring)
-        errors.append(np.abs(annulus.states - ring.states).max())
-    assert "stick" in kinds(ring)
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.01)
 
 
 def test_crossings_of_equal_slip_and_rim_speed_keep_the_tolerance():
@@ -131,31 +112,6 @@ def test_motion_does_not_depend_on_any_threshold(sticky, threshold, factor):
     assert kinds(changed) == kinds(sticky)
     assert np.abs(changed.states - sticky.states).max() < 1e-8
     assert changed.stick_times == pytest.approx(sticky.stick_times, abs=1e-8)
-
-
-@pytest.mark.parametrize(
-    "start", [[0.0, 0.0, 0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 0.0, 0.3, 0.4, -6.0], [0, 0, 0, 2.0, 0, 0.01]]
-)
-def test_thrown_ring_stops_sliding_and_spinning_together_with_equal_speeds_of_centre_and_rim(start):
-    trajectory = simulate(FREE, start, np.linspace(0.0, 40.0, 11))
-    assert kinds(trajectory) == ["slip", "stick"]
-    stop = trajectory.phases[1].start
-    left = stop * 2.0 ** -np.arange(1.0, 29.0)
-    before = simulate(FREE, start, [0.0, *(stop - left)], tolerance=1e-13).states[1:]
-    sliding, rim = np.hypot(before[:, 3], before[:, 4]), 0.3 * np.abs(before[:, 5])
-    distance = np.abs(sliding / rim - 1.0)
-    # The logarithm in the law of the ring makes the ratio approach 1 faster than any power of the remaining time.
-    # Ten times the error of the closed form for coming to rest.
-    resolved = (distance * sliding)[1:] > 1e-11
-    assert np.all(distance[1:][resolved] < distance[:-1][resolved])
-    near = resolved & (distance[:-1] < 0.1)
-    assert np.any(near)
-    assert np.all(distance[1:][near] < 0.1 * distance[:-1][near])
-    assert distance[-1] < 1e-6
-    # Finally 2/π of full friction acts on both.
-    rate = 2.0 / math.pi * FREE.friction_force / FREE.mass
-    assert sliding[-1] == pytest.approx(rate * left[-1], rel=1e-3)
-    assert rim[-1] == pytest.approx(rate * left[-1], rel=1e-3)
 
 
 @pytest.mark.parametrize(("inertia", "spin"), [(1e9, 1.3), (1.0, 1e6), (1e-4, 1.3)])

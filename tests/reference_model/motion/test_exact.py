@@ -204,7 +204,7 @@ def test_holding_force_that_peaks_at_the_friction_force_does_not_release_the_pin
 
 
 OUT_OF_REACH = {"stop_gap": 10.0, "stop_stiffness": 1.0}
-"""A stop that the pin never meets, with which the release is searched for and not computed in closed form."""
+"""A stop that the pin never meets. The release is then searched for and not computed in closed form."""
 
 
 @pytest.mark.parametrize(

@@ -20,13 +20,7 @@ from reference_model.systems import DiscOnDisc, PinOnDisc
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 LAWS = pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
 SPEED_LOAD = ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.3, 0.001), (3.0, 0.08))
-PLANES = (
-    SPEED_LOAD,
-    ParameterPlane(FIG11, ("damping", "shaft_damping"), (0.2, 0.002), (2.0, 0.03)),
-    ParameterPlane(FIG11, ("disc_speed", "shaft_speed"), (1.005, 0.7), (2.2, 2.2)),
-    ParameterPlane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024)),
-    ParameterPlane(FIG11, ("mass", "stiffness"), (0.5, 0.5), (2.0, 1.0)),
-)
+INERTIA = ParameterPlane(FIG11, ("polar_inertia", "shaft_damping"), (0.05, 0.008), (4.0, 0.024))
 
 traced = functools.cache(boundaries)
 
@@ -70,36 +64,6 @@ def test_characteristic_polynomial_without_moment_of_friction_factors_into_pin_a
 
 
 @LAWS
-@pytest.mark.parametrize("plane", PLANES, ids=lambda plane: ", ".join(plane.names))
-def test_on_a_hopf_curve_the_real_part_is_zero_to_1e_10_of_the_frequency(plane, law):
-    curves = traced(plane, "Hopf", law)
-    assert curves
-    for curve in curves:
-        for values, alpha in zip(curve.parameters, curve.alpha, strict=True):
-            disc = plane.at(values)
-            pair = min(
-                whirl_eigenvalues(disc, state_at(disc, alpha, law), law)[1:], key=lambda v: abs(v.real)
-            )
-            assert abs(pair.real) <= 1e-10 * abs(pair.imag)
-
-
-@LAWS
-def test_on_a_fold_curve_the_load_over_alpha_is_stationary(law):
-    curves = traced(SPEED_LOAD, "fold", law)
-    assert curves
-    for curve in curves:
-        for values, alpha in zip(curve.parameters, curve.alpha, strict=True):
-            if abs(alpha - np.pi / 4.0) < 0.02:
-                continue  # the second derivative is unbounded, and so is the error of differences
-            disc = SPEED_LOAD.at(values)
-            # At a distance p·shift from the fold the slope is 2p times the bend. The third derivative adds some
-            # shift/0.02, because friction is not smooth at a distance of 0.02.
-            low, here, high = (whirl_at(disc, alpha + shift, law).load for shift in (-1e-4, 0.0, 1e-4))
-            bend = abs(high - 2.0 * here + low)
-            assert abs(high - low) < 0.02 * bend + 1e-14 * here
-
-
-@LAWS
 def test_across_a_hopf_curve_a_whirl_changes_its_stability_and_across_a_fold_two_appear(law):
     def unstable(load):
         found = whirls(replace(FIG11, disc_speed=1.5, friction_force=load), law)
@@ -135,12 +99,11 @@ def test_curves_do_not_depend_on_the_step(kind):
     assert ends[0] == pytest.approx(ends[1], rel=1e-9)
 
 
-@pytest.mark.parametrize("plane", PLANES[3:4], ids=lambda plane: ", ".join(plane.names))
-def test_finer_search_finds_no_more_curves(plane, monkeypatch):
-    found = traced(plane, "Hopf")
+def test_finer_search_finds_no_more_curves(monkeypatch):
+    found = traced(INERTIA, "Hopf")
     monkeypatch.setattr(module, "LINES", 23)
     monkeypatch.setattr(module, "NODES", 97)
-    assert len(boundaries(plane, "Hopf", step=0.1)) == len(found)
+    assert len(boundaries(INERTIA, "Hopf", step=0.1)) == len(found)
 
 
 def test_a_disc_that_turns_the_other_way_has_the_mirrored_curves():
