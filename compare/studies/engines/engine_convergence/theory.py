@@ -40,18 +40,11 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Scan:
-    """Tolerances of the measurements of one engine, and the expected dependence of its error on them.
+    """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Parameters
-    ----------
-    order
-        Order of the integrator. Its error estimate has the same order in the step. The step is therefore
-        ~ tolerance^(1/order), the error ~ tolerance, and the next term is smaller by one power of the step.
-    sliding, sticking, work : array
-        Tolerances for both exponents, between the first few steps and rounding, and for the plot of error over work.
-    sticking_term
-        Ratio of the next term to the first if the pin sticks, as a power of the tolerance.
-
+    Error and error estimate have the same ``order`` in the step. The step is therefore ~ tolerance^(1/order), and
+    the next term is smaller by one power of the step. ``sticking_term`` is its power of the tolerance if the pin
+    sticks.
     """
 
     order: int
@@ -187,10 +180,7 @@ def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Solver:
-    """One of Exudyn's solvers at a fixed step: declared order, steps in s, and plotting style.
-
-    ``sticks`` is True if the figure also shows its work for a motion with stick phases.
-    """
+    """A solver at fixed steps in s; if ``sticks``, the figure also shows its work with stick phases."""
 
     name: str
     order: int

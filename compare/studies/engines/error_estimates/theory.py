@@ -80,21 +80,9 @@ J/(mR²) is not 1, because the integrals then end like exp(−A/t) and have erro
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A motion with numbers whose exact values are known.
+    """A motion with numbers whose ``exact`` values are known, shape (m,).
 
-    Parameters
-    ----------
-    system
-        The parameters.
-    start : array of shape (4,) or (6,)
-        State at ``times[0]``.
-    times : array of shape (n,)
-        Times in s.
-    quantity
-        Returns the numbers of a trajectory, shape (m,), or fewer if the trajectory lacks some.
-    exact : array of shape (m,)
-        Exact values of the numbers.
-
+    ``quantity`` returns the numbers of a trajectory, or fewer if the trajectory lacks some.
     """
 
     system: System
@@ -111,15 +99,9 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """True and estimated errors of the n numbers of several motions, relative to the largest number of each motion.
+    """True and estimated errors of n numbers, relative to the largest number of their ``motion`` (from 0).
 
-    Parameters
-    ----------
-    motion : array of shape (n,)
-        Motion of each number, from 0.
-    errors, estimates : array of shape (n,)
-        Dimensionless; NaN if the engine did not provide the number.
-
+    They are NaN if the engine did not provide the number.
     """
 
     motion: NDArray[np.int_]

@@ -74,16 +74,7 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class QuasiStatic:
-    """Motion of least friction power under the hand, in units of the hand's displacement.
-
-    Parameters
-    ----------
-    push : Push
-        Start of the body, and path of the hand.
-    hand : float
-        Friction coefficient of the hand.
-
-    """
+    """Motion of least friction power under a hand with the friction coefficient ``hand``."""
 
     push: Push
     hand: float = HAND

@@ -52,30 +52,17 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Push:
-    """One measured push.
+    """One measured push, the ``number``-th of its log.
 
-    Parameters
-    ----------
-    series : str
-        Surface and contact: "wood" or none for the board, and the places of three feet or "patch".
-    number : int
-        Number of the push in its log, from 1.
-    samples : int
-        Number of samples of the force.
-    x, y : float
-        Displacement of the origin of the body's frame in mm, in axes halfway between the first and the last.
-    turn : float
-        Rotation in rad.
-    lift, tilt_x, tilt_y : float
-        Changes of the measured height in mm and of the tilt about the horizontal axes in rad. A body on a flat
-        surface keeps both, so they are errors of the poses.
-    force_x, force_y : float
-        Mean force of the pusher on the body in N, in the same axes.
-    noise : float
-        Standard deviation of a component of the force before the pusher touches the body, in N.
-    start_x, start_y, end_x, end_y : float
-        Place of the hand in mm in the body's frame, before and after the push.
-
+    - ``series``: surface and contact, "wood" or none for the board, and the places of three feet or "patch".
+    - ``samples``: number of samples of the force.
+    - ``x``, ``y``, ``turn``: displacement of the origin of the body's frame in mm, in axes halfway between the first
+      and the last, and rotation in rad.
+    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height in mm and of the tilt about the horizontal axes
+      in rad. A body on a flat surface keeps both, so they are errors of the poses.
+    - ``force_x``, ``force_y``: mean force of the pusher on the body in N, in the axes halfway.
+    - ``noise``: standard deviation in N of a component of the force before the pusher touches the body.
+    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: place of the hand in mm in the body's frame, before and after.
     """
 
     series: str

@@ -151,9 +151,9 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
 # --- The validation.
 
 
-def validations() -> tuple[Validation, ...]:
+def validations(every: int = EVERY) -> tuple[Validation, ...]:
     """Return the errors of the force's direction for each surface and contact, and of the final position."""
-    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions()
+    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions(every)
 
 
 def _of_directions(name: str, series: Sequence[str]) -> Validation:
@@ -181,19 +181,18 @@ def _of_directions(name: str, series: Sequence[str]) -> Validation:
     )
 
 
-def _of_final_positions() -> Validation:
+def _of_final_positions(every: int) -> Validation:
     """Return the distance of the final centre of mass, in mm, from the measured one."""
-    found = (
-        quasi_static()[:, :2] - _components([forward.measured_motion(push) for push in simulated()])[:, :2]
-    )
+    pushes, predicted = simulated(every), quasi_static(every=every)
+    found = (predicted - _components([forward.measured_motion(push) for push in pushes]))[:, :2]
     sizes = np.linalg.norm(found, axis=1) / theory.MM
     median, uncertainty = median_with_error(sizes)
-    slippery, rough = (quasi_static(hand=forward.HAND + change)[:, :2] for change in (-0.1, 0.1))
+    slippery, rough = (quasi_static(hand=forward.HAND + change, every=every)[:, :2] for change in (-0.1, 0.1))
     inputs = 0.5 * np.linalg.norm(rough - slippery, axis=1) / theory.MM
     data = np.array(
-        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::EVERY]]
+        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
     )
-    numerical = np.linalg.norm((quasi_static(10) - quasi_static())[:, :2], axis=1) / theory.MM
+    numerical = np.linalg.norm((quasi_static(10, every=every) - predicted)[:, :2], axis=1) / theory.MM
     return Validation(
         sentence="Coulomb's law predicts the final position of the pushed body with a median error of "
         f"{median:.1f} ± {uncertainty:.1f} mm.",
