@@ -205,7 +205,6 @@ def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 
 def _every_second(trajectory: Trajectory) -> Trajectory:
-    """Return the trajectory without every second sample."""
     kept = trajectory.times[::2], trajectory.states[::2]
     return Trajectory(trajectory.system, *kept, trajectory.phases, trajectory.solution)
 

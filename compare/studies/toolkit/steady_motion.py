@@ -125,7 +125,6 @@ def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float
 
 
 def _share(disc: DiscOnDisc) -> float:
-    """Return the rotation in one period, in rad."""
     return 2.0 * math.pi / (disc.contact_points or SYMMETRY)
 
 

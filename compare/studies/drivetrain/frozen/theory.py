@@ -220,7 +220,6 @@ def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
 
 
 def modulation(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> ComplexArray:
-    """Return the eigenvalues of :func:`of_modulation` by the reference's friction."""
     return of_modulation(state_matrix_of(car, whirl, rings), whirl.frequency)
 
 

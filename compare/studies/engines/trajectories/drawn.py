@@ -98,7 +98,6 @@ def _slides(motion: Motion) -> bool:
 
 
 def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin whose friction force is similar to the force of the spring at the offset."""
     pin = _pin(random, disc_speed)
     return replace(pin, friction_force=pin.stiffness * abs(pin.offset) * between(random, 0.5, 2.0))
 
@@ -141,7 +140,6 @@ class Drawn:
     start: Callable[[Generator, Any], tuple[float, ...]]
 
     def __iter__(self) -> Iterator[Motion]:
-        """Yield the motions."""
         return iter(self._motions)
 
     @functools.cached_property
@@ -150,7 +148,6 @@ class Drawn:
         return tuple(self._one(random, sense, speeds) for speeds in theory.SPEEDS for sense in (1.0, -1.0))
 
     def _one(self, random: Generator, sense: float, speeds: tuple[float, float]) -> Motion:
-        """Draw motions until one suits the claims."""
         sticks = self.start is _stuck
         while True:
             system = self.body(random, sense * random.uniform(*speeds))

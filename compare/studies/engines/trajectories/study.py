@@ -91,7 +91,6 @@ def pooled(parts: Sequence[Measured]) -> Measured:
 
 
 def _sizes(part: Measured) -> FloatArray:
-    """Return the reference size for the error of each number."""
     size = np.max(np.abs(part.predicted)) if part.size is None else part.size
     return np.broadcast_to(size, np.shape(part.value)).ravel()
 
@@ -175,7 +174,6 @@ def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 
 def states_of(engine: Engine, motion: Motion) -> Measurement:
-    """Return the states of a motion and their errors."""
     return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
 
 

@@ -144,7 +144,6 @@ def times_of(motion: Motion) -> FloatArray:
 
 @functools.cache
 def by_reference(motion: Motion) -> Trajectory:
-    """Return the motion at ``times_of(motion)`` by the reference at its tightest tolerance."""
     return simulate(motion.system, motion.start, times_of(motion), tolerance=TRUTH)
 
 

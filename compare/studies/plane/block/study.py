@@ -83,7 +83,6 @@ TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
 
 
 def direction(degrees: float) -> complex:
-    """Return the unit vector of a heading, as x + iy."""
     return cmath.rect(1.0, math.radians(degrees))
 
 

@@ -110,7 +110,6 @@ class QuasiStatic:
         return position, angle
 
     def _rates(self, progress: float, position: complex, angle: float) -> tuple[complex, float]:
-        """Return the velocities per unit of progress of the hand."""
         back = cmath.exp(-1j * angle)
         arm = (self.path.start + progress * self.path.way - position) * back  # in the frame of the body
         velocity, normal = self.path.way * back, self.path.normal

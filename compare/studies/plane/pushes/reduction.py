@@ -139,7 +139,6 @@ class _Log:
         return int(number)
 
     def fault(self, problem: str) -> ValueError:
-        """Return an error with the place in the file."""
         return ValueError(f"{self.path}, line {self.line}: {problem}")
 
 
@@ -186,7 +185,6 @@ def tilt(pose: FloatArray) -> FloatArray:
 
 
 def turned(vector: FloatArray, angle: float) -> FloatArray:
-    """Return a vector, shape (2,), turned by an angle in rad."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]]) @ vector
 
@@ -213,7 +211,6 @@ def table(pushes: Sequence[Push]) -> str:
 
 
 def reduced_pushes() -> tuple[Push, ...]:
-    """Return all pushes of the table."""
     text = files("compare.studies.plane.pushes").joinpath("reduced.csv").read_text(encoding="utf-8")
     lines = (line for line in text.splitlines() if not line.startswith("#"))
     kinds = (str, int, int, *[float] * (len(HEADINGS) - 3))

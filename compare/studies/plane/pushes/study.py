@@ -74,7 +74,6 @@ def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
     note="The reference's contact against a sum of this study. Moments are divided by 50 mm.",
 )
 def sums() -> Measured:
-    """Compare the wrench of the reference's contact with the sum over the points."""
     pushes = reduced_pushes()
     return Measured(
         predicted=_wrenches(pushes, summed),
@@ -89,7 +88,6 @@ def sums() -> Measured:
     note="Largest multiple of the wrench that friction can hold at rest, by minimising over all slips.",
 )
 def on_limit_surface() -> Measured:
-    """Compare the wrench of each displacement with the largest one in its direction."""
     found = []
     for push in reduced_pushes():
         contact = contact_of(push.series)
@@ -109,7 +107,6 @@ EPSILON = 2e-5
 
 
 def simulated(every: int = EVERY) -> list[Push]:
-    """Return every ``every``-th push of each series."""
     return [push for pushes in theory.by_series().values() for push in pushes[::every]]
 
 
@@ -132,7 +129,6 @@ def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
     "edge and regularised friction; its poses are extrapolated from two regularisations.",
 )
 def final_poses(engine: Engine, every: int = EVERY) -> Measured:
-    """Compare the last poses of an engine with those of least friction power."""
     predicted = quasi_static(10, every=every)
     fine, coarse = (
         _components([forward.by_exudyn(push, epsilon) for push in simulated(every)])
@@ -182,7 +178,6 @@ def _of_directions(name: str, series: Sequence[str]) -> Validation:
 
 
 def _of_final_positions(every: int) -> Validation:
-    """Return the distance of the final centre of mass, in mm, from the measured one."""
     pushes, predicted = simulated(every), quasi_static(every=every)
     found = (predicted - _components([forward.measured_motion(push) for push in pushes]))[:, :2]
     sizes = np.linalg.norm(found, axis=1) / theory.MM
@@ -209,7 +204,6 @@ def _of_final_positions(every: int) -> Validation:
 
 
 def tables() -> tuple[Table, ...]:
-    """Return the errors of all series, and the effects of the hypotheses."""
     return _by_series(), _of_hypotheses()
 
 
@@ -248,7 +242,6 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
 
 
 def account(pushes: Sequence[Push]) -> list[str]:
-    """Return a line of text with the errors of each series."""
     series = dict.fromkeys(push.series for push in pushes)
     return [
         f"{name}: "
