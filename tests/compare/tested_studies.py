@@ -292,7 +292,7 @@ PLANAR = (("planar", "planar", "planar"), BODIES)
 
 MOMENTUM = Tested(
     STUDY["drivetrain-momentum"],
-    few={"momentum": {"drivetrains": (*PLANAR, ("rotor", "Tait-Bryan", "planar"))}},
+    few={"momentum": {"drivetrains": (BODIES, ("rotor", "Tait-Bryan", "planar"))}},
     few_of_faults={"momentum": {"drivetrains": PLANAR}},
     sound=("exudyn",),
     gross={"a shaft without its arm": Patched(wrong.shaft_of_exudyns_own_springs)},
