@@ -292,7 +292,7 @@ PLANAR = (("planar", "planar", "planar"), BODIES)
 
 MOMENTUM = Tested(
     STUDY["drivetrain-momentum"],
-    few={"momentum": {"drivetrains": (*PLANAR, ("rotor", "Tait-Bryan", "planar"))}},
+    few={"momentum": {"drivetrains": (BODIES, ("rotor", "Tait-Bryan", "planar"))}},
     few_of_faults={"momentum": {"drivetrains": PLANAR}},
     sound=("exudyn",),
     gross={"a shaft without its arm": Patched(wrong.shaft_of_exudyns_own_springs)},
@@ -312,23 +312,21 @@ CLUTCH_PARTS = Tested(
     },
 )
 
-MOTION = ("moves", "switches_on_time", "implicit")
+MOTION = ("moves", "switches_on_time", "implicit", "momentum")
 
 COUPLED_CLUTCHES = Tested(
     STUDY["coupled-clutches"],
     sound=("exudyn",),
     gross={
-        "friction 20 % off": Patched(wrong.coupled_off(COEFFICIENT=1.2), only=MOTION),
-        "second rotor 20 % too heavy": Patched(
-            wrong.coupled_off(INERTIAS=np.array([1, 1.2, 1, 1])), only=("momentum",)
+        "friction and second inertia 20 % off": Patched(
+            wrong.coupled_off(COEFFICIENT=1.2, INERTIAS=np.array([1, 1.2, 1, 1])), only=MOTION
         ),
         "creep of another order": Patched(wrong.creep_of_another_order, only=("order_in_epsilon",)),
         "torque late": Patched(wrong.torque_late, only=("order_in_step",)),
     },
     small={
-        "friction 0.5 % off": Patched(wrong.coupled_off(COEFFICIENT=1.005), only=MOTION),
-        "second rotor 0.5 % too heavy": Patched(
-            wrong.coupled_off(INERTIAS=np.array([1, 1.005, 1, 1])), only=("momentum",)
+        "friction and second inertia 0.5 % off": Patched(
+            wrong.coupled_off(COEFFICIENT=1.005, INERTIAS=np.array([1, 1.005, 1, 1])), only=MOTION
         ),
     },
 )
@@ -438,7 +436,7 @@ ERROR_ESTIMATES = Tested(
     small=SMALL,
 )
 
-FOREIGN_ENGINES = Tested(STUDY["foreign-engines"], sound=())
+FOREIGN_ENGINES = Tested(STUDY["foreign-engines"], sound=(), drawn=False)
 
 TESTED: dict[str, Tested] = {
     value.study.name: value for value in list(globals().values()) if isinstance(value, Tested)

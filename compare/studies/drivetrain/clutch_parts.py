@@ -93,7 +93,6 @@ def slipping_time(end: float) -> float:
 
 
 def cold_slipping_time(end: float) -> float:
-    """Return the slipping time in s if friction does not fade, see ``slipping_time``."""
     return (SLIP - end) * REDUCED / MOMENT
 
 
@@ -233,7 +232,6 @@ def takes_longer(engine: Engine) -> Measured:
 
 
 def _time_of_slip(run: FloatArray) -> float:
-    """Return the time in s until the slip has fallen to ``NEARLY_HOLDS``."""
     return float(np.interp(-NEARLY_HOLDS, run[:, 2] - run[:, 1], run[:, 0]))
 
 

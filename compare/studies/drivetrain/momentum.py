@@ -106,7 +106,6 @@ STUDY = Study.beside(
 def momentum(
     engine: Engine, name: str, drivetrains: Sequence[tuple[str, str, str]] = DRIVETRAINS
 ) -> Measured:
-    """Estimate the error by runs with half the steps."""
     solver = SOLVERS[name]
     data: Data = {}
     drifts, errors = [], []
@@ -195,7 +194,6 @@ def _add_drivetrain(mbs: Any, kinds: Sequence[str]) -> list[Any]:
 
 
 def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
-    """Add a body with a node of ``kind``; return the numbers of node and body."""
     import exudyn.itemInterface
 
     items: Any = exudyn.itemInterface

@@ -97,7 +97,6 @@ SOURCE = (
 
 
 def scaled(system: System) -> System:
-    """Return ``system`` at the scale of a clutch."""
     return CLUTCH.system(system)
 
 
@@ -106,13 +105,11 @@ def scaled(system: System) -> System:
 
 @functools.cache
 def exact_motion() -> Trajectory:
-    """Return the motion to rest, by the reference at its tightest tolerance."""
     return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH)
 
 
 @functools.cache
 def exact_whirl() -> Orbit:
-    """Return the whirl of Fig. 6, by shooting with the reference."""
     return whirl_orbit(WHIRLING)
 
 

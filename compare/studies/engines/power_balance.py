@@ -27,21 +27,9 @@ RESOLUTION = 1e-8
 
 @dataclass(frozen=True)
 class Motion:
-    """A kind of motion for the balance.
+    """A motion to ``until`` in s, sampled every ``step`` s.
 
-    Parameters
-    ----------
-    system, start, source
-        Parameters, initial state, and their origin.
-    until, step
-        Duration and sampling interval in s.
-    tolerance
-        Tolerance of the measurement.
-    drawn
-        True if the figure shows the motion.
-    contact_alone
-        True if engines that only provide the contact take part, see ``Engine.contact_only``.
-
+    The figure shows it if ``drawn``, and engines that only provide the contact take part if ``contact_alone``.
     """
 
     system: System
@@ -217,7 +205,6 @@ def _run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
 
 
 def _every_second(trajectory: Trajectory) -> Trajectory:
-    """Return the trajectory without every second sample."""
     kept = trajectory.times[::2], trajectory.states[::2]
     return Trajectory(trajectory.system, *kept, trajectory.phases, trajectory.solution)
 

@@ -36,19 +36,10 @@ HEADING = 0.7
 
 @dataclass(frozen=True)
 class Throw:
-    """A throw with uniform deceleration.
+    """A throw with uniform deceleration, of a disc with the inertia J/(mR²).
 
-    Parameters
-    ----------
-    name
-        Label.
-    inertia
-        J/(mR²).
-    sliding, rim
-        Initial U and W in m/s; W has the sign of the spin.
-    force, moment
-        Friction over μN and μNR while the disc moves.
-
+    ``sliding`` and ``rim`` are U and W in m/s at the start; W has the sign of the spin. ``force`` and ``moment`` are
+    those of friction over μN and μNR while the disc moves.
     """
 
     name: str
@@ -128,13 +119,11 @@ EPSILON = 100.0
 
 
 def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the states of a throw at ``times``, shape (n, 6), by the reference."""
     law = Annulus(0.0, RADIUS)
     return np.asarray(simulate(throw.disc(), throw.state, times, tolerance=tolerance, contact=law).states)
 
 
 def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the states of a throw at ``times``, shape (n, 6), by an Exudyn model with the part."""
     import exudyn_models
     from exudyn_models.solver.solver_run import solve
 

@@ -17,40 +17,20 @@ PARTS = ("real part", "imaginary part")
 
 
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
-    """Return the remaining distance of ``end`` from the steady state.
+    """Return the distance of ``end``, shape (...), from the steady state.
 
-    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` seconds, so the change
-    determines a.
-
-    Parameters
-    ----------
-    earlier : array of shape (n, ...)
-        The quantity over one period of its oscillation that ends ``delay`` before the end; the largest change from
-        there counts.
-    end : array of shape (...)
-        The quantity at the end.
-    rate
-        Decay rate r in 1/s of the slowest mode.
-    delay
-        Time in s.
-
+    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` seconds, where r is the
+    decay ``rate`` in 1/s of the slowest mode. The largest change from ``earlier``, shape (n, ...), determines a: the
+    quantity over one period of its oscillation that ends ``delay`` before the end.
     """
     change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
     return np.asarray(change / np.expm1(rate * delay))
 
 
 class Settled(NamedTuple):
-    """A quantity at the end of a long simulation.
+    """A quantity at the end of a long simulation, its numerical error and its ``remaining_transient``.
 
-    Parameters
-    ----------
-    value : array of shape (...)
-        The quantity.
-    error : array of shape (...)
-        Numerical error, see ``refined``; the largest over time, because a single one may be small by chance.
-    left : array of shape (...)
-        Remaining transient, see ``remaining_transient``.
-
+    The error is the largest over time, because a single one may be small by chance.
     """
 
     value: FloatArray
@@ -69,19 +49,8 @@ def settled(
 ) -> Settled:
     """Return the final value of a quantity in a simulation of ``duration`` s.
 
-    Parameters
-    ----------
-    track
-        ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` except the first, which is 0.
-    duration, delay
-        Duration of the simulation, and time before its end that yields the remaining transient, in s.
-    period
-        Period of the transient's oscillation, in s.
-    rate
-        Decay rate of the slowest mode, in 1/s.
-    tolerance
-        Tolerance of the simulation.
-
+    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` except the first, which is 0.
+    ``period`` in s is that of the transient's oscillation; see ``remaining_transient`` for the others.
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
     found = refined(lambda asked: track(times, asked), tolerance)
@@ -92,13 +61,8 @@ def settled(
 class Rates(NamedTuple):
     """Eigenvalues in 1/s of small deviations from n steady motions.
 
-    Parameters
-    ----------
-    measured, predicted : complex array of shape (n, m)
-        Eigenvalues from simulations and from a linearisation, in the same order.
-    error : array of shape (n,)
-        Error of the measured eigenvalues.
-
+    Those from simulations and from a linearisation have the shape (n, m) and the same order; the ``error`` (n,) is
+    that of the measured ones.
     """
 
     measured: ComplexArray

@@ -78,7 +78,7 @@ def rotating_damping(car: Drivetrain, slip: float, torque: float) -> float:
 
 
 def natural_frequency(car: Drivetrain) -> float:
-    """Return k of the disc on its shaft in rad/s."""
+    """Return k in rad/s."""
     return math.sqrt(car.radial_stiffness / car.disc_mass)
 
 
@@ -89,18 +89,7 @@ def onset_speed(car: Drivetrain, slip: float, torque: float) -> float:
 
 @dataclass(frozen=True)
 class Operation:
-    """Operating point of the bench with a centred disc.
-
-    Parameters
-    ----------
-    speed, slip
-        Speed of the flywheel and slip of the disc, in rad/s.
-    torque
-        Transmitted torque in N m.
-    offset
-        X0 in m.
-
-    """
+    """Operating point: speed of the flywheel and slip in rad/s, transmitted torque in N m and X0 in m."""
 
     speed: float
     slip: float

@@ -75,5 +75,4 @@ FINE = 0.04
 
 
 def curves_in(plane: str, kind: Kind, law: str, step: float = FINE) -> tuple[Boundary, ...]:
-    """Return the curves of ``kind`` in one of ``PLANES`` for one of ``LAWS``."""
     return boundaries(PLANES[plane], kind, LAWS[law], step=step)

@@ -47,14 +47,7 @@ class Stop(NamedTuple):
 
 @dataclass(frozen=True)
 class Slowing:
-    """Deceleration of a free ring.
-
-    Parameters
-    ----------
-    inertia
-        c = J/(mR²), between 1/2 and 2.
-
-    """
+    """Deceleration of a free ring with the inertia c = J/(mR²), between 1/2 and 2."""
 
     inertia: float
 

@@ -27,7 +27,6 @@ def farthest(pin: PinOnDisc) -> float:
 
 
 def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
-    """Return the state of a pin that turns with the disc, at ``radius`` in m and ``angle`` in rad."""
     x, y = radius * math.cos(angle), radius * math.sin(angle)
     return np.array([x, y, -pin.disc_speed * y, pin.disc_speed * x])
 
@@ -47,7 +46,6 @@ SAMPLES = 64
 
 
 def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
-    """Return the whirl of ``pin``, found by shooting with ``engine``."""
     return whirl_orbit(
         pin,
         simulate=engine.simulate,

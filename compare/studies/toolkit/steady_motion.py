@@ -43,19 +43,10 @@ TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
 
 @dataclass(frozen=True, eq=False)
 class SteadyMotion:
-    """A motion that repeats itself after a rotation.
+    """A motion that repeats itself after a rotation, with its period in s.
 
-    Parameters
-    ----------
-    states : array of shape (SAMPLES + 1, 6)
-        States at equidistant times over one period, in axes that rotate with the centre.
-    period
-        Period in s.
-    frequency
-        Mean angular velocity of the centre about the axis, in rad/s; zero if it rests.
-    spin
-        Mean spin in rad/s.
-
+    ``states``, shape (SAMPLES + 1, 6), are equidistant over one period, in axes that rotate with the centre. The
+    ``frequency`` of the centre about the axis (zero if it rests) and the ``spin`` are means in rad/s.
     """
 
     states: FloatArray
@@ -81,16 +72,7 @@ def steady_motion(
 
     The unknowns are the state and the period T. After T the state repeats, except for the disc's angle. Without
     offset, the centre moves around the axis by an angle θ during T; then y = 0 at the start and θ is unknown instead.
-
-    Parameters
-    ----------
-    disc
-        The parameters.
-    guess : array of shape (6,)
-        State near the motion; y = 0 without offset.
-    tolerance
-        Tolerance of the engine.
-
+    The ``guess``, shape (6,), is a state near the motion, with y = 0 without offset.
     """
     guess = np.asarray(guess, dtype=float)
     circles = disc.offset == 0.0
@@ -143,7 +125,6 @@ def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float
 
 
 def _share(disc: DiscOnDisc) -> float:
-    """Return the rotation of a disc in one period, in rad."""
     return 2.0 * math.pi / (disc.contact_points or SYMMETRY)
 
 
@@ -155,24 +136,11 @@ def mode_growth(
     duration: float,
     tolerance: float,
 ) -> complex:
-    """Return growth rate and frequency in 1/s of the slowest mode of small deviations from a steady motion.
+    """Return growth rate and frequency in 1/s of the slowest mode of small deviations from a steady motion on a ring.
 
-    Two simulations start on opposite sides of the motion, so even powers of the deviation cancel in their difference.
-    The left eigenvector selects the slowest mode other than a free phase.
-
-    Parameters
-    ----------
-    disc
-        The parameters, on a continuous ring.
-    motion
-        The steady motion.
-    displacement : array of shape (6,)
-        Initial deviation from the motion.
-    duration
-        Duration of the simulations, in s.
-    tolerance
-        Tolerance of the engine.
-
+    Two simulations of ``duration`` s start on opposite sides of the motion, at ± ``displacement`` of shape (6,), so
+    even powers of the deviation cancel in their difference. The left eigenvector selects the slowest mode other than
+    a free phase.
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):
@@ -200,7 +168,6 @@ def mode_growth(
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:
-    """Return ``disc`` under the friction force μN in N."""
     return replace(disc, friction_force=float(load))
 
 

@@ -30,25 +30,14 @@ LEAST_SAMPLES = 200
 
 @dataclass(frozen=True)
 class Harmonic:
-    """The torque amplitude·sin(rate·t + phase) in N m, constant if the rate is 0.
-
-    Parameters
-    ----------
-    amplitude
-        Amplitude in N m.
-    rate
-        Angular frequency in rad/s, >= 0.
-    phase
-        Phase in rad.
-
-    """
+    """The torque amplitude·sin(rate·t + phase) in N m with a rate >= 0 in rad/s, constant if the rate is 0."""
 
     amplitude: float = 0.0
     rate: float = 0.0
     phase: float = math.pi / 2.0
 
     def __call__(self, t: FloatArray) -> FloatArray:
-        """Return the torque in N m at times in s."""
+        """Return the torque at times in s."""
         return np.asarray(self.amplitude * np.sin(self.rate * t + self.phase))
 
     def integrals(self, begin: float, t: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -68,19 +57,10 @@ Pieces = Sequence[tuple[float, Harmonic]]
 
 @dataclass(frozen=True)
 class Chain:
-    """Rotors and clutches in a row.
+    """Rotors in a row with inertias in kg m² and external torques, and the clutches between them.
 
-    Parameters
-    ----------
-    inertias : sequence of n floats
-        Moments of inertia in kg m².
-    torques : sequence of n Pieces
-        External torque on each rotor.
-    capacities : sequence of n - 1 Pieces
-        Torque of each clutch during slip, >= 0; the clutch is open if the amplitude is 0.
-    static_ratio
-        Ratio of the holding capacity to that torque, >= 1.
-
+    A clutch transmits its capacity >= 0 during slip and holds up to ``static_ratio`` times as much; it is open if the
+    amplitude is 0.
     """
 
     inertias: Sequence[float]

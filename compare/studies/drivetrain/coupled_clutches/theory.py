@@ -191,7 +191,6 @@ class Run:
 
 
 def _rotors() -> Rotors:
-    """Return the rotors with the torque on the first one."""
     rotors = Rotors(INERTIAS, (SPEED, 0.0, 0.0, 0.0))
     drive = rotors.items.LoadCoordinate(
         markerNumber=rotors.marker(rotors.nodes[0]), load=1.0, loadUserFunction=lambda mbs, t, load: torque(t)

@@ -99,7 +99,6 @@ def reduced_disc_loses_stability() -> Measured:
 
 
 def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
-    """Compare the onset by ``matrix(speed, slip, torque)`` with the closed form."""
     car = centred_car()
     closed = [onset_speed(car, slip, torque) for torque, slip in theory.CASES]
     found = [

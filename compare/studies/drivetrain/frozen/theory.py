@@ -117,19 +117,10 @@ CENTRE = slice(2, 4)
 
 @dataclass(frozen=True)
 class CarWhirl:
-    """A steady whirl of the clutch disc in a car whose engine and load both have a constant torque.
+    """A steady whirl of the clutch disc in a car whose engine and load both have a constant torque in N m.
 
-    Parameters
-    ----------
-    engine_speed, slip, frequency
-        ω, S and κ in rad/s.
-    radius
-        ρ in m.
-    friction_force, torque
-        μN of both facings in N, and torque of the load in N m.
-    engine_torque
-        In N m. The engine also drives the whirl, with the moment ρ·βκρ of friction about its axis.
-
+    ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
+    ρ·βκρ of friction about its axis.
     """
 
     engine_speed: float
@@ -229,7 +220,6 @@ def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
 
 
 def modulation(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> ComplexArray:
-    """Return the eigenvalues of :func:`of_modulation` by the reference's friction."""
     return of_modulation(state_matrix_of(car, whirl, rings), whirl.frequency)
 
 

@@ -175,7 +175,6 @@ STUDY.provides(curves=curves)
 
 @functools.lru_cache(maxsize=1)
 def _run_ups(engine: Engine, top: float) -> tuple[DrivetrainMotion, DrivetrainMotion]:
-    """Return the run-up to ``top`` (rpm) at two tolerances."""
     car = passenger_car()
     return run(car, TOLERANCE, top), run(car, TOLERANCE / COARSENING, top)
 

@@ -93,7 +93,6 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
 
 
 def _events(run: theory.Simulate, tolerance: float) -> FloatArray:
-    """Return the stick and release times in s for all ``STICKING_STARTS``."""
     times = (0.0, theory.STICKING_UNTIL)
     return np.concatenate(
         [run(FIG5, start, times, tolerance=tolerance).stick_times for start in theory.STICKING_STARTS]
@@ -111,7 +110,6 @@ def _exact_events() -> tuple[FloatArray, float]:
 
 
 def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Measured | None]:
-    """Declare one claim per order; it applies to all solvers of that order."""
     for order, superscript in {4: "⁴", 6: "⁶", 2: "²"}.items():
         STUDY.claim(
             f"With {{}} at a fixed step h, the error of a sliding pin falls like h{superscript}",
@@ -268,7 +266,6 @@ def state(engine: Engine) -> Measured | None:
 
 @functools.lru_cache(maxsize=1)
 def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
-    """Return the errors of events and state over ε by the given simulation, which two claims share."""
     start, until = FIG5_STARTS["whirl"], (0.0, 20.0)
     exact = simulate(FIG5, start, until, tolerance=TRUTH)
 

@@ -6,7 +6,7 @@ import cmath
 import functools
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,18 +40,11 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Scan:
-    """Tolerances of the measurements of one engine, and the expected dependence of its error on them.
+    """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Parameters
-    ----------
-    order
-        Order of the integrator. Its error estimate has the same order in the step. The step is therefore
-        ~ tolerance^(1/order), the error ~ tolerance, and the next term is smaller by one power of the step.
-    sliding, sticking, work : array
-        Tolerances for both exponents, between the first few steps and rounding, and for the plot of error over work.
-    sticking_term
-        Ratio of the next term to the first if the pin sticks, as a power of the tolerance.
-
+    Error and error estimate have the same ``order`` in the step. The step is therefore ~ tolerance^(1/order), and
+    the next term is smaller by one power of the step. ``sticking_term`` is its power of the tolerance if the pin
+    sticks.
     """
 
     order: int
@@ -159,21 +152,22 @@ Simulate = Callable[..., Trajectory]
 
 def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
     """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time in s."""
-    began = time.process_time()  # in contrast to wall time, other studies on the same cores do not affect it
-    trajectories = [run(FIG5, start, SLIDING_TIMES, **how) for start in SLIDING_STARTS]
-    spent = time.process_time() - began
-    truth, _ = sliding_truth()
-    error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)
-    return error, sum(trajectory.solution.evaluations for trajectory in trajectories), spent
+    return _cost(run, SLIDING_STARTS, SLIDING_TIMES, sliding_truth()[0], **how)
 
 
 def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
-    """Simulate the way to the whirl of Fig. 5; return error (m, m/s), evaluations, and processor time in s."""
-    began = time.process_time()
-    trajectory = run(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, **how)
+    """Return the same numbers for the way to the whirl of Fig. 5."""
+    return _cost(run, (FIG5_STARTS["whirl"],), STICK_SLIP_TIMES, stick_slip_truth(), **how)
+
+
+def _cost(
+    run: Simulate, starts: Iterable[tuple[float, ...]], times: FloatArray, truth: FloatArray, **how: Any
+) -> tuple[float, float, float]:
+    began = time.process_time()  # in contrast to wall time, other studies on the same cores do not affect it
+    trajectories = [run(FIG5, start, times, **how) for start in starts]
     spent = time.process_time() - began
-    error = root_mean_square(trajectory.states - stick_slip_truth())
-    return error, trajectory.solution.evaluations, spent
+    error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)
+    return error, sum(trajectory.solution.evaluations for trajectory in trajectories), spent
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
@@ -186,10 +180,7 @@ def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Solver:
-    """One of Exudyn's solvers at a fixed step: declared order, steps in s, and plotting style.
-
-    ``sticks`` is True if the figure also shows its work for a motion with stick phases.
-    """
+    """A solver at fixed steps in s; if ``sticks``, the figure also shows its work with stick phases."""
 
     name: str
     order: int

@@ -94,7 +94,6 @@ def drawn(kind: str, motions: int) -> tuple[tuple[theory.Problem, float], ...]:
 
 @functools.lru_cache(maxsize=1)
 def simulated(engine: Engine) -> tuple[str, ...]:
-    """Return the kinds of problems that ``engine`` can simulate."""
     return tuple(
         kind
         for kind, problem in theory.PROBLEMS.items()

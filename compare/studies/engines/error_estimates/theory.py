@@ -80,21 +80,9 @@ J/(mR²) is not 1, because the integrals then end like exp(−A/t) and have erro
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A motion with numbers whose exact values are known.
+    """A motion with numbers whose ``exact`` values are known, shape (m,).
 
-    Parameters
-    ----------
-    system
-        The parameters.
-    start : array of shape (4,) or (6,)
-        State at ``times[0]``.
-    times : array of shape (n,)
-        Times in s.
-    quantity
-        Returns the numbers of a trajectory, shape (m,), or fewer if the trajectory lacks some.
-    exact : array of shape (m,)
-        Exact values of the numbers.
-
+    ``quantity`` returns the numbers of a trajectory, or fewer if the trajectory lacks some.
     """
 
     system: System
@@ -111,15 +99,9 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """True and estimated errors of the n numbers of several motions, relative to the largest number of each motion.
+    """True and estimated errors of n numbers, relative to the largest number of their ``motion`` (from 0).
 
-    Parameters
-    ----------
-    motion : array of shape (n,)
-        Motion of each number, from 0.
-    errors, estimates : array of shape (n,)
-        Dimensionless; NaN if the engine did not provide the number.
-
+    They are NaN if the engine did not provide the number.
     """
 
     motion: NDArray[np.int_]
@@ -160,7 +142,6 @@ class Calibration:
 
 
 def calibrated(engine: Engine, problems: Iterable[tuple[Problem, float]]) -> Calibration:
-    """Return true and estimated errors of ``engine`` for each problem at its tolerance."""
     motion, errors, estimates = [], [], []
     for i, (problem, tolerance) in enumerate(problems):
         measured, estimate = refined(functools.partial(problem.measured, engine), tolerance)
@@ -184,7 +165,6 @@ def _duration(random: Generator, system: System) -> float:
 
 
 def _damped(system: System, start: complex, velocity: complex, t: float) -> tuple[complex, complex]:
-    """Return position and velocity of a damped oscillator about the offset, without friction."""
     decay = system.damping / (2.0 * system.mass)
     own = cmath.sqrt(complex(system.natural_frequency**2 - decay**2))
     w = start - system.offset
@@ -250,7 +230,6 @@ def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
 
 
 def whirl(random: Generator) -> Problem:
-    """Draw a motion of a centred pin on the circle (11)."""
     pin = replace(any_pin(random), offset=0.0)
     turning, t = 1j * whirl_frequency(pin), _duration(random, pin)
     place = cmath.rect(whirl_radius(pin), random.uniform(-math.pi, math.pi))
@@ -322,7 +301,6 @@ def _place_and_time_of_rest(trajectory: Trajectory) -> FloatArray:
 
 
 def _generic(random: Generator, system: System) -> Problem:
-    """Return any motion, whose exact end comes from the reference at a far tighter tolerance."""
     start, times = any_start(random, system), np.array([0.0, _duration(random, system)])
     return Problem(system, start, times, _at_end, simulate(system, start, times, tolerance=EXACT).at_end)
 

@@ -75,7 +75,6 @@ HALVED = 0.02
 
 @functools.cache
 def recorded() -> tuple[Recording, ...]:
-    """Return all recordings; the files are read once."""
     return recordings()
 
 
@@ -293,7 +292,6 @@ def _rounded(number: float) -> str:
 
 
 def _periods(case: Case) -> float:
-    """Return the duration of a case in periods of the natural frequency."""
     return float(case.times[-1] - case.times[0]) * case.system.natural_frequency / (2.0 * math.pi)
 
 
@@ -329,7 +327,6 @@ def time_to(wanted: float, runs: FloatArray) -> str:
 
 
 def _of_each_case(recording: Recording, words: Callable[[FloatArray], str]) -> list[str]:
-    """Return the text by ``words`` about the runs of each case."""
     return [words(recording.runs[case]) if case in recording.runs else "not simulated" for case in CASES]
 
 

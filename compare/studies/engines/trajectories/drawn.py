@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-import compare.studies.engines.trajectories.parameters as parameters
+import compare.studies.engines.trajectories.theory as theory
 from compare.claims import WORKING
-from compare.studies.engines.trajectories.theory import by_reference
+from compare.studies.engines.trajectories.theory import Motion, by_reference
 from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import between, sign
 from reference_model import DiscOnDisc, PinOnDisc
@@ -47,7 +47,7 @@ def _stiffening(random: Generator, disc_speed: float) -> PinOnDisc:
     )
 
 
-def _disc(random: Generator, disc_speed: float, points: int | None) -> DiscOnDisc:
+def _ring(random: Generator, disc_speed: float) -> DiscOnDisc:
     pin = _pin(random, disc_speed)
     radius = between(random, 0.15, 0.5)
     inertia = pin.mass * radius**2 * between(random, 0.5, 3.0)
@@ -62,16 +62,12 @@ def _disc(random: Generator, disc_speed: float, points: int | None) -> DiscOnDis
         contact_radius=radius,
         shaft_damping=inertia * pin.natural_frequency * between(random, 0.03, 0.3),
         shaft_speed=disc_speed * random.uniform(-1.0, 2.0),
-        contact_points=points,
     )
 
 
-def _ring(random: Generator, disc_speed: float) -> DiscOnDisc:
-    return _disc(random, disc_speed, None)
-
-
 def _on_points(random: Generator, disc_speed: float) -> DiscOnDisc:
-    return _disc(random, disc_speed, int(random.integers(3, 7)))
+    points = int(random.integers(3, 7))
+    return replace(_ring(random, disc_speed), contact_points=points)
 
 
 def _sliding(random: Generator, system: System) -> tuple[float, ...]:
@@ -87,24 +83,21 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
     return (z.real, z.imag, random.uniform(-math.pi, math.pi), v.real, v.imag, spin)
 
 
-def _slides(motion: parameters.Motion) -> bool:
+def _slides(motion: Motion) -> bool:
     """Return whether forces are smooth: everything slips clearly, and the stop is touched always or never."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
         speed = np.abs(speed - system.contact_radius * np.abs(system.disc_speed - run.states[:, 5]))
-        if (
-            system.contact_points is not None
-            and parameters.PANEL * np.max(np.abs(run.states[:, 5])) > parameters.MOST_TURN
-        ):
+        turn = theory.PANEL * np.max(np.abs(run.states[:, 5]))
+        if system.contact_points is not None and turn > theory.MOST_TURN:
             return False
     beyond = np.hypot(run.states[:, 0] - system.offset, run.states[:, 1]) - system.stop_gap
-    smooth = len(run.phases) == 1 and np.min(speed) > parameters.LEAST_SLIP * np.max(speed)
+    smooth = len(run.phases) == 1 and np.min(speed) > theory.LEAST_SLIP * np.max(speed)
     return bool(smooth and (np.all(beyond > 0.0) or np.all(beyond < 0.0)))
 
 
 def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin whose friction force is similar to the force of the spring at the offset."""
     pin = _pin(random, disc_speed)
     return replace(pin, friction_force=pin.stiffness * abs(pin.offset) * between(random, 0.5, 2.0))
 
@@ -116,22 +109,22 @@ def _stuck(random: Generator, pin: PinOnDisc) -> tuple[float, ...]:
     return (z.real, z.imag, v.real, v.imag)
 
 
-def _sticks(motion: parameters.Motion) -> bool:
+def _sticks(motion: Motion) -> bool:
     """Return whether (7) releases the pin soon, and any later stick phases are long enough."""
     pin, (x, y, *_) = motion.system, motion.start
     if not (
         isinstance(pin, PinOnDisc)
-        and parameters.STICKS_FOR[0]
+        and theory.STICKS_FOR[0]
         < release_time(pin, math.hypot(x, y), math.atan2(y, x))
-        < parameters.STICKS_FOR[1]
+        < theory.STICKS_FOR[1]
     ):
         return False
     run = by_reference(motion)
     inside = [np.sum((run.times > p.start) & (run.times < p.end)) for p in run.stick_phases]
     return (
         run.phases[-1].kind == "slip"
-        and len(run.phases) <= parameters.MOST_PHASES
-        and bool(min(inside) >= parameters.LEAST_SAMPLES)
+        and len(run.phases) <= theory.MOST_PHASES
+        and bool(min(inside) >= theory.LEAST_SAMPLES)
     )
 
 
@@ -146,33 +139,29 @@ class Drawn:
     body: Callable[[Generator, float], System]
     start: Callable[[Generator, Any], tuple[float, ...]]
 
-    def __iter__(self) -> Iterator[parameters.Motion]:
-        """Yield the motions."""
-        return iter(_drawn(self))
+    def __iter__(self) -> Iterator[Motion]:
+        return iter(self._motions)
 
+    @functools.cached_property
+    def _motions(self) -> tuple[Motion, ...]:
+        random = np.random.default_rng([theory.SEED, self.number])
+        return tuple(self._one(random, sense, speeds) for speeds in theory.SPEEDS for sense in (1.0, -1.0))
 
-@functools.cache
-def _drawn(kind: Drawn) -> tuple[parameters.Motion, ...]:
-    random = np.random.default_rng([parameters.SEED, kind.number])
-    return tuple(_one(random, kind, sense, speeds) for speeds in parameters.SPEEDS for sense in (1.0, -1.0))
-
-
-def _one(random: Generator, kind: Drawn, sense: float, speeds: tuple[float, float]) -> parameters.Motion:
-    """Draw motions until one suits the claims."""
-    sticks = kind.start is _stuck
-    while True:
-        system = kind.body(random, sense * random.uniform(*speeds))
-        motion = parameters.Motion(
-            system,
-            kind.start(random, system),
-            parameters.UNTIL,
-            sticks,
-            tolerance=WORKING if sticks else WORKING / 10,
-            resolution=1e-4 if sticks else 1e-7,
-            source=f"assumption: parameters and start are random, with seed {parameters.SEED}",
-        )
-        if _sticks(motion) if sticks else _slides(motion):
-            return motion
+    def _one(self, random: Generator, sense: float, speeds: tuple[float, float]) -> Motion:
+        sticks = self.start is _stuck
+        while True:
+            system = self.body(random, sense * random.uniform(*speeds))
+            motion = Motion(
+                system,
+                self.start(random, system),
+                theory.UNTIL,
+                sticks,
+                tolerance=WORKING if sticks else WORKING / 10,
+                resolution=1e-4 if sticks else 1e-7,
+                source=f"assumption: parameters and start are random, with seed {theory.SEED}",
+            )
+            if _sticks(motion) if sticks else _slides(motion):
+                return motion
 
 
 DRAWN = {
@@ -183,4 +172,3 @@ DRAWN = {
     # For other numbers, wrong engines may never finish, which shows less than a motion that differs.
     "pins that stick": Drawn(12, _sticking, _stuck),
 }
-"""Random motions by kind."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from compare.claims import TRUTH, ByEngine, Figures
 from compare.output.figures import GREY, axis, curve, engine_style, engines_in, new_figure
-from compare.studies.engines.trajectories.parameters import MOTIONS
+from compare.studies.engines.trajectories.theory import MOTIONS
 
 COLUMNS = 4
 

@@ -10,14 +10,22 @@ from typing import Any
 
 import numpy as np
 
-import compare.studies.engines.trajectories.parameters as parameters
 from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import at_each, components_of, parameters_of
 from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
-from compare.studies.engines.trajectories.parameters import MOTIONS, ONE_OF_EACH_KIND, UNTIL, Motion
 from compare.studies.engines.trajectories.theory import (
+    MOTIONS,
     NODES,
+    ONE_OF_EACH_KIND,
+    PANEL,
+    PINS,
+    PINS_THAT_STICK,
+    POINTS,
+    RINGS,
+    STICK_RESOLUTION,
+    UNTIL,
+    Motion,
     as_many,
     at_bounds,
     at_nodes,
@@ -83,7 +91,6 @@ def pooled(parts: Sequence[Measured]) -> Measured:
 
 
 def _sizes(part: Measured) -> FloatArray:
-    """Return the reference size for the error of each number."""
     size = np.max(np.abs(part.predicted)) if part.size is None else part.size
     return np.broadcast_to(size, np.shape(part.value)).ravel()
 
@@ -104,32 +111,32 @@ def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float 
 STUDY = Study.beside(
     __file__,
     "trajectories",
-    words={"exact": f"{TRUTH:g}", "tolerance": f"{parameters.Motion.tolerance:g}"},
+    words={"exact": f"{TRUTH:g}", "tolerance": f"{Motion.tolerance:g}"},
     seconds=2.0,
     quick=True,
     contact=True,
 )
 
 INTEGRATED = (
-    f"Residual in every {parameters.PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes. Its error "
+    f"Residual in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes. Its error "
     "follows from the decay of the Legendre coefficients of the integrand. In addition, the tolerance counts as an "
     "error of both states."
 )
 
-NAMES = {motion: name for name, motion in parameters.MOTIONS.items()}
+NAMES = {motion: name for name, motion in MOTIONS.items()}
 
 
-def by_name(by_hand: Mapping[str, parameters.Motion], *drawn: str) -> dict[str, Motions]:
+def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
     return {name: (motion,) for name, motion in by_hand.items()} | {
         f"{kind} with parameters from the whole range": DRAWN[kind] for kind in drawn
     }
 
 
-SLIDING = by_name(parameters.PINS, "pins", "pins on stops")
-STICKING = by_name(parameters.PINS_THAT_STICK, "pins that stick")
+SLIDING = by_name(PINS, "pins", "pins on stops")
+STICKING = by_name(PINS_THAT_STICK, "pins that stick")
 OF_DISCS = {
-    "(19), (20)": by_name(parameters.RINGS, "rings"),
-    "(19), (21)": by_name(parameters.POINTS, "points"),
+    "(19), (20)": by_name(RINGS, "rings"),
+    "(19), (21)": by_name(POINTS, "points"),
 }
 """Motions of discs by their equations."""
 
@@ -161,13 +168,12 @@ def of_bodies(
 
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
-def run(engine: Engine, motion: parameters.Motion, tolerance: float) -> Trajectory:
+def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
     """Return the motion at ``times_of(motion)``, which all claims about it share."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
-def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
-    """Return the states of a motion and their errors."""
+def states_of(engine: Engine, motion: Motion) -> Measurement:
     return refined(lambda tolerance: run(engine, motion, tolerance).states, motion.tolerance)
 
 
@@ -180,7 +186,7 @@ def states_of(engine: Engine, motion: parameters.Motion) -> Measurement:
     note=f"Predicted: the reference at tolerance {TRUTH:g}.",
 )
 @together
-def moves(engine: Engine, motion: parameters.Motion) -> Measured:
+def moves(engine: Engine, motion: Motion) -> Measured:
     found = states_of(engine, motion)
     predicted = by_reference(motion).states
     # Single numbers may agree by chance, or all of them if both runs take the same steps.
@@ -213,7 +219,7 @@ def moves(engine: Engine, motion: parameters.Motion) -> Measured:
     note=INTEGRATED,
 )
 @together
-def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
+def kinematics(engine: Engine, motion: Motion) -> Measured | None:
     half = motion.system.state_size // 2
     return balance(
         engine,
@@ -234,7 +240,7 @@ def kinematics(engine: Engine, motion: parameters.Motion) -> Measured | None:
     note=INTEGRATED,
 )
 @together
-def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
+def momentum(engine: Engine, motion: Motion) -> Measured | None:
     body = motion.system
     half = body.state_size // 2
     inertia = np.array(
@@ -251,7 +257,7 @@ def momentum(engine: Engine, motion: parameters.Motion) -> Measured | None:
 
 def balance(
     engine: Engine,
-    motion: parameters.Motion,
+    motion: Motion,
     amounts: Callable[[FloatArray], FloatArray],
     rates: Callable[[FloatArray], FloatArray],
     components: Sequence[str],
@@ -287,12 +293,12 @@ def balance(
     "A body sticks and is released at the times of the reference: {}",
     kind="trajectory",
     unit="s",
-    resolution=parameters.STICK_RESOLUTION,
-    note=f"Times of all stick phases longer than {parameters.STICK_RESOLUTION:g} s, compared with the reference.",
+    resolution=STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, compared with the reference.",
     each=STICKING,
 )
 @together
-def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
+def phases(engine: Engine, motion: Motion) -> Measured | None:
     if not motion.sticks:
         return None
     predicted = stick_times(by_reference(motion))
@@ -307,12 +313,12 @@ def phases(engine: Engine, motion: parameters.Motion) -> Measured | None:
     "A body halfway through a stick phase is released at the time that (7) predicts: {}",
     equation="(7)",
     unit="s",
-    resolution=parameters.STICK_RESOLUTION,
+    resolution=STICK_RESOLUTION,
     note="End of each stick phase minus the prediction of (7) from the position in the middle of the phase.",
     each=STICKING,
 )
 @together
-def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
+def release(engine: Engine, motion: Motion) -> Measured | None:
     """Return None if the reference contains no stick phase."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
@@ -322,9 +328,7 @@ def release(engine: Engine, motion: parameters.Motion) -> Measured | None:
     return of_stick(motion, np.zeros(len(middles)), found, ("release",))
 
 
-def of_stick(
-    motion: parameters.Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]
-) -> Measured:
+def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Sequence[str]) -> Measured:
     """Return the result for a pin's stick phases; the numbers alternate between the ``kind`` names."""
     return Measured(
         predicted=predicted,
@@ -339,14 +343,14 @@ def of_stick(
     )
 
 
-def started(motion: parameters.Motion) -> str:
+def started(motion: Motion) -> str:
     return f"To t = {motion.until:g} s from {motion.start}."
 
 
 # --- Other motions
 
 
-def measure(engine: Engine, motions: Mapping[str, parameters.Motion]) -> Findings:
+def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
     declared = []
     for one in STUDY.declared:
         (like,) = next(iter(one.each.values()))

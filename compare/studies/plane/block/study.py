@@ -15,6 +15,7 @@ from scipy.special import lambertw
 from compare.claims import WORKING, Data, Measured, Measurement, Study, answers_of, asked, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine
+from compare.studies.toolkit.random_systems import state_of
 from reference_model.systems import FloatArray, PinOnDisc
 
 # --- Parameters
@@ -82,13 +83,7 @@ TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
 
 
 def direction(degrees: float) -> complex:
-    """Return the unit vector of a heading, as x + iy."""
     return cmath.rect(1.0, math.radians(degrees))
-
-
-def state_of(place: complex, velocity: complex = 0j) -> FloatArray:
-    """Return the state of a block, shape (4,), from x + iy in m and vx + ivy in m/s."""
-    return np.array([place.real, place.imag, velocity.real, velocity.imag])
 
 
 # --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip
@@ -310,7 +305,7 @@ def cone(engine: Engine, headings: Sequence[float] = HEADINGS) -> Measured:
             for heading in headings
         ]
         runs = engine.simulate_many(
-            [(SPRING, state_of(place), [0.0, HELD]) for place in places], tolerance=tolerance
+            [(SPRING, state_of(place, 0j), [0.0, HELD]) for place in places], tolerance=tolerance
         )
         moved = [abs(complex(*run.at_end[:2]) - place) for run, place in zip(runs, places, strict=True)]
         return np.repeat((-1.0, 1.0), len(headings)) * (np.array(moved) - MOVED)

@@ -74,16 +74,7 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class QuasiStatic:
-    """Motion of least friction power under the hand, in units of the hand's displacement.
-
-    Parameters
-    ----------
-    push : Push
-        Start of the body, and path of the hand.
-    hand : float
-        Friction coefficient of the hand.
-
-    """
+    """Motion of least friction power under a hand with the friction coefficient ``hand``."""
 
     push: Push
     hand: float = HAND
@@ -119,7 +110,6 @@ class QuasiStatic:
         return position, angle
 
     def _rates(self, progress: float, position: complex, angle: float) -> tuple[complex, float]:
-        """Return the velocities per unit of progress of the hand."""
         back = cmath.exp(-1j * angle)
         arm = (self.path.start + progress * self.path.way - position) * back  # in the frame of the body
         velocity, normal = self.path.way * back, self.path.normal

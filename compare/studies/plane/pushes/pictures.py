@@ -25,7 +25,6 @@ SHOWN = ("10_130_10_10_10_130", "patch")
 
 
 def draw(data: ByEngine) -> Figures:
-    """Draw the pushes and the distributions of their errors."""
     return {"pushes-forces": _forces(), "pushes-errors": _errors()}
 
 
@@ -62,7 +61,6 @@ LENGTH = 6.0
 
 
 def _limit_surface(panel: Axes, series: str) -> None:
-    """Draw the limit surface of a series and its measured wrenches."""
     load = SLIDING_FORCES[surface(series)]
     directions = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False).tolist()
     draw_limit_surface(panel, contact_of(series), directions, color="tab:orange", linewidth=0.5)

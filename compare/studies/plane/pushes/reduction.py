@@ -52,30 +52,17 @@ TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class Push:
-    """One measured push.
+    """One measured push, the ``number``-th of its log.
 
-    Parameters
-    ----------
-    series : str
-        Surface and contact: "wood" or none for the board, and the places of three feet or "patch".
-    number : int
-        Number of the push in its log, from 1.
-    samples : int
-        Number of samples of the force.
-    x, y : float
-        Displacement of the origin of the body's frame in mm, in axes halfway between the first and the last.
-    turn : float
-        Rotation in rad.
-    lift, tilt_x, tilt_y : float
-        Changes of the measured height in mm and of the tilt about the horizontal axes in rad. A body on a flat
-        surface keeps both, so they are errors of the poses.
-    force_x, force_y : float
-        Mean force of the pusher on the body in N, in the same axes.
-    noise : float
-        Standard deviation of a component of the force before the pusher touches the body, in N.
-    start_x, start_y, end_x, end_y : float
-        Place of the hand in mm in the body's frame, before and after the push.
-
+    - ``series``: surface and contact, "wood" or none for the board, and the places of three feet or "patch".
+    - ``samples``: number of samples of the force.
+    - ``x``, ``y``, ``turn``: displacement of the origin of the body's frame in mm, in axes halfway between the first
+      and the last, and rotation in rad.
+    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height in mm and of the tilt about the horizontal axes
+      in rad. A body on a flat surface keeps both, so they are errors of the poses.
+    - ``force_x``, ``force_y``: mean force of the pusher on the body in N, in the axes halfway.
+    - ``noise``: standard deviation in N of a component of the force before the pusher touches the body.
+    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: place of the hand in mm in the body's frame, before and after.
     """
 
     series: str
@@ -152,7 +139,6 @@ class _Log:
         return int(number)
 
     def fault(self, problem: str) -> ValueError:
-        """Return an error with the place in the file."""
         return ValueError(f"{self.path}, line {self.line}: {problem}")
 
 
@@ -199,7 +185,6 @@ def tilt(pose: FloatArray) -> FloatArray:
 
 
 def turned(vector: FloatArray, angle: float) -> FloatArray:
-    """Return a vector, shape (2,), turned by an angle in rad."""
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]]) @ vector
 
@@ -226,7 +211,6 @@ def table(pushes: Sequence[Push]) -> str:
 
 
 def reduced_pushes() -> tuple[Push, ...]:
-    """Return all pushes of the table."""
     text = files("compare.studies.plane.pushes").joinpath("reduced.csv").read_text(encoding="utf-8")
     lines = (line for line in text.splitlines() if not line.startswith("#"))
     kinds = (str, int, int, *[float] * (len(HEADINGS) - 3))

@@ -74,7 +74,6 @@ def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
     note="The reference's contact against a sum of this study. Moments are divided by 50 mm.",
 )
 def sums() -> Measured:
-    """Compare the wrench of the reference's contact with the sum over the points."""
     pushes = reduced_pushes()
     return Measured(
         predicted=_wrenches(pushes, summed),
@@ -89,7 +88,6 @@ def sums() -> Measured:
     note="Largest multiple of the wrench that friction can hold at rest, by minimising over all slips.",
 )
 def on_limit_surface() -> Measured:
-    """Compare the wrench of each displacement with the largest one in its direction."""
     found = []
     for push in reduced_pushes():
         contact = contact_of(push.series)
@@ -109,7 +107,6 @@ EPSILON = 2e-5
 
 
 def simulated(every: int = EVERY) -> list[Push]:
-    """Return every ``every``-th push of each series."""
     return [push for pushes in theory.by_series().values() for push in pushes[::every]]
 
 
@@ -132,7 +129,6 @@ def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
     "edge and regularised friction; its poses are extrapolated from two regularisations.",
 )
 def final_poses(engine: Engine, every: int = EVERY) -> Measured:
-    """Compare the last poses of an engine with those of least friction power."""
     predicted = quasi_static(10, every=every)
     fine, coarse = (
         _components([forward.by_exudyn(push, epsilon) for push in simulated(every)])
@@ -151,9 +147,9 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
 # --- The validation.
 
 
-def validations() -> tuple[Validation, ...]:
+def validations(every: int = EVERY) -> tuple[Validation, ...]:
     """Return the errors of the force's direction for each surface and contact, and of the final position."""
-    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions()
+    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions(every)
 
 
 def _of_directions(name: str, series: Sequence[str]) -> Validation:
@@ -181,19 +177,17 @@ def _of_directions(name: str, series: Sequence[str]) -> Validation:
     )
 
 
-def _of_final_positions() -> Validation:
-    """Return the distance of the final centre of mass, in mm, from the measured one."""
-    found = (
-        quasi_static()[:, :2] - _components([forward.measured_motion(push) for push in simulated()])[:, :2]
-    )
+def _of_final_positions(every: int) -> Validation:
+    pushes, predicted = simulated(every), quasi_static(every=every)
+    found = (predicted - _components([forward.measured_motion(push) for push in pushes]))[:, :2]
     sizes = np.linalg.norm(found, axis=1) / theory.MM
     median, uncertainty = median_with_error(sizes)
-    slippery, rough = (quasi_static(hand=forward.HAND + change)[:, :2] for change in (-0.1, 0.1))
+    slippery, rough = (quasi_static(hand=forward.HAND + change, every=every)[:, :2] for change in (-0.1, 0.1))
     inputs = 0.5 * np.linalg.norm(rough - slippery, axis=1) / theory.MM
     data = np.array(
-        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::EVERY]]
+        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
     )
-    numerical = np.linalg.norm((quasi_static(10) - quasi_static())[:, :2], axis=1) / theory.MM
+    numerical = np.linalg.norm((quasi_static(10, every=every) - predicted)[:, :2], axis=1) / theory.MM
     return Validation(
         sentence="Coulomb's law predicts the final position of the pushed body with a median error of "
         f"{median:.1f} ± {uncertainty:.1f} mm.",
@@ -210,7 +204,6 @@ def _of_final_positions() -> Validation:
 
 
 def tables() -> tuple[Table, ...]:
-    """Return the errors of all series, and the effects of the hypotheses."""
     return _by_series(), _of_hypotheses()
 
 
@@ -249,7 +242,6 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
 
 
 def account(pushes: Sequence[Push]) -> list[str]:
-    """Return a line of text with the errors of each series."""
     series = dict.fromkeys(push.series for push in pushes)
     return [
         f"{name}: "

@@ -42,7 +42,6 @@ DIVISIONS = 8
 
 
 def surface(series: str) -> str:
-    """Return the surface of a series, "wood" or "board"."""
     return "wood" if series.startswith("wood") else "board"
 
 
@@ -181,7 +180,6 @@ def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
 
 @cache
 def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
-    """Return the uncertainties of the pushes of one series."""
     shift, turn = pose_errors(pushes)
     rounding = GIVEN_TO / np.sqrt(12.0)
     data, inputs, numerical = [], [], []
@@ -244,7 +242,6 @@ def _edges(count: int = 60) -> NDArray[np.complex128]:
 
 @cache
 def by_series() -> dict[str, tuple[Push, ...]]:
-    """Return the pushes of the table by the name of their series."""
     found: dict[str, tuple[Push, ...]] = {}
     for push in reduced_pushes():
         found[push.series] = (*found.get(push.series, ()), push)

@@ -7,10 +7,12 @@ from studies_under_test import engine_named
 
 from compare.claims.claim import Verdict
 from compare.studies.engines.trajectories.drawn import DRAWN
-from compare.studies.engines.trajectories.parameters import MOTIONS, PANEL, SPEEDS
 from compare.studies.engines.trajectories.study import STUDY, measure, moves, pooled
 from compare.studies.engines.trajectories.theory import (
+    MOTIONS,
     NODES,
+    PANEL,
+    SPEEDS,
     by_reference,
     forces,
     gauss,
