@@ -52,7 +52,8 @@ TYPESET = {
     3: r"\rho_* = \sqrt{X_0^2 - \left(\frac{\mu N}{C}\right)^2},\quad \sin\psi_* = \frac{\mu N}{C X_0}",
     4: r"\left(x - \frac{X_0}{2}\right)^2 + y^2 = \frac{X_0^2}{4}",
     5: r"\mu N \le C X_0",
-    6: r"x = A\cos(\omega t + \psi_0),\quad y = A\sin(\omega t + \psi_0)",
+    6: r"m\ddot x + \beta\dot x + C(x - X_0) = F_{Rx},\quad m\ddot y + \beta\dot y + Cy = F_{Ry},\quad "
+    r"\sqrt{F_{Rx}^2 + F_{Ry}^2} \le \mu N",
     7: r"(C - m\omega^2)^2A^2 + \beta^2\omega^2A^2 + C^2X_0^2 - 2CX_0A\left[(C - m\omega^2)\cos\psi "
     r"- \beta\omega\sin\psi\right] \le (\mu N)^2",
     8: r"A\sqrt{(C - m\omega^2)^2 + \beta^2\omega^2} + CX_0 \le \mu N",
