@@ -67,7 +67,7 @@ def mathml(translator, node):
 
 
 def complete_for_readers(app, exception):
-    """Add what screen readers and keyboards need: levels of headings, focus on code blocks, names of sidebars."""
+    """Add levels of headings, focus on code blocks and names of sidebars for screen readers and keyboards."""
     for page in Path(app.outdir).rglob("*.html"):
         text = page.read_text(encoding="utf-8")
         for before, after in ADDED.items():

@@ -150,6 +150,8 @@ def build_drivetrain(
 ) -> DrivetrainModel:
     """Build a drivetrain whose disc initially turns with the gearbox about the shaft's axis.
 
+    Raises ``ValueError`` if a number is out of range.
+
     Parameters
     ----------
     drivetrain
@@ -164,11 +166,6 @@ def build_drivetrain(
         Torques on engine and vehicle.
     shaft_torque
         Initial torque of the torsional spring in N m.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
 
     """
     container = exu.SystemContainer()

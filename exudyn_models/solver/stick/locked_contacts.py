@@ -143,13 +143,13 @@ class LockedContacts:
 
 
 def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:
-    """Return the x, shape (size,), at which the largest of convex ``functions`` is smallest.
+    """Return the minimiser, shape (size,), of the maximum of convex functions.
 
-    They return their values, shape (n,), and their derivatives by x, shape (n, size).
+    ``functions`` returns their values, shape (n,), and their derivatives, shape (n, size).
     """
 
     def above(z: FloatArray) -> FloatArray:
-        return z[0] - functions(z[1:])[0]
+        return np.asarray(z[0] - functions(z[1:])[0])
 
     def slopes(z: FloatArray) -> FloatArray:
         gradients = functions(z[1:])[1]
