@@ -88,6 +88,51 @@ def test_contacts_between_the_same_bodies_share_a_load(loads):
     assert velocities(mbs) == pytest.approx([0.0, 0.3, 0.0], abs=1e-6)  # 15 (t − 0.8)²/2 m/s at the end
 
 
+ON_POINTS = [  # with slip, stick and release; a point rests alone for 0.3 s in the first and 1e-4 s in the second
+    (3, (2.92, 0.265, 1.2, 0.0606, 0.0389), [0.0599, 0.00397, 0.0, -0.0585, -0.156, -0.386]),
+    (6, (3.26, 0.515, 0.797, 0.139, 0.0452), [0.0969, -0.0235, 0.0, 0.265, -0.375, 1.69]),
+    (6, (4.48, 0.44, 1.29, 0.129, 0.0141), [0.0284, -0.017, 0.0, 0.174, -0.226, -0.633]),
+]
+
+
+@pytest.mark.parametrize(("points", "parameters", "start"), ON_POINTS)
+def test_pins_on_a_body_stick_pivot_and_break_loose_as_the_points_of_the_reference(points, parameters, start):
+    stiffness, friction, speed, offset, inertia = parameters
+    disc = DiscOnDisc(
+        mass=1.0, stiffness=stiffness, damping=0.05, friction_force=friction, disc_speed=speed, offset=offset,
+        polar_inertia=inertia, contact_radius=0.15, contact_points=points, shaft_speed=0.0, shaft_damping=0.0,
+    )  # fmt: skip
+    exact = simulate(disc, start, [0.0, 4.0])
+    errors = []
+    for step in (8e-3, 4e-3):
+        mbs = new_model()
+        master = rotor(mbs, 1e9, speed)  # heavy enough to keep its speed
+        node = planar_body(mbs, 1.0, inertia, start[:3], start[3:])
+        body = mbs.systemData.NumberOfObjects() - 1
+        add_radial_support(mbs, None, node, stiffness=stiffness, damping=0.05, offset=[offset, 0.0])
+        for angle in 2.0 * math.pi * np.arange(points) / points:
+            place = [0.15 * math.cos(angle), 0.15 * math.sin(angle), 0.0]
+            foot = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
+            add_ring_friction(
+                mbs, master, foot, contact_radius=0.0, friction_coefficient=1.0, normal_load=friction / points
+            )
+        changes = run(mbs, 4.0, step)
+        assert [after == LOCKED for *_, after in changes] == [True] * points + [False] * points
+        times = [time for time, *_ in changes[points - 1 :]]  # the last rest, and the releases
+        found = (
+            np.array(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates)) + np.array(start[:3]) / 2.0
+        )
+        errors.append(
+            [
+                np.abs(found - exact.states[-1, :3]).max(),
+                abs(times[0] - exact.phases[-2].start),
+                *np.abs(np.array(times[1:]) - exact.phases[-1].start),
+            ]
+        )
+    assert max(errors[1]) < 1.5e-5  # m, rad or s
+    assert (np.array(errors[0]) > 3.0 * np.array(errors[1])).all()  # of second order in the step
+
+
 @pytest.mark.parametrize("annulus", [False, True])
 def test_a_load_on_the_limit_surface_releases_the_contact(annulus):
     """The friction that resists a slip lies on the limit surface; a load against it grows until it is reached."""
