@@ -184,8 +184,8 @@ def _sticking(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) 
         stick = AxialStick(kinds, reference, factors, ratio)
     elif factors.geometry[1] > 1:
         raise ValueError(
-            f"contact_points = {factors.geometry[1]}: on bodies that can slide sideways each point may stick alone; "
-            "add one contact with contact_radius=0 for each point, at a marker there, or give a regularisation"
+            f"contact_points = {factors.geometry[1]}: each point may stick alone, so points on bodies that can slide "
+            "sideways need a regularisation, or one contact with contact_radius=0 for each, at a marker there"
         )
     else:
         sliding = force_and_jacobian(kinds, reference, factors)
