@@ -74,12 +74,13 @@ class ModeChoice:
         """Let a contact enter the mode that follows at t (s); of several that share a load, the most loaded one."""
         if isinstance(contact, PlanarContact) and contact.planar.rests and mode != Mode.OPEN:
             locked = [one for one in self._planar if one.mode == Mode.LOCKED]
-            contact = max(locked, key=lambda one: one.overload(self._mbs, t))
+            contact = max(locked, key=lambda one: one.overload(self._mbs, t), default=contact)
             mode = contact.driven(self._mbs)
         self.enter(contact, mode)
 
     def settle(self, t: float) -> None:
         """Choose modes that let all contacts obey Coulomb's law from the time t (s) on."""
+        self._locked.share_directions()
         for contact in self._contacts:
             contact.stick.idle = False
             if contact.mode == Mode.LOCKED and self._locked.is_held(contact):
@@ -88,8 +89,7 @@ class ModeChoice:
             self._locked.share_directions()
             for planar in self._planar:
                 planar.stick.idle = planar.stick.slides and self._locked.is_held(planar)
-                if not planar.planar.rests:
-                    planar.planar.taken_over = np.zeros(3)
+                planar.planar.taken_over = np.zeros(3)  # other contacts may rest now
             settled, chosen = self._examined()
             if chosen is not None:
                 self.leave(t, *chosen)

@@ -318,3 +318,20 @@ def test_a_disc_between_two_plates_that_rub_on_each_other_sticks_to_both():
     spins = velocities(mbs)[[2, 5, 8]]
     assert np.ptp(spins) < 1e-12
     assert momenta(mbs, bodies)[2] == pytest.approx(before[2], abs=1e-6)
+
+
+def test_a_contact_that_opens_returns_the_load_that_it_has_taken_over():
+    mbs = new_model()
+    node = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0] * 3)
+    body = mbs.systemData.NumberOfObjects() - 1
+    # The load along the line of both pins exceeds what one can hold, until the second one opens at 1 s.
+    push(mbs, node, 1, lambda t: 15.0 if t < 0.9 else 8.0 + 10.0 * max(0.0, t - 1.5))
+    for place, load in ((-RADIUS, 10.0), (RADIUS, lambda time: 10.0 if time < 1.0 else 0.0)):
+        foot = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, place, 0.0]))
+        add_ring_friction(mbs, None, foot, contact_radius=0.0, friction_coefficient=1.0, normal_load=load)
+    changes = run(mbs, 2.0, 1e-2)
+    assert [(pytest.approx(time, abs=1e-9), after) for time, _, _, after in changes] == [
+        (1.0, 2),
+        (1.7, FORWARD),
+    ]
+    assert velocities(mbs) == pytest.approx([0.0, 10.0 * 0.3**2 / 2.0 / MASS, 0.0], abs=1e-6)
