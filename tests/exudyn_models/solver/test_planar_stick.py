@@ -324,7 +324,7 @@ def test_a_contact_that_opens_returns_the_load_that_it_has_taken_over():
     mbs = new_model()
     node = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0] * 3)
     body = mbs.systemData.NumberOfObjects() - 1
-    # The load along the line of both pins exceeds what one can hold, until the second one opens at 1 s.
+    # The load along the line through both pins exceeds the capacity of one, until the second pin opens at 1 s.
     push(mbs, node, 1, lambda t: 15.0 if t < 0.9 else 8.0 + 10.0 * max(0.0, t - 1.5))
     for place, load in ((-RADIUS, 10.0), (RADIUS, lambda time: 10.0 if time < 1.0 else 0.0)):
         foot = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, place, 0.0]))
