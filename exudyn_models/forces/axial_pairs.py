@@ -165,7 +165,7 @@ class AxialStick:
         Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
     idle : bool
         Whether the contact rests although it is in a mode of sliding, because locked contacts and joints hold it. Its
-        share of the load is then not determined, and it takes all that it can hold.
+        share of the load is then not determined. On one axis it takes all that it can hold.
 
     """
 

@@ -41,6 +41,8 @@ class LockedContacts:
 
     def share_directions(self) -> None:
         """Let each contact in the plane slip only in directions that joints and contacts locked before it allow."""
+        if not self._planar:
+            return
         locked: list[StickingContact] = []
         on_axis = [contact for contact in self._contacts if contact not in self._planar]
         by_joints = _null_space(self._held_rows([one for one in on_axis if one.mode == Mode.LOCKED]))

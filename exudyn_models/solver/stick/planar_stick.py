@@ -57,7 +57,7 @@ class PlanarStick(AxialStick):
     taken_over: FloatArray = field(default_factory=lambda: np.zeros(3))
     """Force (N) and moment (N m) on the disc that the contact takes over from others that hold the same bodies.
 
-    Their sum over all contacts does not move the bodies.
+    The sum over these contacts is zero on each body, so it changes no motion.
     """
     frozen: bool = False
     """True in the last step before the contact rests: friction keeps its value from the start of the step."""

@@ -88,6 +88,15 @@ def test_contacts_between_the_same_bodies_share_a_load(loads):
     assert velocities(mbs) == pytest.approx([0.0, 0.3, 0.0], abs=1e-6)  # 15 (t − 0.8)²/2 m/s at the end
 
 
+def add_pin(mbs, master, place, load):
+    """Add a pin with μ = 1 at a place on the only body in the plane."""
+    bodies = [mbs.GetObject(item)["objectType"] for item in range(mbs.systemData.NumberOfObjects())]
+    foot = mbs.AddMarker(
+        items.MarkerBodyRigid(bodyNumber=bodies.index("RigidBody2D"), localPosition=[*place, 0.0])
+    )
+    add_ring_friction(mbs, master, foot, contact_radius=0.0, friction_coefficient=1.0, normal_load=load)
+
+
 ON_POINTS = [  # with slip, stick and release; a point rests alone for 0.3 s in the first and 1e-4 s in the second
     (3, (2.92, 0.265, 1.2, 0.0606, 0.0389), [0.0599, 0.00397, 0.0, -0.0585, -0.156, -0.386]),
     (6, (3.26, 0.515, 0.797, 0.139, 0.0452), [0.0969, -0.0235, 0.0, 0.265, -0.375, 1.69]),
@@ -108,14 +117,10 @@ def test_pins_on_a_body_stick_pivot_and_break_loose_as_the_points_of_the_referen
         mbs = new_model()
         master = rotor(mbs, 1e9, speed)  # heavy enough to keep its speed
         node = planar_body(mbs, 1.0, inertia, start[:3], start[3:])
-        body = mbs.systemData.NumberOfObjects() - 1
         add_radial_support(mbs, None, node, stiffness=stiffness, damping=0.05, offset=[offset, 0.0])
         for angle in 2.0 * math.pi * np.arange(points) / points:
-            place = [0.15 * math.cos(angle), 0.15 * math.sin(angle), 0.0]
-            foot = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=place))
-            add_ring_friction(
-                mbs, master, foot, contact_radius=0.0, friction_coefficient=1.0, normal_load=friction / points
-            )
+            place = [0.15 * math.cos(angle), 0.15 * math.sin(angle)]
+            add_pin(mbs, master, place, friction / points)
         changes = run(mbs, 4.0, step)
         assert [after == LOCKED for *_, after in changes] == [True] * points + [False] * points
         times = [time for time, *_ in changes[points - 1 :]]  # the last rest, and the releases
@@ -323,12 +328,10 @@ def test_a_disc_between_two_plates_that_rub_on_each_other_sticks_to_both():
 def test_a_contact_that_opens_returns_the_load_that_it_has_taken_over():
     mbs = new_model()
     node = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0] * 3)
-    body = mbs.systemData.NumberOfObjects() - 1
     # The load along the line through both pins exceeds the capacity of one, until the second pin opens at 1 s.
     push(mbs, node, 1, lambda t: 15.0 if t < 0.9 else 8.0 + 10.0 * max(0.0, t - 1.5))
-    for place, load in ((-RADIUS, 10.0), (RADIUS, lambda time: 10.0 if time < 1.0 else 0.0)):
-        foot = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[0.0, place, 0.0]))
-        add_ring_friction(mbs, None, foot, contact_radius=0.0, friction_coefficient=1.0, normal_load=load)
+    add_pin(mbs, None, [0.0, -RADIUS], 10.0)
+    add_pin(mbs, None, [0.0, RADIUS], lambda time: 10.0 if time < 1.0 else 0.0)
     changes = run(mbs, 2.0, 1e-2)
     assert [(pytest.approx(time, abs=1e-9), after) for time, _, _, after in changes] == [
         (1.0, 2),
