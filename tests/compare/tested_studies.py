@@ -22,6 +22,7 @@ from compare.studies.engines.power_balance import motions_of_the_disc, motions_o
 STUDY = {study.name: study for study in STUDIES}
 
 EXUDYN_TOO = ("reference", "exudyn", "intact")
+"""Engines of one study of each kind of system; a report measures every study with Exudyn."""
 
 
 def few(numbers, *functions):
@@ -45,7 +46,6 @@ BASINS = Tested(
         "curves": GRID | SAMPLE,
         "parts": {"places": 2},
     },
-    sound=EXUDYN_TOO,
     open_theory=("basins/area",),  # the boundary passes through too many of the few cells
 )
 
@@ -60,8 +60,7 @@ AT_ONE_SPEED = tuple(f"{claim}/1.5" for claim in ("shift", "response", "order", 
 
 FIG04 = Tested(
     STUDY["fig04"],
-    sound=EXUDYN_TOO,
-    parts={"exudyn": AT_ONE_SPEED, "intact": AT_ONE_SPEED},
+    parts={"intact": AT_ONE_SPEED},
     # The error of (18) exceeds 1 % of the shift; the other claims are exact to first order in damping.
     small={name: SMALL[name] for name in ("damping 1 % off", "offset 1 % off")},
 )
@@ -72,8 +71,6 @@ FIG05 = Tested(
     parts={"intact": ("slides", "rests", "first_stick/equilibrium", "all_sticks/equilibrium", "critical")},
 )
 
-QUICK_OF_FIG06 = ("rests", "whirls", "coexist", "cycle_exists")
-
 FIG06 = Tested(
     STUDY["fig06"],
     few={
@@ -81,15 +78,11 @@ FIG06 = Tested(
         "whirls": {"loads": (0.12,)},
         "curves": {"innermost": 0.3, "step": 0.25},
     },
-    sound=EXUDYN_TOO,
-    parts={"exudyn": QUICK_OF_FIG06},
 )
 
 NONLINEAR_SUPPORT = Tested(
     STUDY["nonlinear-support"],
     few={"circle": {"loads": (0.08,)}},
-    sound=("reference", "exudyn", "exudyn-native", "intact"),
-    not_claimed={"exudyn-native": ("disc_whirl",)},
     gross={"a linear support": altered(hardening=0.0, stop_stiffness=0.0)},
     small={"hardening 0.1 % off": altered(hardening=1.001)},
 )
@@ -98,7 +91,6 @@ STICKING_DOMAIN = Tested(
     STUDY["sticking-domain"],
     few=few({"speeds": (1.4,)}, "stays", "holds", "lets_go")
     | few({"searched": (0.9, 1.0, 1.1)}, "largest", "resonance"),
-    sound=EXUDYN_TOO,
 )
 
 WHIRL_STABILITY = Tested(
@@ -106,7 +98,6 @@ WHIRL_STABILITY = Tested(
     few=few({"speeds": (1.5,)}, "radius", "frequency")
     | few({"starts": (0.8, 1.5)}, "balance", "caught")
     | few({"points": ((1.5, 0.1), (1.5, 1.0))}, "eigenvalues", "stable"),
-    sound=EXUDYN_TOO,
     # Its error of the radius is about 1.4e-9 m, and the claim requires 1.2e-9 m.
     parts={"intact": ("frequency", "balance", "caught", "eigenvalues", "stable", "history")},
 )
@@ -126,11 +117,6 @@ FIG08 = Tested(
     sound=("reference", "exudyn"),
 )
 
-QUICK_OF_FIG09 = (
-    *("orbits", "rests", "deviations_grow", "sticks", "releases"),
-    *("coexist", "six_rests", "six_releases"),
-)
-
 FIG09 = Tested(
     STUDY["fig09"],
     few=few({"loads": (0.05,)}, "rests", "six_rests")
@@ -140,9 +126,7 @@ FIG09 = Tested(
         "six_circles": {"circles": ((3e-4, 1), (2e-3, 0))},
         "curves": {"offsets": tuple(OFFSETS[::8]), "fold_offsets": (0.06, 0.15)},
     },
-    sound=("reference", "exudyn", "exudyn-native"),
-    # test_native_contact covers stick and release of Exudyn's own contact at a tenth of the cost.
-    parts={"exudyn": QUICK_OF_FIG09, "exudyn-native": ("six_rests",)},
+    sound=("reference",),
 )
 
 FIG11 = Tested(
@@ -151,8 +135,7 @@ FIG11 = Tested(
         "ends": {"offsets": (0.006, 0.009, 0.022)},  # in all three ranges between the critical ones
         "curves": {"whirling": (0.0, 0.005, 0.01, 0.015)},
     },
-    sound=("reference", "exudyn"),
-    parts={"exudyn": ("slides", "period_and_turn")},
+    sound=("reference",),
 )
 
 ONE_LINE = {"lines": (("load", "disc_speed", 1.5),)}
@@ -164,7 +147,7 @@ STABILITY_MAP = Tested(
         "regions": {"starts": regions.starts_in_regions()[1:4]},
         "coexist": {"starts": regions.coexisting()[:2], "loads": (0.0221,)},
     },
-    sound=("reference", "exudyn"),
+    sound=("reference",),
 )
 
 SIMULATED_MAP = Tested(STUDY["simulated-map"])
@@ -185,7 +168,7 @@ FREE_RING = Tested(
         "powers": {"throws": LOPSIDED[1:3]},
         "stops": {"throws": (RINGS[1], OTHERS[0])},
     },
-    sound=("reference", "exudyn"),
+    sound=("reference",),
     blind={"end_together": "whatever its parameters, a ring ends to slide and to spin at one instant"},
 )
 
@@ -318,8 +301,8 @@ COUPLED_CLUTCHES = Tested(
     STUDY["coupled-clutches"],
     sound=("exudyn",),
     gross={
-        "friction and second inertia 20 % off": Patched(
-            wrong.coupled_off(COEFFICIENT=1.2, INERTIAS=np.array([1, 1.2, 1, 1])), only=MOTION
+        "friction and second inertia 20 % too small": Patched(
+            wrong.coupled_off(COEFFICIENT=0.8, INERTIAS=np.array([1, 0.8, 1, 1])), only=MOTION
         ),
         "creep of another order": Patched(wrong.creep_of_another_order, only=("order_in_epsilon",)),
         "torque late": Patched(wrong.torque_late, only=("order_in_step",)),
@@ -371,7 +354,7 @@ def gaining(system, initial_state, times, *, tolerance=1e-9):
 POWER_BALANCE = Tested(
     STUDY["power-balance"],
     few={"pin": {"motions": short_motions_of_the_pin}, "disc": {"motions": short_motions_of_the_disc}},
-    sound=("reference", "exudyn"),
+    sound=("reference",),
     small={"energy grows by 1e-6 in a second": Engine("gaining", gaining, EVERY_KIND)},
 )
 
@@ -398,8 +381,7 @@ IN_EPSILON = ("first_stick", "later_events", "state")
 
 ENGINE_CONVERGENCE = Tested(
     STUDY["engine-convergence"],
-    sound=("exudyn", "reference"),
-    not_claimed={"reference": ("steps", "first_stick", "later_events", "state", "creep")},
+    sound=("exudyn",),
     few_of_faults=few({"with_work": False}, "sliding", "sticking", "steps"),
     gross={
         "half of the exponent": Engine("reference", lazy),
