@@ -105,18 +105,16 @@ def motion(kinds, turned, own):
 @pytest.mark.parametrize(
     "kinds", [kinds for kinds in PAIRS if {*kinds} != {"Tait-Bryan", "Euler parameters"}], ids=" on ".join
 )
-def test_contacts_move_alike_in_all_24_orientations_and_20_random_ones(kinds):
+def test_contacts_move_alike_in_all_24_orientations_and_5_random_ones(kinds):
     expected = motion(kinds, np.eye(3), (np.eye(3), np.eye(3)))
     cases = [(turned, (AXES[i - 5], AXES[i - 11])) for i, turned in enumerate(AXES)]
-    cases += [
-        (turned, (RANDOM_AXES[i - 5], RANDOM_AXES[i - 11])) for i, turned in enumerate(RANDOM_AXES[:20])
-    ]
+    cases += [(turned, (RANDOM_AXES[i - 5], RANDOM_AXES[i - 11])) for i, turned in enumerate(RANDOM_AXES[:5])]
     found = [
         motion(kinds, turned, own)
         for turned, own in cases
         if not any(is_singular(kind, turned @ axes) for kind, axes in zip(kinds, own, strict=True))
     ]
-    assert len(found) > 20
+    assert len(found) > 10  # Tait-Bryan angles have singular orientations
     np.testing.assert_allclose(found, np.broadcast_to(expected, np.shape(found)), rtol=0.0, atol=1e-11)
 
 
