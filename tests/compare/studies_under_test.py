@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import io
 from collections.abc import Callable, Mapping
-from contextlib import redirect_stdout
+from contextlib import nullcontext, redirect_stdout
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -83,12 +83,14 @@ class Patched:
     """A fault that ``put`` inserts in the code of a sound engine or of the study.
 
     A new ``name`` of the engine, the default, prevents the use of cached results. ``only`` restricts the claims.
+    Every measurement must warn with a text that ``warns`` matches.
     """
 
     put: Callable[[pytest.MonkeyPatch], None]
     engine: str = "exudyn"
     name: str = ""
     only: tuple[str, ...] = ()
+    warns: str = ""
 
 
 COARSE, FINER = {"order": 4, "step": 0.01}, {"order": 4, "step": 0.004}
@@ -169,7 +171,8 @@ class Tested:
         with pytest.MonkeyPatch.context() as patch:
             fault.put(patch)
             engine = replace(engine_named(fault.engine), name=fault.name or f"fault {id(fault)}")
-            return self.study.measure(engine, few, only).claims
+            with pytest.warns(match=fault.warns) if fault.warns else nullcontext():
+                return self.study.measure(engine, few, only).claims
 
 
 def verdicts(findings):
