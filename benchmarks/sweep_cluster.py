@@ -1,6 +1,6 @@
 """Overhead of a Dask cluster in a sweep of random starts of Fig. 5, and memory of the command.
 
-Run with ``python benchmarks/sweep_cluster.py``; takes fifteen minutes on two cores and writes its results into
+Run with ``python benchmarks/sweep_cluster.py``; takes fifteen minutes on two cores and writes the throughputs into
 ``docs/sweeps.md``. Needs the extra ``cluster``. Throughputs are per processor time of all processes, because wall
 times are not comparable under other load.
 """
@@ -90,8 +90,8 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
         return float(kilobytes) / 1000.0, float(seconds)
 
 
-def written() -> str:
-    """Return the measured text for docs/sweeps.md."""
+def measured() -> tuple[str, str]:
+    """Return the table of throughputs for docs/sweeps.md, and the memory of the command with a projection."""
     lines = [
         f"On {cores()} workers, with starts of Fig. 5, in seconds of all processors together:",
         "",
@@ -110,26 +110,26 @@ def written() -> str:
             lines.append(f"| {chunks} | {size:,} | {here:.1f} s | {there:.1f} s | {here / there:.3f} |")
         each = there / (chunks * size)
         found = [(samples, *memory(local.scheduler_address, samples)) for samples in LARGE]
-    lines += ["", "| starts | memory of the command | its own processor time |", "|---|---|---|"]
-    lines += [f"| {samples:,} | {most:.0f} MB | {own:.0f} s |" for samples, most, own in found]
+    more = ["| starts | memory of the command | its own processor time |", "|---|---|---|"]
+    more += [f"| {samples:,} | {most:.0f} MB | {own:.0f} s |" for samples, most, own in found]
     (few, _, short), (many, _, long) = found
     own = (long - short) / (many - few)
     busy, command = each * PROJECTED / (NODES * CORES), own * PROJECTED
-    lines += [
+    more += [
         "",
         f"Projected from these numbers, not measured, for {PROJECTED:,} such trajectories on {NODES} nodes of "
         f"{CORES} cores: the workers take {busy:.0f} s ({1e6 * each:.1f} µs of one core per trajectory), and the "
         f"command takes another {command:.0f} s ({1e6 * own:.2f} µs per trajectory, from the difference between "
         f"{many:,} and {few:,}).",
     ]
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n", "\n".join(more)
 
 
 def main() -> None:
     """Measure, print and write."""
-    text = written()
-    print(text)
-    write_into("sweeps.md", "sweep_cluster.py", text)
+    throughputs, projection = measured()
+    print(throughputs, projection, sep="\n")
+    write_into("sweeps.md", "sweep_cluster.py", throughputs)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ the corrections come from the errata. A test fails if the page is out of date.
 
 import ast
 import re
+from itertools import chain, zip_longest
 from pathlib import Path
 
 from compare.claims.errata import ERRATA, TEXT
@@ -117,8 +118,8 @@ PRINTED = {
 }
 """Terms of the wrong equations, as printed and as corrected."""
 
-MOST = 3
-"""Largest number of functions, and of claims per study, in a row."""
+MOST_FUNCTIONS, MOST_CLAIMS = 3, 4
+"""Largest numbers of functions and of claims in a row; the search of the report finds all claims of an equation."""
 
 PREFERRED = ("plain", "formulas", "contact", "systems", "steady", "motion", "orbits")
 """Modules of the reference, the most useful first."""
@@ -197,28 +198,30 @@ def _typeset(number):
     return [*lines, "", "As printed:", *_block(printed), "", "[Corrected](#corrected):", *_block(correct)]
 
 
+def _listed(identities_by_study):
+    """Return the names of claims, the first of each study before the second, and the number of further claims."""
+    in_turns = chain(*zip_longest(*identities_by_study.values()))
+    identities = [f"`{each}`" for each in in_turns if each]
+    more = len(identities) - MOST_CLAIMS
+    return ", ".join(identities[:MOST_CLAIMS]) + f" and {more} more" * (more > 0)
+
+
 def text():
     """Return the page."""
     lines = [
         "# Equations",
         "",
-        "This page shows each equation of the paper in our notation, the functions that compute it and the claims",
-        "about it. The [glossary](glossary.md#symbols) explains the symbols. Errors are [corrected](#corrected).",
-        "`friction-discs report --claim ID` measures a claim. No claim covers (2), (24) and (25), which define",
-        "coordinates and abbreviations. `python docs/write_equations.py` writes this page.",
+        "This page shows each equation of the paper in our notation, the functions that compute it and claims about",
+        "it. The [glossary](glossary.md#symbols) explains the symbols. `friction-discs report --claim ID` measures a",
+        'claim. To find more claims about (16), search the report for "eq. 16". No claim covers (2), (24) and (25),',
+        "which define coordinates and abbreviations. `python docs/write_equations.py` writes this page.",
     ]
     by_function, by_claim = functions(), claims()
     for number, about in EQUATIONS.items():
-        named = [f"[`{name}`](../{path.as_posix()})" for path, name in by_function[number][:MOST]]
-        claimed = []
-        for identities in by_claim[number].values():
-            more = len(identities) - MOST
-            claimed.append(
-                ", ".join(f"`{each}`" for each in identities[:MOST]) + (f" and {more} more" * (more > 0))
-            )
+        named = [f"[`{name}`](../{path.as_posix()})" for path, name in by_function[number][:MOST_FUNCTIONS]]
         lines += ["", f"## ({number}) {about}", *_typeset(number), ""]
         lines += [f"- functions: {', '.join(named)}"]
-        lines += [f"- claims: {'; '.join(claimed)}"] * bool(claimed)
+        lines += [f"- claims: {_listed(by_claim[number])}"] * bool(by_claim[number])
     lines += [
         "",
         "## Corrected",

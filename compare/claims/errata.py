@@ -207,9 +207,9 @@ ERRATA: tuple[Erratum, ...] = (
         printed="ν̃_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r²",
         correct="ν̄_r/|ν_r| = 1 − R(ω − φ̇)ν̃_xy/ν̄_r² + (3/2)R²(ω − φ̇)²ν̃_xy²/ν̄_r⁴",
         explanation="Because |ν_r|² = ν̄_r²(1 + 2ε) with ε = R(ω − φ̇)ν̃_xy/ν̄_r², the right side is an "
-        "expansion of ν̄_r/|ν_r|. Here ν̄_r is the root mean square of |ν_r| over the ring. (23) is the average "
-        "of the slip velocity times three terms. Its ¾Φ comes from the third term, which the printed line omits. "
-        "With the printed line the moment would not depend on the slip of the centre at all.",
+        "expansion of ν̄_r/|ν_r|. Here ν̄_r is the root mean square of |ν_r| over the ring. (23) averages the slip "
+        "velocity times three terms of this expansion. The printed line omits the third term, which gives the terms "
+        "with ¾ in (23). Without it the moment would not depend on the slip of the centre at all.",
         evidence=_moment_of_the_expansion,
     ),
     Erratum(
@@ -224,9 +224,10 @@ ERRATA: tuple[Erratum, ...] = (
         'Section 5, "still remains stable"',
         printed="the self-centred equilibrium of the disc is stable at high speeds too",
         correct="for ω > k only up to a load: 0.0210 N at Fig. 9's parameters with X0 = 0.1 m",
-        explanation="Friction on a ring increases with the slip of the centre in its direction, by μN·∂F/∂U > 0; "
-        "for a pin this derivative is zero. It couples the radial motion back to the tangential motion. Above "
-        "the natural frequency it drives a circular motion, just as it destabilises the rotation on the axis.",
+        explanation="If the centre of a ring slips faster, friction in the direction of its slip increases by "
+        "μN·∂F/∂U > 0. For a pin this derivative is zero. It couples the radial motion back to the tangential "
+        "motion. Above the natural frequency it drives a circular motion, just as it destabilises the rotation on "
+        "the axis.",
         evidence=_growth_beside_the_equilibrium,
     ),
 )

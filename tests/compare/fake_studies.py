@@ -117,7 +117,13 @@ def measure_verdicts(engine):
             resolution=1e-4,
         ),
         claim(
-            "The time of release follows from eq. (7)", engine.name, 2.0, 2.1, 0.5, equation="(7)", unit="s"
+            "The time of release follows from eq. (7)",
+            engine.name,
+            2.0,
+            2.1,
+            0.5,
+            equation="(7)–(9)",
+            unit="s",
         ),
     )
     return Findings(claims, {"load": LOADS, "radius": exact})

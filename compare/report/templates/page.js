@@ -10,11 +10,14 @@
     .replace(/\b(?:eqs?|equations?)\.?\s*\(?(\d+)\)?/g, "eq. ($1)")
     .replace(/[\p{Pd}\u2212\u00ad\p{M}]/gu, "")
     .replace(/quasi ?periodic/g, "modulated");
+  // A claim about "(19)–(21)" is also about (20).
+  const listed = (equations) => equations.replace(/\((\d+)\)–\((\d+)\)/g, (range, first, last) =>
+    Array.from({ length: last - first + 1 }, (_, index) => `(${Number(first) + index})`).join(" "));
   const recorded = [...document.querySelectorAll("tbody[data-engine]")];
   const claims = [...document.querySelectorAll("details.claim")].map((element) => ({
     element,
     study: element.closest("details.study"),
-    text: plain(`${element.textContent} ${element.id}`),
+    text: plain(`${element.textContent} ${listed(element.dataset.equation)} ${element.id}`),
     equation: element.dataset.equation,
     cells: element.dataset.cells.split(";").map((cell) => cell.split("|")),
   }));

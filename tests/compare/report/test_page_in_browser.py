@@ -145,6 +145,7 @@ def test_filters_select_claims_and_are_stored_in_the_link(page):
         "q=release+eq.",
         "q=Semi-circle",
         "q=eq.+4",
+        "q=eq.+8",
         "evidence=algebra",
         "equation=(4)",
         "study=agreement",
