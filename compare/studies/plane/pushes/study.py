@@ -41,7 +41,6 @@ GROUPS = {
     "the whole face on the board": ("patch",),
     "the whole face on wood": ("wood_patch",),
 }
-"""Series by contact and surface."""
 
 HYPOTHESES: dict[str, theory.Law] = {
     "Coulomb's law, the authors' parameters": coulomb,
@@ -54,10 +53,10 @@ HYPOTHESES: dict[str, theory.Law] = {
     "friction rises with the slip speed to the power 0.1": partial(summed, exponent=0.1),
     "friction falls with the slip speed to the power 0.1": partial(summed, exponent=-0.1),
 }
-"""Other explanations of the comparison error; sizes are assumptions, and nothing is fitted."""
+"""Other explanations of the error; their sizes are assumed, not fitted."""
 
 ROUNDING = 1e-12
-"""Rounding error of a wrench over the sliding force and the radius of the pusher."""
+"""Rounding error of a wrench over the sliding force and the pusher's radius."""
 
 LIMIT = 1e-9
 """Relative error of a point on the limit surface, whose slip minimises a convex function."""
@@ -97,13 +96,13 @@ def on_limit_surface() -> Measured:
     return Measured(predicted=np.ones(len(found)), value=found, error=LIMIT)
 
 
-# --- Pushes simulated forward.
+# --- Pushes simulated forward
 
 EVERY = 10
 """Interval between the pushes of a series that are simulated forward."""
 
 EPSILON = 2e-5
-"""Regularisation in m/s of the Exudyn model; the speed of the hand is 2.45 mm/s."""
+"""Regularisation in m/s of the Exudyn model; the hand moves at 2.45 mm/s."""
 
 
 def simulated(every: int = EVERY) -> list[Push]:
@@ -144,11 +143,11 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
     )
 
 
-# --- The validation.
+# --- The validation
 
 
 def validations(every: int = EVERY) -> tuple[Validation, ...]:
-    """Return the errors of the force's direction for each surface and contact, and of the final position."""
+    """Return the errors of the force's direction by surface and contact, and those of the final position."""
     return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions(every)
 
 
@@ -228,7 +227,6 @@ COLUMNS = (
 
 
 def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
-    """Return the cells of ``COLUMNS`` for the pushes of one series."""
     force, uncertain = errors(pushes, force_error), uncertainties(pushes)
     return (
         _text(force),
