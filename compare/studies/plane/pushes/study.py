@@ -25,7 +25,9 @@ from compare.studies.plane.pushes.theory import (
     pushed_above,
     summed,
     uncertainties,
+    work_error,
     work_ratio,
+    wrench_difference,
     wrench_error,
 )
 from reference_model.contact.limit_surface import largest_wrench
@@ -147,14 +149,43 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
 
 
 def validations(every: int = EVERY) -> tuple[Validation, ...]:
-    """Return the errors of the force's direction by surface and contact, and those of the final position."""
-    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions(every)
+    """Return the errors of the force's direction by surface and contact, of wrench and work, and of the position."""
+    everything = tuple(theory.by_series())
+    return (
+        *(
+            _of(
+                series,
+                force_error,
+                "Coulomb's law with the authors' parameters predicts the direction of the force with a median "
+                f"error of {{}} degrees for {name}.",
+                "direction of the force",
+            )
+            for name, series in GROUPS.items()
+        ),
+        _of(
+            everything,
+            wrench_difference,
+            "Coulomb's law predicts the direction of the wrench, with moments over 50 mm, with a median error of {} "
+            "degrees.",
+            "direction of the wrench",
+        ),
+        _of(
+            everything,
+            work_error,
+            "Coulomb's law with the authors' sliding forces predicts the work of a push with a median error of {} %.",
+            "work",
+            unit="%",
+        ),
+        _of_final_positions(every),
+    )
 
 
-def _of_directions(name: str, series: Sequence[str]) -> Validation:
+def _of(
+    series: Sequence[str], of: theory.Difference, sentence: str, quantity: str, unit: str = "degrees"
+) -> Validation:
     groups = [theory.by_series()[one] for one in series]
-    found = np.concatenate([errors(pushes, force_error) for pushes in groups])
-    sources = [uncertainties(pushes) for pushes in groups]
+    found = np.array([np.linalg.norm(of(push, coulomb)) for pushes in groups for push in pushes])
+    sources = [uncertainties(pushes, of) for pushes in groups]
     median, uncertainty = median_with_error(found)
     total = np.concatenate([one.total for one in sources])
 
@@ -162,10 +193,9 @@ def _of_directions(name: str, series: Sequence[str]) -> Validation:
         return float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
 
     return Validation(
-        sentence="Coulomb's law with the authors' parameters predicts the direction of the force with a median error "
-        f"of {median:.1f} ± {uncertainty:.1f} degrees for {name}.",
-        quantity="direction of the force",
-        unit="degrees",
+        sentence=sentence.format(f"{median:.1f} ± {uncertainty:.1f}"),
+        quantity=quantity,
+        unit=unit,
         error=median,
         error_uncertainty=uncertainty,
         data=middle("data"),
@@ -221,6 +251,7 @@ COLUMNS = (
     "data uncertainty",
     "input uncertainty",
     "explained in %",
+    "scatter of equal pushes (pairs)",
     "direction of the wrench: median error in degrees",
     "measured over predicted work",
 )
@@ -234,6 +265,7 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
         f"{np.median(uncertain.data):.1f}",
         f"{np.median(uncertain.input):.1f}",
         f"{100.0 * np.mean(force <= 2.0 * uncertain.total):.0f}",
+        "{:.1f} ({})".format(*theory.scatter(pushes)),
         _text(errors(pushes, wrench_error)),
         _text(errors(pushes, work_ratio), digits=3),
     )

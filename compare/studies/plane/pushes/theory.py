@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,11 +130,17 @@ def force_error(push: Push, law: Law) -> float:
     return float(np.degrees(np.angle(law(push).force * measured(push).force.conjugate())))
 
 
+def wrench_difference(push: Push, law: Law) -> FloatArray:
+    """Return the predicted minus the measured unit wrench in degrees, with moments over ``PUSHER``, shape (3,)."""
+    directions = [wrench.components for wrench in (law(push), measured(push))]
+    theory, found = (direction / np.linalg.norm(direction) for direction in directions)
+    return np.asarray(np.degrees(theory - found))
+
+
 def wrench_error(push: Push, law: Law) -> float:
     """Return the angle in degrees between the measured and the predicted wrench, with moments over ``PUSHER``."""
-    found, theory = measured(push).components, law(push).components
-    cosine = found @ theory / np.linalg.norm(found) / np.linalg.norm(theory)
-    return float(np.degrees(np.arccos(min(1.0, cosine))))
+    chord = np.radians(np.linalg.norm(wrench_difference(push, law)))
+    return float(2.0 * np.degrees(np.arcsin(min(1.0, 0.5 * chord))))
 
 
 def work_ratio(push: Push, law: Law) -> float:
@@ -143,10 +150,21 @@ def work_ratio(push: Push, law: Law) -> float:
     return float((measured(push).components @ along) / (law(push).components @ along))
 
 
-# --- Uncertainties of the direction of the force, as in ASME V&V 20
+def work_error(push: Push, law: Law) -> float:
+    """Return the measured work minus the predicted one, in per cent of the latter."""
+    return 100.0 * (work_ratio(push, law) - 1.0)
 
-GIVEN_TO = 1.0
-"""Last digit in mm of the centre of mass; the authors state no uncertainty."""
+
+# --- Uncertainties, as in ASME V&V 20
+
+Difference = Callable[[Push, Law], float | FloatArray]
+"""Prediction minus measurement, a number or components."""
+
+CENTRE_TO, SLIDING_FORCE_TO = 1.0, 0.1
+"""Last digits of the centre of mass in mm and of the sliding force in N; the authors state no uncertainty."""
+
+ROUNDED = 1.0 / np.sqrt(12.0)
+"""Standard deviation of a rounding error over the last digit."""
 
 NORMAL = 1.4826
 """Standard deviation over the median deviation of a normal distribution."""
@@ -154,7 +172,7 @@ NORMAL = 1.4826
 
 @dataclass(frozen=True)
 class Uncertainties:
-    """Standard uncertainties in degrees of the direction of the force, shape (n,) each."""
+    """Standard uncertainties of one difference, shape (n,) each."""
 
     data: FloatArray
     input: FloatArray
@@ -178,30 +196,48 @@ def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
 
 
 @cache
-def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
+def uncertainties(pushes: tuple[Push, ...], of: Difference = force_error) -> Uncertainties:
+    """Return the effects of a standard deviation of each measured or given number on the difference ``of``."""
     shift, turn = pose_errors(pushes)
-    rounding = GIVEN_TO / np.sqrt(12.0)
     data, inputs, numerical = [], [], []
     for push in pushes:
-        base = force_error(push, coulomb)
-        moved = [
-            replace(push, x=push.x + shift),
-            replace(push, y=push.y + shift),
-            replace(push, turn=push.turn + turn),
+        base = of(push, coulomb)
+        changes = {
+            **dict.fromkeys(("x", "y"), shift),
+            "turn": turn,
+            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # of one pose
+            **dict.fromkeys(("force_x", "force_y"), push.noise),  # of the first sample, the offset
+        }
+        moved = [replace(push, **{name: getattr(push, name) + change}) for name, change in changes.items()]
+        data.append(_size([of(other, coulomb) - base for other in moved]))
+        laws = [
+            partial(coulomb, factor=1.0 + SLIDING_FORCE_TO * ROUNDED / SLIDING_FORCES[surface(push.series)])
         ]
-        effects = [_change(force_error(other, coulomb), base) for other in moved]
-        offset = np.degrees(push.noise / abs(measured(push).force))  # of the first sample
-        data.append(np.hypot(np.linalg.norm(effects), offset))
-        centres = [CENTRE + step * rounding for step in (1.0, 1.0j)] if feet(push.series) else []
-        laws = [partial(coulomb, centre=centre) for centre in centres]
-        inputs.append(float(np.linalg.norm([_change(force_error(push, law), base) for law in laws])))
+        if feet(push.series):
+            laws += [partial(coulomb, centre=CENTRE + step * CENTRE_TO * ROUNDED) for step in (1.0, 1.0j)]
+        inputs.append(_size([of(push, law) - base for law in laws]))
         finer = partial(coulomb, divisions=2 * DIVISIONS)
-        numerical.append(0.0 if feet(push.series) else abs(force_error(push, finer) - base))
+        numerical.append(0.0 if feet(push.series) else _size([of(push, finer) - base]))
     return Uncertainties(np.array(data), np.array(inputs), np.array(numerical))
 
 
-def _change(angle: float, base: float) -> float:
-    return (angle - base + 180.0) % 360.0 - 180.0
+def _size(changes: Sequence[float | FloatArray]) -> float:
+    return float(np.linalg.norm(np.array(changes).ravel()))
+
+
+ALIKE = 5.0, 7.5
+"""Largest differences of equal pushes: distance of the hands at the start in mm, angle of the forces in degrees."""
+
+
+def scatter(pushes: Sequence[Push], of: Difference = force_error) -> tuple[float, int]:
+    """Return the standard deviation of a difference from push to equal push, and the number of pairs."""
+    found = []
+    for first, second in combinations(pushes, 2):
+        apart = complex(first.start_x - second.start_x, first.start_y - second.start_y)
+        turn = np.angle(measured(first).force * measured(second).force.conjugate(), deg=True)
+        if abs(apart) < ALIKE[0] and abs(turn) < ALIKE[1]:
+            found.append(_size([of(first, coulomb) - of(second, coulomb)]))
+    return NORMAL * float(np.median(found)) / np.sqrt(2.0), len(found)
 
 
 # --- Hypotheses about the remaining error
