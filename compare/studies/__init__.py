@@ -70,6 +70,6 @@ STUDIES: tuple[Study, ...] = (
 
 
 def studies(names: Iterable[str] = (), among: tuple[Study, ...] = STUDIES) -> tuple[Study, ...]:
-    """Return the studies of the given names, or all, in report order; raise ``ValueError`` for others."""
+    """Return the studies of the given names, or all, in report order; raise ``ValueError`` for unknown names."""
     wanted = {one_of("study", name, [study.name for study in among]) for name in names}
     return tuple(study for study in among if study.name in wanted or not wanted)

@@ -1,1 +1,1 @@
-"""Studies of the disc on a disc: the paper's Figs. 8 to 11 and related questions."""
+"""Studies of the disc on a disc: Figs. 8 to 11 and related questions."""

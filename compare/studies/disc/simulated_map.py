@@ -18,25 +18,25 @@ from reference_model import onset_load, whirls
 from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.systems import DiscOnDisc, FloatArray
 
-SIDE = 60  # discs along each side of the plane
+SIDE = 60  # discs along each side
 
 DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, SIDE)
-"""Damping β in N s/m and shaft damping b in N m s/rad."""
+"""β in N s/m and b in N m s/rad."""
 
-START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # initial state x, y, angle, vx, vy, spin, close to the axis
-UNTIL = 12000.0  # duration in s until the slowest motions have settled
-TOLERANCE = 10.0 * WORKING  # tolerance of the simulations, which only determine the kind of final motion
+START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # x, y, angle, vx, vy, spin, close to the axis
+UNTIL = 12000.0  # duration in s until the slowest motions settle
+TOLERANCE = 10.0 * WORKING  # sufficient for the kind of final motion
 
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5  # stride of the discs, in both directions, whose whirls' eigenvalues are computed
+EVERY = 5  # stride of the discs whose whirls' eigenvalues are computed
 
 GROWN = 15.0
-"""Re λ times the duration that lets motions leave an unstable whirl; deviations have grown by exp(15)."""
+"""Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
-"""Error of an answer (margin 1 or −1) for a motion whose end the ensemble could not decide."""
+"""Error of an answer (margin 1 or −1) for an undecided motion."""
 
 
 def on_plane(quantity: Callable[[DiscOnDisc], float], stride: slice = slice(None)) -> FloatArray:

@@ -1,1 +1,1 @@
-"""Studies of a clutch in a drivetrain, which no formula of the paper covers."""
+"""Studies of a clutch in a drivetrain, beyond the paper."""

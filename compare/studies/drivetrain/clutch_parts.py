@@ -12,31 +12,31 @@ from compare.output.figures import GREY, Axes, axis, curve, engines_in, new_figu
 from compare.studies.toolkit.rotors import Rotors
 from reference_model.systems import FloatArray
 
-# Judder: a drive drags a clutch disc on a torsional spring, and the friction coefficient falls with slip speed.
+# Judder: a drive drags a disc on a torsional spring, and friction falls with the slip speed.
 
 INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
-"""Inertia of the disc in kg m², and stiffness (N m/rad) and damping (N m s/rad) of its shaft: 19 Hz, 2 % damping."""
+"""Disc in kg m² and its shaft in N m/rad and N m s/rad: 19 Hz, 2 % damping."""
 
 SPEED, DRIVE_INERTIA = 50.0, 1e12
-"""Speed of the drive in rad/s and its inertia in kg m², so large that friction slows it by only 1e-11 rad/s²."""
+"""Drive in rad/s and kg m²; friction slows it by only 1e-11 rad/s²."""
 
 RADIUS, LOAD, COEFFICIENT = 0.1, 1000.0, 0.5
-"""Contact radius in m, normal load in N, and friction coefficient at the slip speed of the steady state."""
+"""Contact radius in m, load in N, and friction coefficient at the steady slip speed."""
 
 STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
-"""Friction moment in N m and slip speed in m/s in the steady state, with the shaft wound up and at rest."""
+"""Friction moment in N m and slip speed in m/s, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
 """Negative slope of the coefficient in s/m; friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
-"""Negative slope of the coefficient over slip speed in s/m. A negative value means a rising coefficient."""
+"""Negative slopes of the coefficient in s/m."""
 
 EPSILON = 1e-4
-"""In m/s, 1/50,000 of the steady slip speed. It has no effect because the disc does not stick."""
+"""ε in m/s, 1/50,000 of the steady slip speed; without effect, because the disc does not stick."""
 
 PERTURBED = 0.1
-"""Speed of the disc at the start in rad/s, small compared with the speed of the drive."""
+"""Initial speed of the disc in rad/s."""
 
 PERIODS = 10
 TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
@@ -45,10 +45,10 @@ TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS
 # Heat: a clutch engages between an engine and a vehicle and warms the linings, whose friction fades.
 
 INERTIAS, SLIP = (0.2, 1.5), 200.0
-"""Inertias of engine and vehicle in kg m², reduced to the clutch, and initial slip in rad/s."""
+"""Inertias of engine and vehicle in kg m², and initial slip in rad/s."""
 
 RING, PRESSED = 0.1, 3000.0
-"""Contact radius in m and normal load in N."""
+"""Contact radius in m and load in N."""
 
 COLD_COEFFICIENT, FADE = 0.33, 2e-3
 """Coefficient at ambient temperature, and its relative loss per K above it."""
@@ -57,21 +57,21 @@ CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
 """Heat capacity of the linings in J/K, heat loss in W/K and ambient temperature in °C."""
 
 CREEP = 1e-2
-"""Regularisation ε in m/s; 0.1 rad/s at this radius."""
+"""ε in m/s; 0.1 rad/s at this radius."""
 
 ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
-"""In s: times during slip, and a time after the clutch has locked."""
+"""In s: times during slip, and a time after lock-up."""
 
 NEARLY_HOLDS = 1.0
 """Slip in rad/s that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
-"""For the clutch with sustained slip: slip in rad/s, inertias of the rotors in kg m² and times in s."""
+"""Sustained slip: slip in rad/s, inertias in kg m² and times in s."""
 
 MOMENT = COLD_COEFFICIENT * PRESSED * RING
 REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
 HEAT = 0.5 * REDUCED * SLIP**2
-"""Moment of cold friction in N m, effective inertia of the slip in kg m², and energy of the slip in J."""
+"""Moment of cold friction in N m, effective inertia in kg m², and energy in J of the slip."""
 
 BOTH = (1e-10, 1e-10 / COARSENING)
 """Tolerances of explicit steps, in rad, rad/s, K and J."""
@@ -81,7 +81,7 @@ LEFT_OUT = 2e-13
 
 
 def slipping_time(end: float) -> float:
-    """Return the time in s until the slip of the engaging clutch has fallen to ``end`` in rad/s.
+    """Return the time (s) until the slip of the engaging clutch has fallen to ``end`` (rad/s).
 
     If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with
     c = k·J/(2C) and b = 1 − c·S₀², and the solution is a tangent.
@@ -97,14 +97,14 @@ def cold_slipping_time(end: float) -> float:
 
 
 def held(times: FloatArray) -> FloatArray:
-    """Return the temperature in °C of the clutch with sustained slip. In the limit, the loss equals the heat."""
+    """Return the temperature (°C) of the clutch with sustained slip; in the limit, the loss equals the heat."""
     power = MOMENT * SLOW_SLIP
     rate = CONDUCTANCE + FADE * power
     return SURROUNDINGS + power / rate * (1.0 - np.exp(-rate / CAPACITY * times))
 
 
 def juddering(gradient: float) -> Rotors:
-    """Return a drive and a disc on its shaft, with a friction coefficient of slope −``gradient`` in s/m."""
+    """Return a drive and a disc on its shaft, with a friction coefficient of slope −``gradient`` (s/m)."""
     from exudyn_models import add_ring_friction
 
     rotors = Rotors((DRIVE_INERTIA, INERTIA), (SPEED, PERTURBED), STEADY_MOMENT / STIFFNESS)
@@ -132,7 +132,7 @@ def heating(
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
-    The initial slip is ``start`` in rad/s. The steps hit all ``times`` in s; the last one ends the run.
+    The initial slip is ``start`` (rad/s). The steps hit all ``times``; the last one ends the run.
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 
@@ -246,7 +246,7 @@ def _time_of_slip(run: FloatArray) -> float:
 )
 def settles(engine: Engine) -> Measured:
     runs = [heating((HEAVY, HEAVY), SLOW_SLIP, CONDUCTANCE, tolerance, HELD) for tolerance in BOTH]
-    # The last step before a break ends slightly before it.
+    # The last step before a break ends slightly early.
     found, finer = (run[np.searchsorted(run[:, 0], HELD - 1e-9), 3] for run in runs)
     span = float(HELD[-1])
     skipped = len(HELD[:-1]) * LEFT_OUT * span * (MOMENT * SLOW_SLIP / CAPACITY)
@@ -316,7 +316,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _both(panel: Axes, data: ByEngine, closed_form: tuple[str, str], measured: tuple[str, str]) -> None:
-    """Draw the closed form and the results of the engines; the pairs name the arrays of abscissa and ordinate."""
+    """Draw the closed form and the engines' results; each pair names abscissa and ordinate."""
     for name in ("theory", *engines_in(data)):
         x, y = closed_form if name == "theory" else measured
         found = data.get(name, {})

@@ -1,8 +1,8 @@
 """An isolated drivetrain of the project's parts keeps its angular momentum on every kind of node.
 
-Engine, clutch disc and vehicle move in space, in the plane or about a fixed axis. They act only on each other, by
-friction, by an elastic shaft that is attached to the vehicle off-centre, and by a torsional spring. The claims fail
-if a part lacks the moment of its force about one of the bodies, or acts on the two bodies along different axes.
+Engine, clutch disc and vehicle act only on each other, by friction, by an elastic shaft attached to the vehicle
+off-centre, and by a torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts
+on two bodies along different axes.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from reference_model.systems import FloatArray
 ROTOR, PLANAR = "rotor", "planar"
 SPATIAL = {"rotation vector": "NodeRigidBodyRotVecLG", "Tait-Bryan": "NodeRigidBodyRxyz"}
 KINDS = (ROTOR, PLANAR, *SPATIAL)
-"""Kinds of nodes. The bearing of a rotor takes up every moment except the one about its axis."""
+"""Kinds of nodes. The bearing of a rotor takes up every moment except that about its axis."""
 
 DRIVETRAINS = tuple(
     (engine, KINDS[1 + (i + j) % 3], vehicle)
     for i, engine in enumerate(KINDS)
     for j, vehicle in enumerate(KINDS)
 )
-"""Nodes of engine, disc and vehicle. Each kind for each body occurs with each kind for the others."""
+"""Nodes of engine, disc and vehicle; each kind for each body occurs with each kind for the others."""
 
 DRAWN = ("rotation vector",) * 3
 """The drivetrain of the figure."""
@@ -146,7 +146,7 @@ def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
 
 
 def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[FloatArray, FloatArray]:
-    """Return times in s, and the angular momentum of each body about the origin in kg m²/s, shape (n, 3, 3)."""
+    """Return times (s), and the angular momentum of each body about the origin (kg m²/s), shape (n, 3, 3)."""
     import exudyn as exu
     import exudyn.itemInterface
 
@@ -170,7 +170,7 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
     options.endTime, options.numberOfSteps, options.verboseMode = UNTIL, steps, 0
     options.newton.useModifiedNewton = True
     options.newton.relativeTolerance = options.newton.absoluteTolerance = 1e-12
-    # Not solve_dynamic: it warns that the coarse run could not hold a stuck clutch, but these clutches always slip.
+    # ``solve_dynamic`` would warn that the coarse run cannot hold a stuck clutch, but these clutches always slip.
     if not mbs.SolveDynamic(settings, getattr(exu.DynamicSolverType, solver.name)):
         raise RuntimeError(f"Exudyn's {solver.name} failed for a drivetrain of {', '.join(kinds)}")
     stored = np.array(mbs.GetSensorStoredData(sensor))
@@ -178,7 +178,7 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
 
 
 def _add_drivetrain(mbs: Any, kinds: Sequence[str]) -> list[Any]:
-    """Add engine, disc and vehicle with nodes of these kinds and all connections; return the nodes."""
+    """Add engine, disc, vehicle and all connections; return the nodes."""
     import exudyn.itemInterface
 
     from exudyn_models import add_radial_support, add_ring_friction
@@ -221,7 +221,7 @@ def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
 
 
 def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
-    """Return the angular momentum of a body about the origin in kg m²/s, from Exudyn's position and spin."""
+    """Return the angular momentum about the origin (kg m²/s), from Exudyn's position and spin."""
     import exudyn as exu
 
     of = exu.OutputVariableType

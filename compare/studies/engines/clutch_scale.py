@@ -26,14 +26,14 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 
 @dataclass(frozen=True)
 class Scale:
-    """Lengths in m, times in s and masses in kg that correspond to 1 m, 1 s and 1 kg of a system."""
+    """Length in m, time in s and mass in kg that correspond to 1 m, 1 s and 1 kg of a system."""
 
     length: float
     time: float
     mass: float
 
     def system(self, system: System) -> System:
-        """Return ``system`` with scaled lengths, times and masses; all dimensionless numbers stay the same."""
+        """Return the scaled ``system``; dimensionless numbers do not change."""
         length, time, mass = self.length, self.time, self.mass
         changes: dict[str, Any] = {
             "mass": mass * system.mass,
@@ -63,33 +63,33 @@ CLUTCH = Scale(length=1e-3, time=1.5 / 300.0, mass=0.5)
 """X0 = 0.1 m becomes 0.1 mm, ω = 1.5 rad/s becomes 300 rad/s, and 1 kg becomes half a kilogram."""
 
 
-# --- Starts and durations of the repeated motions at the paper's scale
+# --- Starts and durations at the paper's scale
 
 TO_REST = (0.1, 0.0, 0.0275, 0.0)
 """Near the critical start: the pin sticks nine times before it comes to rest in space."""
 
 UNTIL, SAMPLES = 240.0, 481
-"""Duration at the paper's scale in s until this pin has come to rest, and number of samples."""
+"""Duration in s until this pin rests, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
 """Fig. 6 at the friction force 0.12 N."""
 
 REST_OF_DISC = 40.0
-"""Duration at the paper's scale in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""
+"""Duration in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""
 
 CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
-"""x, y, angle, vx, vy, spin at the paper's scale, for a disc that slides and spirals towards the cycle of Fig. 11."""
+"""x, y, angle, vx, vy, spin of a disc that slides and spirals towards the cycle of Fig. 11."""
 
 CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
-"""Duration of the motion of Fig. 11 at the paper's scale in s, and number of samples."""
+"""Duration in s of this motion, and number of samples."""
 
 VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
-"""vx(0) in m/s at the paper's scale; the starts lead to both ends."""
+"""vx(0) in m/s; the starts lead to both ends."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
 ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
-"""Number of random starts, seed, and duration at the paper's scale in s until each start has reached its end."""
+"""Number of random starts, seed, and duration in s in which each reaches its end."""
 
 SOURCE = (
     "{}; X0 = 0.1 mm, ω = 300 rad/s and m = 0.5 kg are our choice, all dimensionless numbers are the paper's"
@@ -100,7 +100,7 @@ def scaled(system: System) -> System:
     return CLUTCH.system(system)
 
 
-# --- Motions at the paper's scale, for comparison with the motions of the clutch
+# --- Motions at the paper's scale, for comparison
 
 
 @functools.cache
@@ -143,10 +143,7 @@ def at_clutch(
 def states_of(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray
 ) -> Callable[[float], FloatArray]:
-    """Return a function of the tolerance for the states after the start, in the paper's units.
-
-    The states have the shape (len(times) − 1, 4 or 6).
-    """
+    """Return a function of the tolerance for the states after the start, in the paper's units."""
 
     def states(tolerance: float) -> FloatArray:
         found = at_clutch(engine, system, start, times, tolerance).states[1:]

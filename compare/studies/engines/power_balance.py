@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray, System
 # --- Motions of every kind
 
 SAMPLE_DISTANCE = 0.02
-"""In s, small enough that the quadrature of the balance has an error below 1e-9 through stick phases."""
+"""In s; the quadrature of the balance then has an error below 1e-9 through stick phases."""
 
 RESOLUTION = 1e-8
 """Relative to the energy turned over."""
@@ -29,7 +29,7 @@ RESOLUTION = 1e-8
 class Motion:
     """A motion to ``until`` in s, sampled every ``step`` s.
 
-    The figure shows it if ``drawn``, and engines that only provide the contact take part if ``contact_alone``.
+    The figure shows it if ``drawn``; engines that only provide the contact take part if ``contact_alone``.
     """
 
     system: System

@@ -1,4 +1,4 @@
-"""Fig. 3 and eq. 3 to 5: the pin at rest in space on the semicircle, its stability, and where it ends."""
+"""Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle, its stability, and where it ends."""
 
 from __future__ import annotations
 
@@ -28,27 +28,27 @@ PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
 LIMIT = largest_load_with_equilibrium(PIN)  # limit (5) in N
-START = (0.1, 0.05, 0.0, 0.0)  # x, y, vx, vy in m and m/s: at rest, displaced from every equilibrium
-LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # friction forces μN in N, within (5)
-DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12 of its initial value
-DELAY = 60.0  # final part of a run in s, which yields the estimate of the remaining transient
+START = (0.1, 0.05, 0.0, 0.0)  # at rest in m, displaced from every equilibrium
+LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # μN in N, within (5)
+DURATION = 520.0  # in s; the slowest transient, exp(−βt/2m), falls to 5e-12
+DELAY = 60.0  # final part of a run in s, which yields the remaining transient
 
 TOLERANCE = 0.03 * WORKING
-"""Tolerance of the claims on the position of rest, whose resolution is 1e-9 of X0."""
+"""For positions of rest, whose resolution is 1e-9 of X0."""
 
-SHARES = (0.98, 0.999, 1.05, 1.2)  # friction forces near the limit (5), relative to it
-SETTLING = 300.0  # duration in s from the axis to the equilibrium, for friction forces below the limit
+SHARES = (0.98, 0.999, 1.05, 1.2)  # μN over the limit (5)
+SETTLING = 300.0  # duration in s from the axis to the equilibrium
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
-"""Period of the disc in s. Above the limit, the pin sticks at once, and two periods suffice."""
+"""Period of the disc in s. Above the limit the pin sticks at once, so two periods suffice."""
 
 FLOW_DURATION = 0.3
-"""Duration in s of the simulations for eigenvalues, short enough to show strongly damped ones."""
+"""Duration in s of the simulations for eigenvalues, short enough for strongly damped ones."""
 
 GRID_SHARES = np.array([0.01, *np.linspace(0.05, 0.95, 19), 0.99, 0.999])
 GRID_SPEEDS = np.geomspace(0.05, 5.0, 25)
 GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
-"""Grid for the linearised (1): friction forces relative to the limit (5), ω in rad/s and β in N s/m."""
+"""Grid for the linearised (1): μN over the limit (5), ω in rad/s and β in N s/m."""
 
 
 def with_load(load: float) -> PinOnDisc:
@@ -82,7 +82,7 @@ def along_and_across(values: Sequence[complex]) -> list[complex]:
 
 
 def vanishing_load(loads: Sequence[float], places: FloatArray, error: FloatArray) -> tuple[float, float]:
-    """Return μN in N for ρ² = 0, extrapolated from the last two ``places``, and its error.
+    """Return μN (N) for ρ² = 0, extrapolated from the last two ``places``, and its error.
 
     According to (3), ρ² is linear in (μN)².
     """
@@ -126,7 +126,7 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.lru_cache(maxsize=2)
 def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Return the final positions of the pin and their errors as distances; shapes (n, 2) and (n,) in m."""
+    """Return the final positions of the pin (m), shape (n, 2), and their errors as distances."""
 
     def track(load: float, times: list[float], tolerance: float) -> FloatArray:
         return engine.simulate(with_load(load), START, times, tolerance=tolerance).states[1:, :2]
@@ -142,7 +142,7 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
             tolerance=TOLERANCE,
         )
         places.append(end.value)
-        # One component may be right by chance. At rest, two runs may agree better than the tolerance.
+        # A single error may be small by chance. At rest, two runs may agree better than the tolerance.
         errors.append(np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset)
     return np.array(places), np.array(errors)
 

@@ -1,4 +1,4 @@
-"""Fig. 4: the shift of the whirl by a small offset, eq. 18, and the exact first-order response."""
+"""Fig. 4: the shift of the whirl by a small offset, eq. (18), and the exact first-order response."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from reference_model.formulas.pin import (
 from reference_model.systems import FloatArray
 
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
-"""ω in rad/s. The paper does not print its range. Below 1.15 rad/s, this whirl is close to its fold."""
+"""ω in rad/s, which the paper omits; below 1.15 rad/s this whirl is close to its fold."""
 
-CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # speeds of the claims in rad/s
+CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # in rad/s
 
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m for the orders; each is half of the previous one and far below the whirl's radius of 1.2 m."""
 
-SHIFT_TOLERANCE = 1e3 * WORKING  # tolerance of the means over ω; (18) has an error of a few per cent
+SHIFT_TOLERANCE = 1e3 * WORKING  # for means over ω; (18) has an error of a few per cent
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"

@@ -34,20 +34,20 @@ LIMIT = largest_load_with_equilibrium(FIG6)
 
 WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
-"""μN in N. The paper does not print the range of its axis; a range up to 2·C·X0 shows all motions."""
+"""μN in N; the paper omits the range, and up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
+CYCLE_LOAD = 0.102  # in N, between C·X0 and the end of the stick–slip cycle
 
 CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 """Relative distance of the starts from the cycle, and number of turns."""
 
 TOLERANCE = 10.0 * WORKING
-"""Tolerance of all claims except the end of the whirl, which is measured to 1e-8 N."""
+"""For all claims except the end of the whirl, which is measured to 1e-8 N."""
 
-INNERMOST = 0.012  # crossing of the x axis in m that ends the branch towards the axis
+INNERMOST = 0.012  # crossing of the x axis in m that ends the branch
 
 ON_THE_WAY = 1e-8
-"""Tolerance of the drawn branch, which leads to the cycle; its friction forces have errors below 1e-10 N."""
+"""For the branch in the figure; its friction forces have errors below 1e-10 N."""
 
 
 def with_load(load: float) -> PinOnDisc:
@@ -83,7 +83,7 @@ Two multipliers meet there, so the error is the root of the error of the return 
 
 @functools.cache
 def load_of_unit_multiplier() -> float:
-    """Return the friction force in N where a second multiplier of the reference's whirl passes 1."""
+    """Return the friction force (N) where a second multiplier of the reference's whirl passes 1."""
     orbit = whirl_orbit(with_load(0.08))
 
     def excess(x: float) -> float:
@@ -117,7 +117,7 @@ STUDY = Study.beside(
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
-    times = np.linspace(590.0, 600.0, 11)  # a single state may be right by chance
+    times = np.linspace(590.0, 600.0, 11)  # a single error may be small by chance
     found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
     # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).
@@ -133,7 +133,7 @@ def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measure
 
 
 def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the positions at ``times`` of a pin that starts 5 mm away from the equilibrium."""
+    """Return the positions at ``times`` after a start 5 mm from the equilibrium."""
     pin = with_load(load)
     x, y = equilibrium_position(pin)
     motion = engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), (0.0, *times), tolerance=tolerance)
@@ -162,7 +162,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     found = refined(period_and_extent, TOLERANCE)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
-    # Near the fold, a residual of the orbit shifts it more, by the factor 1/(1 − its slowest multiplier).
+    # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − its slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Measured(
         predicted=[[orbit.period, *extent(orbit)] for orbit in others],
@@ -195,7 +195,7 @@ def whirl_ends(engine: Engine) -> Measured:
     )
 
     def least_load(tolerance: float) -> float:
-        # The load is stationary there, so at this crossing it changes with the tolerance like its smallest value.
+        # The load is stationary there, so it changes with the tolerance like its smallest value.
         orbit = whirl_orbit(
             FIG6,
             simulate=engine.simulate,
@@ -226,7 +226,7 @@ def coexist(engine: Engine) -> Measured:
     stuck = 0.5 * sticking_radius(FIG6)
     orbit = whirl_orbit(FIG6)
     starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
-    # If there were no whirl, a pin would need about 30 s from this start until it sticks.
+    # A pin without a whirl would stick after about 30 s.
     lengths = (10.0, 100.0)
 
     def sticks_and_slides(tolerance: float) -> list[bool]:
@@ -336,8 +336,8 @@ def _draw_theory(panel: Axes, found: Data) -> None:
         linewidth=0.0,
         label="permanent stick, (9)",
     )
-    # A smooth curve connects the orbits. A multiplier passes 1 in each fold. From the outermost whirl on, orbits are
-    # therefore stable where the load falls, and unstable where it rises.
+    # A multiplier passes 1 in each fold. From the outermost whirl on, orbits are therefore stable where the load
+    # falls, and unstable where it rises.
     number = np.arange(len(found["branch load"]))
     fine = np.linspace(0.0, number[-1], 20 * number[-1] + 1)
     load = PchipInterpolator(number, found["branch load"])(fine)

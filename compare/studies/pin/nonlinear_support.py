@@ -22,12 +22,12 @@ from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import PinOnDisc
 
-# --- Pins and a disc on supports that harden or have a stop, and their starts
+# --- Pins and a disc on supports that harden or have a stop
 
 HARDENING = replace(CENTRED, hardening=0.5)
 STOP = replace(CENTRED, stop_gap=0.6, stop_stiffness=2.0)
 PINS = {"hardening": HARDENING, "stop": STOP}
-"""Fig. 4 without its offset. At all friction forces below, the whirl of each pin turns slower than the disc."""
+"""Fig. 4 without its offset; at all ``LOADS``, each whirl turns slower than the disc."""
 
 LAWS = (
     f"C₃ = {HARDENING.hardening:g} N/m³ without a stop, and C_s = {STOP.stop_stiffness:g} N/m beyond "
@@ -40,13 +40,13 @@ LOADS = (0.04, 0.1, 0.2)  # μN in N; at the smallest one, the pin does not reac
 
 SHIFTED = [replace(pin, offset=FIG4.offset) for pin in PINS.values()]
 
-SUPPORTS = {"support": tuple(PINS)}  # labels of the elements that belong to each support
+SUPPORTS = {"support": tuple(PINS)}  # labels of the elements of each support
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 """X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""
 
 RESTING = {"offset": 0.8, "friction_force": 0.9}
-"""Offset in m and friction force in N that put the equilibrium into the nonlinear range of either law."""
+"""Offset (m) and friction force (N) that put the equilibrium into the nonlinear range of either law."""
 
 BESIDE = 0.005  # distance in m of the starts from the equilibrium
 
@@ -57,17 +57,17 @@ STICKING = replace(
     FIG5, friction_force=0.2, disc_speed=1.0, offset=0.15, hardening=5.0, stop_gap=0.1, stop_stiffness=1.0
 )
 TOLERANCE = 10 * WORKING
-"""Tolerance of motions whose error is then only a hundredth of the resolution."""
+"""For motions whose error is then only a hundredth of the resolution."""
 
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
 GROWING_LOADS = (0.12, 0.06, 0.03)
-"""μN in N of pins without damping. The effect of friction on their final radius falls with it."""
+"""μN in N of pins without damping; its effect on their final radius falls with it."""
 
 GROWING_FROM = 0.3
 """Initial radius in m; closer to the axis, the largest of these friction forces holds a pin on the disc."""
 
-GROWN = 1e-6  # tolerance of growing motions; the claim only needs their ends
+GROWN = 1e-6  # for growing motions, whose ends suffice
 
 
 def curves() -> Data:
@@ -88,13 +88,13 @@ def exact_whirl(pin: PinOnDisc) -> Orbit:
 
 
 def radius_and_frequency(orbit: Orbit) -> tuple[float, float]:
-    """Return the amplitude in m of the first harmonic of x + iy, and its frequency in rad/s."""
+    """Return the amplitude (m) of the first harmonic of x + iy, and its frequency (rad/s)."""
     x, y = orbit.trajectory.states[:-1, :2].T
     return float(np.abs(np.fft.fft(x + 1j * y)[1])) / len(x), 2.0 * math.pi / orbit.period
 
 
 def end_of_growth(pin: PinOnDisc) -> float:
-    """Return the radius in m where the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
+    """Return the radius (m) where the support turns the pin as fast as the disc turns, Cρ + ... = mω²ρ."""
     excess = pin.mass * pin.disc_speed**2 - pin.stiffness
     if pin.hardening > 0.0:
         return math.sqrt(excess / pin.hardening)
@@ -107,8 +107,8 @@ def first_circle(pin: PinOnDisc) -> tuple[float, float, float, float]:
 
 @functools.cache
 def growing_time(pin: PinOnDisc) -> float:
-    """Return the time in s until a pin without damping sticks, plus 0.2 s."""
-    # Its angular momentum grows by μNρ, and its radius is at least ``GROWING_FROM``.
+    """Return the time (s) until a pin without damping sticks, plus 0.2 s."""
+    # The angular momentum grows by μNρ, and the radius is at least ``GROWING_FROM``.
     longest = pin.mass * end_of_growth(pin) ** 2 * pin.disc_speed / (pin.friction_force * GROWING_FROM)
     trajectory = simulate(pin, first_circle(pin), [0.0, longest], tolerance=GROWN)
     return trajectory.stick_phases[0].start + 0.2

@@ -38,8 +38,8 @@ HEADING = 0.7
 class Throw:
     """A throw with uniform deceleration, of a disc with the inertia J/(mR²).
 
-    ``sliding`` and ``rim`` are U and W in m/s at the start; W has the sign of the spin. ``force`` and ``moment`` are
-    those of friction over μN and μNR while the disc moves.
+    ``sliding`` and ``rim`` are the initial U and W in m/s; W has the sign of the spin. ``force`` and ``moment`` are
+    those of friction over μN and μNR.
     """
 
     name: str
@@ -92,7 +92,7 @@ RING = (
 """Throws of a ring; if U = W, the share |cos χ/2| of the friction at the point χ acts along U, on average 2/π."""
 
 POINTS: Mapping[int, tuple[Throw, ...]] = {3: RING[:2], 6: RING[:2]}
-"""Throws by number of points; sliding and spinning together has no closed form on points."""
+"""Throws by number of points; combined sliding and spinning has no closed form on points."""
 
 FULL = (
     Throw("slides", 0.5, SPEED, 0.0, force=1.0),
@@ -101,12 +101,12 @@ FULL = (
 )
 """Throws of a full disc.
 
-The force is (4/3π)·((1 + ε²)·E − (1 − ε²)·K)/ε, with the modulus ε = U/W of E and K (Farkas et al. 2003); at ε = 1 it
-is 8/3π.
+The force is (4/3π)·((1 + ε²)·E − (1 − ε²)·K)/ε, with the modulus ε = U/W of E and K (Farkas et al. 2003). It is 8/3π
+at ε = 1.
 """
 
 TO_REST = np.array([0.0, 0.5, 1.25])
-"""Sample times as fractions of the time to rest."""
+"""Sample times over the time to rest."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times of a full disc, which a regularised law need not bring to rest."""
@@ -149,7 +149,7 @@ class Way:
 
 
 WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Way(by_part, 4e-10)}
-"""Functions by engine; ``Annulus`` and ``exudyn_models.forces.slip_potential`` document the errors."""
+"""Quadrature errors are documented in ``Annulus`` and ``exudyn_models.forces.slip_potential``."""
 
 
 def way_of(engine: Engine) -> Way:
@@ -171,11 +171,11 @@ SEEN = (
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""Takes a throw, times and a tolerance; returns the states at the times."""
+"""Takes a throw, times and a tolerance; returns the states."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:
-    """Return the function that simulates throws of a disc on ``points``, or on a ring, with ``engine``."""
+    """Return the function that simulates throws of a disc on ``points``, or on a ring."""
 
     def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
         return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
@@ -270,7 +270,7 @@ TAKEN = {
         r"both: $\frac{8}{3\pi}\,\mu N$, $\frac{8}{9\pi}\,\mu NR$",
     ),
 }
-"""Labels with the friction on the throws, in their order."""
+"""Labels with the friction of each throw."""
 
 DASHES = ("-", "--", (0.0, (1.0, 1.5)))
 

@@ -19,19 +19,16 @@ PARTS = ("real part", "imaginary part")
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
     """Return the distance of ``end``, shape (...), from the steady state.
 
-    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` seconds, where r is the
-    decay ``rate`` in 1/s of the slowest mode. The largest change from ``earlier``, shape (n, ...), determines a: the
-    quantity over one period of its oscillation that ends ``delay`` before the end.
+    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` s, where r is the decay
+    ``rate`` in 1/s of the slowest mode. The largest change since ``earlier``, shape (n, ...), determines a; the
+    earlier samples cover one oscillation that ends ``delay`` before the end.
     """
     change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
     return np.asarray(change / np.expm1(rate * delay))
 
 
 class Settled(NamedTuple):
-    """A quantity at the end of a long simulation, its numerical error and its ``remaining_transient``.
-
-    The error is the largest over time, because a single one may be small by chance.
-    """
+    """Final value of a long simulation, its largest numerical error over time and its ``remaining_transient``."""
 
     value: FloatArray
     error: FloatArray
@@ -49,8 +46,8 @@ def settled(
 ) -> Settled:
     """Return the final value of a quantity in a simulation of ``duration`` s.
 
-    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` except the first, which is 0.
-    ``period`` in s is that of the transient's oscillation; see ``remaining_transient`` for the others.
+    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` after the first, which is 0.
+    ``period`` in s is that of the transient's oscillation; ``remaining_transient`` explains ``delay`` and ``rate``.
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
     found = refined(lambda asked: track(times, asked), tolerance)
@@ -59,10 +56,9 @@ def settled(
 
 
 class Rates(NamedTuple):
-    """Eigenvalues in 1/s of small deviations from n steady motions.
+    """Eigenvalues in 1/s, shape (n, m), of small deviations from n steady motions.
 
-    Those from simulations and from a linearisation have the shape (n, m) and the same order; the ``error`` (n,) is
-    that of the measured ones.
+    ``error``, shape (n,), is that of the ``measured`` eigenvalues; the ``predicted`` ones have their order.
     """
 
     measured: ComplexArray

@@ -1,8 +1,8 @@
 """Clutch of a passenger car on a bench: the drivetrain at one speed, and the equivalent disc of the reference.
 
-The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) holds the vehicle's speed. During steady motion the
-torsional spring carries a constant torque. The clutch disc then obeys (19) with b and Ω of the brake instead of the
-shaft. Both models agree to rounding error, although one has five coordinates and the other three.
+The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) holds the vehicle's speed. In steady motion the torque
+of the torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake instead of the shaft. A
+model with five coordinates and one with three agree to rounding error.
 """
 
 from __future__ import annotations
@@ -33,13 +33,12 @@ if TYPE_CHECKING:
 SOURCE = "passenger car of exudyn_models.drivetrain.parameters; torque and slip are assumed"
 
 RPM = math.pi / 30.0
-"""One revolution per minute in rad/s."""
 
 BRAKE = 100.0
 """b of the brake in N m s/rad; the slip settles with a time constant J/b = 0.008 s."""
 
 HELD = 1e18
-"""Inertia of a flywheel with constant speed, in kg m²: 100 N m reduce it by 1e-16 rad/s in 1 s."""
+"""Inertia in kg m² of a flywheel with constant speed: 100 N m reduce it by 1e-16 rad/s in 1 s."""
 
 EPSILON = 1e-3
 """ε in m/s; the facings slip a thousand times faster, so friction is Coulomb's."""
@@ -69,7 +68,7 @@ def facings(car: Drivetrain, rings: int = 16) -> Annulus:
 
 
 def rotating_damping(car: Drivetrain, slip: float, torque: float) -> float:
-    """Return D in N s/m, the friction damping of small motions of the disc's centre in a slipping clutch.
+    """Return the damping D in N s/m that friction of a slipping clutch exerts on small motions of the disc's centre.
 
     D = μN·∂F/∂U at U = 0, with μN such that the clutch transmits ``torque`` (N m) at ``slip`` (rad/s). It is the
     paper's μN/(2W), averaged over the facings.
@@ -163,14 +162,14 @@ def start_disc(model: DrivetrainModel, place: complex, velocity: complex) -> Non
 
 
 def centre(disc: FloatArray) -> ComplexArray:
-    """Return x + iy of the disc's coordinates or velocities, shape (n,) from (n, 3)."""
+    """Return x + iy of coordinates or velocities, shape (n,) from (n, 3)."""
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
 # --- Equilibrium and whirl of the reference's equivalent disc
 
 RINGS = 16
-"""Number of rings of the reference's annulus."""
+"""Rings of the reference's annulus."""
 
 
 def rest_of(car: Drivetrain, operation: Operation, rings: int = RINGS) -> SpinningEquilibrium:

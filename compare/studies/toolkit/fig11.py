@@ -14,8 +14,6 @@ from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTer
 from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Shared by the parts of the study of Fig. 11
-
 RING = FIG11
 
 SIX = replace(FIG11, contact_points=6)
@@ -37,9 +35,9 @@ def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
 def integrated(
     disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
 ) -> FloatArray:
-    """Return the states at equidistant times up to ``until`` s, shape (samples, 6), from (19) without ``simulate``.
+    """Integrate (19) without ``simulate``; return states at equidistant times up to ``until`` s, shape (samples, 6).
 
-    The disc must slide all the time.
+    The disc must always slide.
     """
     friction = plain.by_law(disc.friction_force, contact_of(disc))
     run = solve_ivp(
@@ -54,7 +52,7 @@ def integrated(
     return np.asarray(run.y.T)
 
 
-# --- Parameter planes around the disc of Fig. 11, and the curves that bound its motions there
+# --- Parameter planes, and the curves that bound the motions in them
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),

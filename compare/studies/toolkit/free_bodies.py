@@ -4,12 +4,11 @@ With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (1
 
     U' = −g·F,  W' = −g·G/c,  F = ∂P/∂U, G = ∂P/∂W,
 
-and F and G depend only on ε = U/W. So δ = ln ε obeys W·δ' = −g·q(δ), q = F/ε − G/c. The zero δ* of q is attracting,
-and ln W, time and distance are integrals over δ. The integration variable is u = ln|δ − δ*|, down to a distance at
-which δ counts as constant. The speed N = ε*·U + c·W then decreases at the rate g·P(ε*, 1), with an error of only
-second order because F and G are derivatives of one function. The remaining time is N/(g·P).
+and F and G depend only on ε = U/W. So δ = ln ε obeys W·δ' = −g·q(δ), q = F/ε − G/c. The zero δ* of q, which exists
+for 1/2 < c < 2, is attracting, and ln W, time and distance are integrals over u = ln|δ − δ*|.
 
-δ* exists for 1/2 < c < 2.
+Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), and the remaining time is
+N/(g·P). Its error is of second order because F and G are derivatives of one function.
 
 Speeds are in m/s, lengths in m, and g is 1 m/s², so times and distances are those for μN = m·g.
 """
@@ -33,7 +32,7 @@ NEAR = 1e-7
 """|δ − δ*| below which δ counts as constant; its square is the error relative to the remaining time."""
 
 LARGEST = 40.0
-"""Largest |δ| in the search for the terminal ratio."""
+"""Largest |δ| in the search for δ*."""
 
 
 class Stop(NamedTuple):
@@ -91,7 +90,7 @@ class Slowing:
         for span in itertools.pairwise(edges):
             passed = solve_ivp(rates, span, passed, method="LSODA", rtol=1e-13, atol=1e-15).y[:, -1]
         rim, total = math.exp(passed[0]), passed[1:]
-        # The final phase has the terminal ratio of speeds, with the same N.
+        # The final phase has the terminal ratio of speeds and the same N.
         terminal = math.exp(self.terminal)
         _, along_rim = mean_directions(terminal, 1.0)
         rim *= (terminal * at(last)[0] + self.inertia) / (terminal**2 + self.inertia)

@@ -11,11 +11,11 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Initial states of a pin that sticks to the disc, and its release
+# --- Stuck pins and their release
 
 
 def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle in rad of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
+    """Return the angle in rad where the holding force on a stuck pin is smallest, by (7) that of (C − mω²) − iβω."""
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 

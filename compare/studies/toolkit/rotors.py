@@ -10,11 +10,11 @@ import numpy as np
 from reference_model.systems import FloatArray
 
 NUMERICAL_DAMPING = 0.8
-"""Spectral radius of generalised-α, below 1 to damp out vibrations that a jump of friction excites."""
+"""Spectral radius of generalised-α, below 1 to damp vibrations that a jump of friction excites."""
 
 
 class Rotors:
-    """Rotors with inertias in kg m², initial speeds in rad/s and an initial angle of the last one in rad."""
+    """Rotors with inertias in kg m², initial speeds in rad/s and the initial angle of the last one in rad."""
 
     def __init__(self, inertias: Sequence[float], speeds: Sequence[float], last_angle: float = 0.0) -> None:
         import exudyn as exu  # deferred, because the command line must start without it
@@ -47,10 +47,10 @@ class Rotors:
         tolerance: float = 1e-8,
         breaks: Sequence[float] = (),
     ) -> FloatArray:
-        """Return times in s and the sensor values after each step, one column each; the model keeps its state.
+        """Continue the motion; return times in s and the sensor values after each step, one column each.
 
-        The run stops and continues at the ``breaks``, so the times contain them. ``steps`` have equal size, and with
-        DOPRI5 they only limit the size of its own steps, which have a local error of ``tolerance``.
+        The run stops and continues at the ``breaks``, so the times contain them. All ``steps`` have equal size.
+        DOPRI5 subdivides them for a local error of ``tolerance``.
         """
         import exudyn as exu
 

@@ -1,8 +1,8 @@
 """Steady motions of a disc as fixed points of an engine's flow over a fraction of a revolution.
 
-In steady motion the centre of a disc rests or, without offset, moves on a circle around the axis. In axes that rotate
-with the centre, a disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc
-has turned by 2π/n in these axes. One search finds both.
+The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with the
+centre, a disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has
+turned by 2π/n in these axes. One search finds both.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ SYMMETRY = 6
 """Divisor of the revolution for a continuous ring, whose symmetry allows any value."""
 
 Y = 1
-"""Index of y in the state and of the angle θ in the unknowns, which replaces y = 0."""
+"""Index of y in the state and of the angle θ in the unknowns, which replaces y."""
 
 TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """Rate of change of a state that rotates about the axis at 1 rad/s, without the disc's angle."""
@@ -43,10 +43,10 @@ TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
 
 @dataclass(frozen=True, eq=False)
 class SteadyMotion:
-    """A motion that repeats itself after a rotation, with its period in s.
+    """A motion that repeats after a rotation, with its period in s.
 
     ``states``, shape (SAMPLES + 1, 6), are equidistant over one period, in axes that rotate with the centre. The
-    ``frequency`` of the centre about the axis (zero if it rests) and the ``spin`` are means in rad/s.
+    centre's ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
     """
 
     states: FloatArray
@@ -68,11 +68,10 @@ class SteadyMotion:
 def steady_motion(
     engine: Engine, disc: DiscOnDisc, guess: ArrayLike, tolerance: float
 ) -> SteadyMotion | None:
-    """Return the steady motion near ``guess`` from the engine's flow; None if the search fails.
+    """Return the steady motion near the state ``guess``, shape (6,); None if the search fails.
 
-    The unknowns are the state and the period T. After T the state repeats, except for the disc's angle. Without
-    offset, the centre moves around the axis by an angle θ during T; then y = 0 at the start and θ is unknown instead.
-    The ``guess``, shape (6,), is a state near the motion, with y = 0 without offset.
+    The unknowns are the state and the period T; all but the disc's angle repeats after T. Without offset, the centre
+    moves around the axis by an angle θ during T. Then θ replaces the unknown y, and y of the ``guess`` must be 0.
     """
     guess = np.asarray(guess, dtype=float)
     circles = disc.offset == 0.0
@@ -84,7 +83,6 @@ def steady_motion(
     sizes = np.array([length, length, speed * length, speed * length, speed])
 
     def parts(unknowns: FloatArray) -> tuple[FloatArray, float, float]:
-        """Return the state, the period and the rotation about the axis."""
         part, turn = unknowns[:-1] * sizes, 0.0
         if circles:
             part[Y], turn = 0.0, float(unknowns[Y])
@@ -138,9 +136,8 @@ def mode_growth(
 ) -> complex:
     """Return growth rate and frequency in 1/s of the slowest mode of small deviations from a steady motion on a ring.
 
-    Two simulations of ``duration`` s start on opposite sides of the motion, at ± ``displacement`` of shape (6,), so
-    even powers of the deviation cancel in their difference. The left eigenvector selects the slowest mode other than
-    a free phase.
+    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), from the motion; even powers of the
+    deviation cancel in their difference. The left eigenvector selects the slowest mode other than a free phase.
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):
@@ -148,7 +145,7 @@ def mode_growth(
     # Nothing depends on the angle, so its component of this eigenvector is zero.
     values, left = np.linalg.eig((sliding_jacobian(disc, motion.state) - frequency * TURNING).T)
     slowest = left[:, np.argmin(np.abs(values - eigenvalue))]
-    # Two samples per radian: in these axes slow modes oscillate at about the natural frequency or below.
+    # Two samples per radian: in these axes slow modes oscillate at most at about the natural frequency.
     times = np.linspace(0.0, duration, 2 * math.ceil(disc.natural_frequency * duration) + 1)
     outwards, inwards = (
         rotated(
@@ -181,7 +178,7 @@ def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> floa
     """Return the μN in N where the self-centred equilibrium ends: (5) for a disc.
 
     Above it friction can supply both the force C·|X0|, which holds the disc on the axis, and the moment b|ω − Ω| of
-    the shaft. Both lie within the limit surface, which is convex, if C·|X0| + b|ω − Ω|/R <= μN.
+    the shaft. The limit surface is convex and contains both if C·|X0| + b|ω − Ω|/R <= μN.
     """
     springs, moment = disc.stiffness * abs(disc.offset), shaft_torque(disc) / disc.contact_radius
 

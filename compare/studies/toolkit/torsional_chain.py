@@ -1,8 +1,8 @@
 """Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
 
-Torques and capacities are piecewise harmonic, so speeds and angles have closed forms between events. An event is the
-end of a clutch's slip, or a torque that exceeds its holding capacity. After an event, a search over all combinations
-of modes finds the consistent one. Roots are exact to rounding; nothing is integrated numerically.
+Torques and capacities are piecewise harmonic, so the motion between events has a closed form. An event is the end of
+a clutch's slip, or a torque that exceeds its holding capacity. After an event, a search over all combinations of
+modes finds the consistent one. Roots are exact to rounding.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ class Harmonic:
         return np.asarray(self.amplitude * np.sin(self.rate * t + self.phase))
 
     def integrals(self, begin: float, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the first and the second integral over time from ``begin`` to ``t``, in N m s and N m s²."""
+        """Return the first and second integrals over time from ``begin`` to ``t``, in N m s and N m s²."""
         tau, value, a, w = t - begin, self.phase + self.rate * begin, self.amplitude, self.rate
         if w == 0.0:
             return a * math.sin(value) * tau, 0.5 * a * math.sin(value) * tau**2
-        # the difference of two cosines as a product, which avoids cancellation at short times
+        # the difference of two cosines as a product avoids cancellation at short times
         once = 2.0 * a / w * np.sin(value + 0.5 * w * tau) * np.sin(0.5 * w * tau)
         twice = a / w * (math.cos(value) * tau - (np.sin(w * t + self.phase) - math.sin(value)) / w)
         return np.asarray(once), np.asarray(twice)
@@ -59,8 +59,8 @@ Pieces = Sequence[tuple[float, Harmonic]]
 class Chain:
     """Rotors in a row with inertias in kg m² and external torques, and the clutches between them.
 
-    A clutch transmits its capacity >= 0 during slip and holds up to ``static_ratio`` times as much; it is open if the
-    amplitude is 0.
+    A slipping clutch transmits its capacity, and a stuck one holds up to ``static_ratio`` times as much. It is open
+    if the amplitude is 0.
     """
 
     inertias: Sequence[float]
@@ -79,7 +79,7 @@ class Chain:
         return np.diff(np.eye(len(self.inertias)), axis=0)
 
     def in_force(self, t: float) -> list[Harmonic]:
-        """Return the harmonics of torques and capacities in effect from the time ``t`` in s."""
+        """Return the harmonics of torques and capacities in effect from ``t`` in s."""
         return [[f for begin, f in pieces if begin <= t][-1] for pieces in (*self.torques, *self.capacities)]
 
     def transmitted(self, modes: Sequence[int]) -> FloatArray:

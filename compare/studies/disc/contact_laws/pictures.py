@@ -25,7 +25,7 @@ LOOKS = {
     "points12": ("12 points", SKY),
     "points24": ("24 points", BLACK),
 }
-"""Labels and colours of the laws in the figure of errors."""
+"""Labels and colours of the laws."""
 
 NEAR = (0.2, 5.0)  # range of U/W with visible errors
 

@@ -23,14 +23,14 @@ SOURCE = "Fig. 11; the motion of the disc is our choice"
 SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
-"""Ratios U/W of the motions, not too close to U = W, where friction is not differentiable."""
+"""Ratios U/W, not too close to 1, where friction is not differentiable."""
 
-SPEED = 0.3  # speed √(U² + W²) in m/s, ν̄_r of (22)
+SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
 
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Position of the disc's centre as x + iy in m, direction of its slip in rad and angle of the disc in rad."""
+"""Position of the disc's centre as x + iy in m, direction of its slip and angle of the disc in rad."""
 
-STEP = 2e-3  # time step in s of the velocities whose differences give the initial acceleration
+STEP = 2e-3  # time step in s
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
@@ -39,15 +39,15 @@ DIFFERENCES = (
 """Finite-difference weights of fourth and third order for the derivative at the first of five times."""
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""Ratios U/W, including 1, for the comparison of the closed form with the integral."""
+"""Ratios U/W for the comparison of the closed form with the integral."""
 
 RESTING = (INNER, 0.75 * R, R)
-"""Radii in m of the resting point of the annulus whose convergence is measured."""
+"""Radii in m of a point at rest on the annulus."""
 
 RINGS = (8, 9, 10, 11, 12)
-"""Numbers of rings on either side of that radius, few enough for errors well above rounding."""
+"""Rings on either side of that radius, few enough for errors well above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli, in units of their mean radius
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli over their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)
@@ -67,7 +67,6 @@ NOTE = (
     "Friction on the continuous ring equals the integral (20)", equation="(20)", resolution=1e-3, note=NOTE
 )
 def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """``ratios`` contains U/W."""
     predicted = [theory.ring_by_quadrature(slip, rim)[0] for slip, rim in motions(ratios)]
     return friction_on(engine, FIG11, ratios, "ring", predicted)
 
@@ -79,13 +78,12 @@ def on_ring(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
     note=NOTE,
 )
 def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
-    """``ratios`` contains U/W."""
     predicted = [theory.sum_of_points(slip, rim, ANGLE, 6) for slip, rim in motions(ratios)]
     return friction_on(engine, SIX, ratios, "points6", predicted)
 
 
 def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
-    """Return the slip u of the centre and R·(ω − φ̇) of the rim in m/s, for all U/W and both signs of the rim's."""
+    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the rim's."""
     alphas = [math.atan2(1.0, ratio) for ratio in ratios]
     return [
         (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))
@@ -97,9 +95,9 @@ def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
-    """Compare F_x, F_y (per μN) and M (per μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
+    """Compare F_x, F_y (over μN) and M (over μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
 
-    According to (19), they are the initial acceleration times inertia plus the resistance of springs and dampers.
+    According to (19), friction is the initial acceleration times inertia plus the resistance of springs and dampers.
     ``name`` is the key of the law in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
@@ -116,8 +114,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # A single number may be right by chance, so the largest noise of all motions and the largest truncation error in
-    # a motion count.
+    # A single error may be small by chance, so the largest noise of all motions and the largest truncation error in a
+    # motion count.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(
@@ -133,7 +131,7 @@ def friction_on(
     )
 
 
-# --- Contact laws against the integral, each other and the textbook, without an engine
+# --- Contact laws without an engine
 
 OF_EXPANSION = (
     "Predicted: the integral (20), and the integral with the three terms of (22). Measured: the closed forms. Error: "
@@ -273,8 +271,8 @@ def slopes_converge() -> Measured:
 
 
 def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
-    """Compare the order of convergence of a ``function`` of an annulus with the number of rings with ``order``."""
-    # Gauss's rule on powers and logarithms has an error in even powers of 1/(n + ½).
+    """Compare the order of convergence of a ``function`` of an annulus with ``order``."""
+    # The error of Gauss's rule on powers and logarithms has even powers of 1/(n + ½).
     fineness = 1.0 / (np.array(RINGS) + 0.5)
     observed = []
     for radius in RESTING:

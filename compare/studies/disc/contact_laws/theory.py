@@ -18,16 +18,15 @@ from reference_model.systems import FloatArray
 
 R = FIG11.contact_radius
 
-NUMBERS = (6, 12, 24)  # numbers of points on the ring
-ZOOMS = 30  # number of times the search range for the points' largest error is halved
-INNER = 2.0 / 3.0 * R  # inner radius in m of the annulus with the outer radius R
+NUMBERS = (6, 12, 24)  # numbers of points
+ZOOMS = 30  # halvings of the search range for the points' largest error
+INNER = 2.0 / 3.0 * R  # inner radius in m of the annulus; the outer one is R
 
-# --- Friction on a contact ring by (20) to (22)
-# These functions do not use the reference's closed forms, which claims compare with them. ``slip`` is the slip of the
-# disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x, F_y, M)
-# in units of μN and μN·R.
+# --- Friction on a contact ring by (20) to (22), independent of the reference's closed forms. ``slip`` is the slip of
+# the disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x,
+# F_y, M) in units of μN and μN·R.
 
-EVEN = 16  # number of equally spaced angles, exact for the mean of trigonometric polynomials up to order 15
+EVEN = 16  # equally spaced angles, exact for the mean of trigonometric polynomials up to order 15
 
 
 def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
@@ -49,7 +48,7 @@ def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
     """Return the integral (20) by adaptive quadrature, and its error."""
     from scipy.integrate import quad_vec
 
-    # Start at the point that slips slowest, so its kink is at the ends of the range.
+    # Start at the slowest point, so its kink is at the ends of the range.
     start = math.atan2(slip.imag, slip.real) - math.copysign(0.5 * math.pi, rim)
     value, error = quad_vec(
         lambda angle: directions(slip, rim, angle), start, start + 2.0 * math.pi, epsabs=1e-12, epsrel=0.0
@@ -76,11 +75,11 @@ def average_of_expansion(slip: complex, rim: float) -> FloatArray:
 
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 
-QUADRATURE = 1e-11  # error of an integral, ten times the requested tolerance of the quadrature
+QUADRATURE = 1e-11  # error of an integral, ten times the tolerance of the quadrature
 
 
 def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> FloatArray:
-    """Return (F_x, F_y, M) of ``law`` in units of μN and μN·R, for ``slip`` and ``rim`` in m/s."""
+    """Return (F_x, F_y, M) of ``law`` for ``slip`` and ``rim`` in m/s."""
     force, moment = law.force_and_moment(slip, rim / R, angle)
     return np.array((force.real, force.imag, moment / R))
 
@@ -110,8 +109,8 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
 def top(error: Callable[[float], float], noise: float) -> tuple[float, float, float]:
     """Return the U/W of the largest ``error``, its size, and the error of U/W.
 
-    On a parabola of curvature c, points within √(2·noise/c) cannot be distinguished from the maximum. The tolerance
-    of the search is 1e-6.
+    On a parabola of curvature c, points within √(2·noise/c) of the maximum cannot be distinguished from it. The
+    search has a tolerance of 1e-6.
     """
     from scipy.optimize import minimize_scalar
 
@@ -129,7 +128,7 @@ def top(error: Callable[[float], float], noise: float) -> tuple[float, float, fl
 
 @functools.cache
 def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
-    """Return the results of ``worst`` for all ``numbers`` of points, for force and moment, shape (n, 2, 4)."""
+    """Return ``worst`` for all ``numbers`` of points, for force and moment, shape (n, 2, 4)."""
     return np.array([[worst(number, part) for part in (slice(2), slice(2, 3))] for number in numbers])
 
 
@@ -157,8 +156,8 @@ def worst(number: int, part: slice) -> tuple[float, float, float, float]:
 
 
 def curves() -> Data:
-    """Return force along the slip and moment of all laws over U/W, for points their range over φ."""
-    # Exclude U = W, where a point rests and the error is smaller than next to it.
+    """Return force along the slip and moment over U/W by law; for points, their range over φ."""
+    # Exclude U = W, where a point rests and the error is smaller than nearby.
     near = np.geomspace(1e-5, 0.1, 50)
     ratios = np.unique(np.concatenate((np.geomspace(0.05, 20.0, 240), 1.0 - near, 1.0 + near)))
     data = {"ratio": ratios}

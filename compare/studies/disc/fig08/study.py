@@ -33,7 +33,7 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 RING = FIG8
 SIX = replace(RING, contact_points=6)
-"""The disc on the continuous ring (20), and that of the paper's simulations."""
+"""Discs on the continuous ring (20), and on points as in the paper's simulations."""
 
 PAPER_LAW = ThreeTermRing(FIG8.contact_radius)  # contact law (23)
 
@@ -42,23 +42,23 @@ SOURCE = "Fig. 8; X0 = 0.1 m as in Figs. 4 to 6, which the paper omits; the fric
 SOURCE_OF_GRID = "Fig. 8; friction forces and X0 are our choice, the paper omits X0"
 
 LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
-"""Friction forces in N. The paper does not print a range; the equilibrium ends slightly above C·X0 = 0.1 N."""
+"""μN in N, which the paper omits; the equilibrium ends slightly above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
-"""Friction force in N, and the time span in s of the measured decay, late enough for small deviations."""
+"""μN in N, and the time span in s of the measured decay, late enough for small deviations."""
 
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
-"""Friction forces in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
+"""μN in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)  # friction forces in units of the largest one with an equilibrium
+STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN over the largest one with an equilibrium
 
 STICKING_TIME = 80.0
 """Time in s within which friction can accelerate a disc from 95 % to the speed of the master disc."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
-"""Offsets X0 in m; the paper does not print X0, 0.1 m is the value of Figs. 4 to 6."""
+"""X0 in m, which the paper omits; Figs. 4 to 6 have 0.1 m."""
 
-TOLERANCE = WORKING / 10  # tolerance of motions to a position of rest, which the claims resolve to 1e-9
+TOLERANCE = WORKING / 10  # tolerance of motions to rest, which the claims resolve to 1e-9
 BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
 RESOLUTION = 1e-9  # resolution of positions in m and spins in rad/s on the continuous ring
 
@@ -70,7 +70,7 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23), to check (26)."""
+    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))
@@ -118,12 +118,12 @@ def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
     found = refined(
         lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
     )
-    # A single number may be right by chance, and two runs may agree to within the tolerance.
+    # A single error may be small by chance, and two runs may agree to within the tolerance.
     return Measurement(found.value, np.asarray(found.largest + TOLERANCE * disc.offset))
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
-    """Return the means of x, y and spin of the steady motion found from (26), which deviates by a few per cent."""
+    """Start from (26), which deviates by a few per cent."""
     place, *_ = positions_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
@@ -193,7 +193,7 @@ def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = 
             functools.partial(_decay, engine, with_load(RING, load), span), WORKING
         )
         measured.append(later)
-        # Nonlinear terms fall with the deviation, so they are smaller in the later half than the change shows.
+        # Nonlinear terms fall with the deviation, so the change exceeds them in the later half.
         errors.append(np.max(error) + np.hypot(*(later - earlier)))
     return Measured(
         predicted=real_and_imaginary(
@@ -251,7 +251,7 @@ def ends(engine: Engine) -> Measured:
 
 
 def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
-    """Return μN in N at the axis, extrapolated from ``loads`` at ``distances`` in m; NaN unless these decrease."""
+    """Return μN in N at the axis, extrapolated from ``distances`` in m; NaN unless these decrease."""
     if not np.all(np.diff(distances) < 0.0):
         return math.nan
     return float(KroghInterpolator(distances, np.array(loads))(0.0))

@@ -108,7 +108,7 @@ def _growth(
         )
 
     found = refined(rates, theory.ORBIT_TOLERANCE)
-    # Two flows that agree to within the tolerance may hide an error of the deviation of that size.
+    # Two flows that agree to within the tolerance may hide an error of that size.
     unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for *_, duration in motions]
     with_larger = found.plus(np.abs(rates(theory.ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)
@@ -116,7 +116,7 @@ def _growth(
 
 # --- Discs that stick to the master disc
 
-REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force that holds a sticking disc
+REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force on a sticking disc
 
 
 @STUDY.claim(
@@ -219,7 +219,7 @@ def coexist(engine: Engine) -> Measured:
     return answers_of(*asked(sticks_and_slides, theory.TOLERANCE), system=orbit.system)
 
 
-# --- The disc on six points, as the paper simulated it
+# --- The disc on six points, as in the paper's simulations
 
 SIX = replace(theory.RING, contact_points=6)
 
@@ -325,7 +325,7 @@ def _slipped_in_reference(load: float) -> tuple[float, ...]:
     return tuple(_slipped(REFERENCE, load, TIGHTEST))
 
 
-# --- Ends of whirl and equilibrium by formulas and by the reference's orbits
+# --- Ends of whirl and equilibrium without an engine
 
 
 @STUDY.claim(

@@ -20,11 +20,11 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Steady motions found with an engine, on the ring or on points, and orders of small gaps
+# --- Steady motions of an engine, on the ring or on points, and orders of small gaps
 
 
 Cases = tuple[tuple[float, int | None], ...]
-"""Steady motions: μN in N, and the number of a whirl without offset or None for the equilibrium with the offset."""
+"""μN in N, and the number of a whirl without offset or None for the equilibrium with the offset."""
 
 
 @functools.lru_cache(maxsize=8)
@@ -39,7 +39,7 @@ def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> M
 
 
 def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
-    """Return the means over one steady motion on a ring or ``points``, NaN if none is found.
+    """Return the means over a steady motion on a ring or ``points``, NaN if none is found.
 
     They are radius, frequency and spin of a whirl in units of μN/(βk), k and ω, or x, y and spin of the equilibrium
     in units of X0 and ω.
@@ -58,8 +58,8 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    A single number may be right by chance. The motions add the tolerance times ``amplified``, because two flows may
-    agree to within the tolerance.
+    A single error may be small by chance, and two flows may agree to within the tolerance. So the tolerance times
+    ``amplified`` is added.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -70,7 +70,7 @@ def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, Float
     """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
     The gaps are series in every second power, so the order between neighbours converges like the square of the
-    variable. ``error`` is the error of the gaps, shape (3, 1).
+    variable. ``error``, shape (3, 1), is that of the gaps.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
@@ -216,7 +216,7 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) 
         lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls],
         theory.ORBIT_TOLERANCE,
     )
-    # The multiplier of a shift in time is 1; the next closest one shows how much errors of the flow are amplified.
+    # The multiplier of a shift in time is 1; the next closest shows the amplification of errors of the flow.
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
     found = with_tolerance(found, predicted[:, 2] / np.array(distances)[:, 1])
     loads = [load for load, _ in whirls]

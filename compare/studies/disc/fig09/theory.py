@@ -40,53 +40,54 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)  # circles far from the fold, each with twice the friction force of the one before
+ORDERS = slice(2, 5)  # circles far from the fold; the friction force doubles from one to the next
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
-"""Friction forces in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
+"""μN in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
 
 HALVED_OFFSETS = (0.2, 0.1, 0.05)
 OFFSET_LOAD = 0.02
-"""Offsets X0 in m and friction force μN in N of the whirls that show the effect of X0."""
+"""X0 in m and μN in N of the whirls that show the effect of X0."""
 
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Friction forces in N and initial radii, in units of (9), of sticking discs."""
-LATEST = 1.1  # duration of the simulation of a disc outside, in units of the release time (7)
+"""μN in N and initial radii over (9) of sticking discs."""
+LATEST = 1.1  # duration of the simulation of a disc outside, over the release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
-"""Friction force in N and duration in s of deviations from the whirl, and from equilibria."""
+"""μN in N and duration in s of deviations from the whirl, and from equilibria."""
 
-DISPLACED = 1e-4  # initial size of a deviation, in units of the distance from the axis
+DISPLACED = 1e-4  # initial deviation over the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
 """Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
 
 TOLERANCE = 3e-8
-"""Tolerance of sticking motions; moderate, because a regularised law is expensive close to Coulomb's law."""
+"""Tolerance of sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
-"""End of the axis in N: twice C·X0, about which sticking begins. The paper does not print a range."""
+"""End of the axis in N, which the paper omits: twice C·X0, about which sticking begins."""
 
 BRANCH_START = 0.1
 BRANCH_END = 1.0
 BRANCH_STEP = 0.24
-"""First μN of the branch in units of C·X0, its last crossing of the x axis in units of X0, and the relative
-decrease of successive crossings."""
+"""First μN of the branch over C·X0, its last crossing of the x axis over X0, and the relative decrease of successive
+crossings.
+"""
 
-OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # friction forces in N of whirls before the branch
+OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""Friction force slightly above the fold's, in units of C·X0, and its smallest value in N."""
+"""μN slightly above the fold's, over C·X0, and its smallest value in N."""
 
 FOLD_STEP = 0.12  # relative step of the branch to the fold
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
-"""Offsets X0 in m for the fold of the whirl and the ends of the other motions."""
+"""X0 in m for the fold of the whirl and the ends of the other motions."""
 
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
@@ -120,7 +121,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 
 @functools.cache
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
-    """Return the reference's whirl with an offset: the outer one, or the inner, unstable one if ``which`` is 1."""
+    """Return the outer whirl with an offset, or the inner, unstable one if ``which`` is 1."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
@@ -133,8 +134,8 @@ def radius_of_pin(load: float) -> float:
 def spin_of_large_whirl(disc: DiscOnDisc) -> float:
     """Return the limit in rad/s of the whirl's spin for large μN.
 
-    Then RS is much smaller than U = (ω − k)·μN/(βk), so F = 1 and M = R²S/(2U). The torsional balance
-    b(ω − Ω − S) = μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
+    Then RS is much smaller than U = (ω − k)·μN/(βk), so F = 1 and M = R²S/(2U). The torsional balance b(ω − Ω − S) =
+    μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
     """
     k = disc.natural_frequency
     friction = disc.contact_radius**2 * disc.damping * k / (2.0 * (disc.disc_speed - k))
@@ -143,11 +144,11 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 
 
 def first_order_shift(disc: DiscOnDisc) -> complex:
-    """Return the time mean of x + iy in m of a disc's whirl with a small offset, exact to first order in X0.
+    """Return the time mean of x + iy in m of a disc's whirl, to first order in X0.
 
     In axes that turn with the circle the acceleration k²X0 due to the offset turns backwards. The deviation from the
-    circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component,
-    (a_x + i·a_y)/2, is fixed in space.
+    circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
+    + i·a_y)/2, is fixed in space.
     """
     circle = whirls(replace(disc, offset=0.0))[0]
     jacobian = turning_frame_jacobian(replace(disc, offset=0.0), circle.state)
@@ -169,7 +170,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
 
 
-# --- Where the motions end
+# --- Ends of the motions
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
@@ -203,10 +204,10 @@ def smallest_load(disc: DiscOnDisc) -> float:
 def weak_damping_load(disc: DiscOnDisc) -> float:
     """Return the friction force in N where the equilibrium loses its stability, to first order in β.
 
-    Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Small additional slip u = ż − iωz is
-    resisted by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies
-    (s + μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ. A pin has
-    F' = 0 and therefore σ = 0.
+    Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Friction resists a small additional slip
+    u = ż − iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s +
+    μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ. A pin has F' = 0,
+    so σ = 0.
     """
     slip = disc.disc_speed * disc.offset
     law = contact_of(disc)
@@ -306,7 +307,7 @@ def rests_and_sticking() -> Data:
     """Return μN, radius and spin of equilibria, the largest μN of stable ones, and μN and radius (9) of stick."""
     end = last_load(RING)
     sticking = np.geomspace(end, LARGEST_LOAD, 100)[1:]
-    loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer if the radius is steep
+    loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep
     found = [equilibrium_of(with_load(RING, load)) for load in loads]
     return {
         "rests": np.array(

@@ -20,22 +20,22 @@ from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
 
 ROUND = np.linspace(0.0, 300.0, 1201)  # times in s, over more than one period of the modulation
-OF_RESTS = 200 * WORKING  # tolerance of the motions on six points, where single points come to rest
+OF_RESTS = 200 * WORKING  # tolerance of the motions on six points, which come to rest singly
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
-"""Offsets X0 in m of the long simulations, the last one from the other figures."""
+"""X0 in m of the long simulations; the last is that of the other figures."""
 
 ENDS_UNTIL = 720.0  # duration in s of the long simulations
-LOOKED_AT = 240.0  # length in s of their evaluated end, a period of the modulation
+LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
 ENDS_TOLERANCE = 1e-4  # tolerance of the long simulations
 
 SWING = 0.005
 """Smallest swing in rad/s of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
 
-ORBITS_EXTENT = 1e-4  # smallest swing in m of the radius of a motion that counts as a whirl, not as rest
+ORBITS_EXTENT = 1e-4  # smallest swing in m of a whirl's radius
 
 MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
-"""State close to the modulated motion at that offset, found by raising X0 in small steps."""
+"""State close to the modulated motion at ``theory.BOTH_STABLE``, found by raising X0 in small steps."""
 
 KINDS = ("rest", "whirl", "modulated")
 
@@ -96,7 +96,6 @@ def error_of_monodromy(orbit: Orbit) -> float:
     swept=("offset",),
 )
 def ends(engine: Engine, offsets: Sequence[float] = OFFSETS) -> Measured:
-    """``offsets`` are in m."""
     critical, _ = critical_of(engine)
     predicted = [2 if offset < critical else 1 if offset < theory.rest_offset() else 0 for offset in offsets]
     extents: dict[float, list[list[float]]] = {}

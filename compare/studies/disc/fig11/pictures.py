@@ -32,7 +32,7 @@ from reference_model.systems import FloatArray
 BRANCH = np.array(
     [*np.linspace(0.0, 0.015, 11), 0.016, 0.0166, 0.0175, 0.0185, 0.0192, 0.0196, 0.0198, 0.0199, 0.01993]
 )
-"""Offsets X0 in m of the whirls in the figure, up to the fold at 0.019930 m; the equilibrium is stable there."""
+"""X0 in m of the whirls, up to the fold at 0.019930 m; the equilibrium is stable there."""
 
 
 K = RING.natural_frequency
@@ -92,7 +92,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
-    """Return the states of the disc on contact ``words``, by engine (or theory)."""
+    """Return the states by engine (or theory) under the key ``words``."""
     return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
 
 
@@ -234,7 +234,7 @@ def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
     """Return the amplitudes in m of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
 
-    They are the Fourier coefficients of the cycle in axes that turn with the carrier, where it is periodic.
+    They are Fourier coefficients of the cycle, which is periodic in axes that turn with the carrier.
     """
     times = TIMES[-1] - period + period * np.arange(4096) / 4096.0
     z = CubicSpline(TIMES, states[:, 0] + 1j * states[:, 1])(times) * np.exp(-1j * carrier * times)

@@ -34,11 +34,11 @@ UNTIL = 700.0  # duration in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
-TRIED = (0.0072, 0.00725, 0.0073)  # offsets X0 in m between which the critical X0 is interpolated
+TRIED = (0.0072, 0.00725, 0.0073)  # X0 in m between which the critical X0 is interpolated
 
 SAMPLES_A_TURN = 16
 
-BOTH_STABLE = 0.0073  # offset X0 in m slightly above the critical one
+BOTH_STABLE = 0.0073  # X0 in m slightly above the critical one
 
 STUDY = Study.beside(
     __file__,
@@ -60,20 +60,12 @@ class SteadyWhirl:
     On the continuous ring the whirl is a circle. On n points it also has a ripple, which repeats each time the disc
     has turned by 2π/n relative to the line from the axis to its centre.
 
-    Parameters
-    ----------
-    state : array of shape (6,)
-        A state on the whirl.
-    period
-        Period in s.
-    turn, advance
-        Rotation of the whirl about the axis in a period, in rad, and the disc's additional rotation.
-    eigenvalue
-        Growth rate and frequency (> 0) in 1/s of the least damped pair.
-    mode, projection : complex array of shape (6,)
-        Right and left eigenvector, with product 1. The share projection·d of a deviation d, in axes that turn with
-        the whirl, grows with the eigenvalue.
-
+    - ``state``: a state on the whirl, shape (6,).
+    - ``period``: in s.
+    - ``turn``, ``advance``: rotation of the whirl in a period in rad, and the disc's additional rotation.
+    - ``eigenvalue``: growth rate and frequency (> 0) in 1/s of the pair.
+    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). In axes that turn with the
+      whirl, the share projection·d of a deviation d grows with the eigenvalue.
     """
 
     state: FloatArray
@@ -164,10 +156,9 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 
 
 def modulations(states: FloatArray) -> FloatArray:
-    """Return period, turn, smallest and largest radius and spin of each modulation, shape (n, 6).
+    """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    Units are s, rad, m and rad/s. ``states`` are those at ``TIMES``. A modulation is the interval between successive
-    maxima of the radius.
+    ``states`` are those at ``TIMES``. A modulation is the interval between successive maxima of the radius.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -227,7 +218,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     """Return the critical X0 in m, its error, the slope of the modulus in 1/m, and the middle whirl of ``TRIED``.
 
     A parabola through the moduli at ``TRIED`` gives the X0 of modulus 1. The error is the change with a straight line
-    through the two nearest points, which exceeds the effect of a cubic term. Raises ``RuntimeError`` if there is no
+    through the two nearest points, which exceeds the effect of a cubic term. Raise ``RuntimeError`` if there is no
     whirl, or if it is not nearly critical.
     """
     orbits: list[Orbit] = []
@@ -260,7 +251,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 
 @functools.cache
 def _whirl_of_reference() -> Orbit:
-    """Return the reference's whirl at the first X0 of ``TRIED``, the first guess for shooting."""
+    """Return the first guess for shooting."""
     return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
 
 
@@ -272,8 +263,8 @@ def critical_offset_of_reference() -> float:
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    Newton's method finds the orbit with the exact derivative of the flow, by integrating (19) together with its
-    linearisation. Raises ``RuntimeError`` if it does not converge.
+    Newton's method finds the orbit by integrating (19) together with its linearisation. Raise ``RuntimeError`` if it
+    does not converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:
@@ -310,6 +301,6 @@ def rest_offset() -> float:
 
 
 def extents(run: Trajectory, last: int = 0) -> list[float]:
-    """Return the smallest and largest radius (m) and spin (rad/s) of the ``last`` samples, or of all samples."""
+    """Return smallest and largest radius (m) and spin (rad/s) of the ``last`` samples, or of all."""
     radius, spin = run.radius[-last:], run.states[-last:, 5]
     return [radius.min(), radius.max(), spin.min(), spin.max()]

@@ -27,12 +27,12 @@ from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
-"""Initial state of a motion whose contact points all slip for 100 s (our choice)."""
+"""Start of a motion whose contact points all slip for 100 s (our choice)."""
 
 SLIDING = np.linspace(0.0, 100.0, 101)
 
 OF_CYCLE = 10 * WORKING  # tolerance of the motion that settles on the modulated cycle
-AMPLITUDE = 1e-4  # initial size of a deviation, in units of the whirl's radius
+AMPLITUDE = 1e-4  # initial deviation over the whirl's radius
 DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
 TOLERANCE = 2000 * WORKING  # tolerance for deviations, small compared with ``AMPLITUDE``
 
@@ -63,7 +63,7 @@ def slides(engine: Engine, contact: str) -> Measured:
     return Measured(
         predicted=predicted,
         value=found.value,
-        # A single number may be right by chance.
+        # A single error may be small by chance.
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": SLIDING},
         components=components_of(RING),
@@ -123,8 +123,7 @@ def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str
 def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
     """Return growth rate and frequency in 1/s of a deviation from the whirl under the law ``contact``, shape (2,).
 
-    They are the slopes of straight lines through ln|q| and the phase of q over time. The error is the 95 % interval
-    of the fit plus the changes with twice the deviation and at a smaller tolerance.
+    The error is the 95 % interval of the fit plus the changes with twice the deviation and at a smaller tolerance.
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
@@ -137,7 +136,7 @@ def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = 
 def deviation(
     engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, amplitude: float, tolerance: float
 ) -> tuple[FloatArray, ComplexArray]:
-    """Return times in s, once a period, and the share of the pair in a deviation, 1 at the start.
+    """Return times in s, once a period, and the pair's share q of a deviation, 1 at the start.
 
     The deviation is half the difference of two simulations that start on opposite sides of the whirl, which removes
     even powers.
@@ -169,7 +168,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 
 
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
-    """Return times in s, once a period, and the size of the pair's share in units of the radius.
+    """Return times in s, once a period, and the size of the pair's share over the radius.
 
     The deviation starts ten times larger than in :func:`deviation`, and grows to the modulated cycle in 900 s.
     """

@@ -9,7 +9,7 @@ from compare.output.figures import GREY, curve, engines_in, new_figure, points
 from compare.studies.disc.free_ring.theory import deviation
 
 LEAST_DEVIATION = 1e-8
-"""Smallest |ln U/W| in the figure; smaller values show an engine's tolerance, not the motion."""
+"""Smallest |ln U/W| in the figure; smaller values show an engine's tolerance."""
 
 
 def draw(data: ByEngine) -> Figures:

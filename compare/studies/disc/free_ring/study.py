@@ -1,4 +1,4 @@
-"""Ends of sliding and spinning, times and places of rest, heat, and the existence of a final ratio."""
+"""Ends of sliding and spinning, times and positions of rest, heat, and the existence of a final ratio."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
-# --- The end of sliding and spinning
+# --- End of sliding and spinning
 
 
 @STUDY.claim(
@@ -41,7 +41,7 @@ def end_together(
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
-        """Return the delay of the centre's rest after the rim's, over the time to rest, from two pairs of samples."""
+        """Return the delay of the centre's rest after the rim's over the time to rest, by two pairs of samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - theory.REMAINING[:3])
@@ -51,9 +51,9 @@ def end_together(
         return np.array(found)
 
     found = refined(apart, theory.TOLERANCE)
-    # The zero of a line through two speeds has an error of three errors of a speed over its slope, > 0.4·g here.
+    # Three errors of a speed over its slope, which is above 0.4·g.
     noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
-    # While the ratio still changes, the speeds are not straight lines; earlier samples show this more clearly.
+    # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
     return Measured(
         system=theory.TABLE,
@@ -66,7 +66,6 @@ def end_together(
 
 
 def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
-    """Return the zeros of straight lines through neighbouring samples, last pair first."""
     return times[:-1] + speeds[:-1] * (times[:-1] - times[1:]) / (speeds[1:] - speeds[:-1])
 
 
@@ -237,7 +236,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     )
 
 
-# --- Time and position of rest, and the energy balance
+# --- Rest and energy balance
 
 
 @STUDY.claim(
@@ -265,7 +264,7 @@ def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) ->
 
 
 def stops_of(engine: Engine, throws: Sequence[theory.Throw]) -> Measurement:
-    """Return the time to rest in s, and x, y in m and the angle in rad at rest, shape (n, 4)."""
+    """Return the time to rest (s), x, y (m) and the angle (rad), shape (n, 4)."""
 
     def found(tolerance: float) -> FloatArray:
         trajectories = [theory.thrown(engine, throw, tolerance) for throw in throws]
@@ -319,7 +318,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     )
 
 
-# --- Existence of a terminal ratio, and the published ratio of a disc
+# --- Existence of a terminal ratio, and its published value for a disc
 
 
 @STUDY.claim(

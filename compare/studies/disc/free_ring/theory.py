@@ -1,14 +1,11 @@
-"""A ring thrown on a table at rest: limits of its motion, which supplement the integrals of ``toolkit.free_bodies``.
+"""A ring thrown on a table at rest: limits of its motion, with the symbols and units of ``toolkit.free_bodies``.
 
-For c = 1 the slopes of friction grow logarithmically close to the ratio 1: Wδ' = −(2/π)·g·δ·L with
-L = ln(8/|δ|) − 2, and W = (2/π)·g·t with the remaining time t. Therefore L = A/t and |δ| = 8·e^(−2)·exp(−A/t), which
-decays faster than any power.
+For c = 1, friction's slopes grow logarithmically near the ratio 1: Wδ' = −(2/π)·g·δ·L with L = ln(8/|δ|) − 2, and W =
+(2/π)·g·t with the remaining time t. So L = A/t, and |δ| = 8·e^(−2)·exp(−A/t) decays faster than any power.
 
-A terminal δ* exists for 1/2 < c < 2. For c < 1/2 spinning dies out faster than sliding, W/U ~ t^(1/(2c) − 1), because
-F → 1 and G → W/(2U). For c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio has the
-same limits but converges more slowly than any power.
-
-Symbols and units are those of ``toolkit.free_bodies``.
+For c < 1/2 there is no terminal δ*: spinning dies out faster, W/U ~ t^(1/(2c) − 1), because F → 1 and G → W/(2U). For
+c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio has the same limits but converges
+more slowly than any power.
 """
 
 from __future__ import annotations
@@ -41,22 +38,17 @@ TABLE = replace(
 )
 """The ring of Fig. 8 without springs, dampers and shaft on a master disc at rest, J = mR²."""
 
-DECELERATION = TABLE.friction_force / TABLE.mass  # deceleration g in m/s² of a ring that only slides
-SPEED = 0.3  # initial √(U² + W²) in m/s, with the speeds U of the centre and W of the rim
-HEADING = 0.7  # direction of the throw in rad from the x axis
+DECELERATION = TABLE.friction_force / TABLE.mass  # g in m/s²
+SPEED = 0.3  # initial √(U² + W²) in m/s, with U of the centre and W of the rim
+HEADING = 0.7  # of the throw, in rad from the x axis
 
 
 @dataclass(frozen=True)
 class Throw:
     """Initial conditions of a ring.
 
-    Parameters
-    ----------
-    inertia
-        c = J/(mR²).
-    degrees
-        Initial atan(W/U) in degrees: 0 only slides, 90 only spins; a negative value reverses the spin.
-
+    ``inertia`` is c = J/(mR²), and ``degrees`` the initial atan(W/U): 0 only slides, 90 only spins, and a negative
+    value reverses the spin.
     """
 
     inertia: float
@@ -93,25 +85,25 @@ DEGREES = (8.0, -33.0, 57.0, -70.0)
 RINGS = tuple(Throw(1.0, degrees) for degrees in DEGREES)
 
 OTHERS = tuple(Throw(inertia, degrees) for inertia in (0.7, 1.4) for degrees in (15.0, -75.0))
-"""Throws with a terminal ratio other than 1, from both sides of the ratio."""
+"""Throws with a terminal ratio other than 1, from both sides."""
 
 INTEGRATED = (*RINGS, *OTHERS)
 
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Throws with J/(mR²) outside 1/2 to 2."""
 
-INTERVALS = 400  # number of intervals of the time to rest, for the heat and the figure
+INTERVALS = 400  # of the time to rest, for the heat and the figure
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
-"""Remaining times of the samples close to rest, as fractions of the time to rest."""
+"""Remaining times of samples over the time to rest."""
 
-NEARNESSES = (7.0, 9.0)  # values of A/t of the samples of the approach to the ratio 1
+NEARNESSES = (7.0, 9.0)  # values of A/t of the samples
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times for the fit of a power law, as fractions of the time to rest."""
+"""Remaining times for the fit of a power law, over the time to rest."""
 
 TOLERANCE = WORKING / 10
-"""Tolerance for ratios close to rest, where less than a thousandth of the initial speed is left."""
+"""Tolerance for ratios near rest, where less than a thousandth of the initial speed is left."""
 
 SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and starts are our choice"
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
@@ -127,7 +119,7 @@ def nearness(delta: ArrayLike) -> FloatArray:
 
 
 def deviation(nearness: ArrayLike) -> FloatArray:
-    """Return |δ| at the ``nearness`` L, the inverse of :func:`nearness`."""
+    """Return |δ| at the ``nearness`` L."""
     return np.asarray(8.0 * np.exp(-2.0 - np.asarray(nearness)))
 
 
@@ -144,7 +136,7 @@ def curves() -> Data:
     return {"inertia": inertias, "ratio": np.array(ratios)}
 
 
-# --- Simulated throws and their samples
+# --- Simulated throws
 
 
 @functools.cache

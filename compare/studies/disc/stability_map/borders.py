@@ -32,16 +32,16 @@ BOTH_LAWS = "(19), (20), (23)"  # equations of claims on both the ring and (23)
 FAR_FROM_KINK = 0.02
 """Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
 
-ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)  # speeds ω in rad/s of the onsets by eigenvalues
+ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)  # in rad/s
 
 UNSTABLE_LOADS = (0.3, 0.7)
-"""Friction forces as fractions of the interval from the fold to the Hopf point of (23)."""
+"""Shares of the interval of μN from the fold to the Hopf point of (23)."""
 
 BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
-"""Factors on the state of the larger whirl at these forces."""
+"""Factors on the state of the larger whirl at these loads."""
 
 
-# --- The traced curves against independent eigenvalues, and the borders next to Fig. 11
+# --- Traced curves against independent eigenvalues, and the borders next to Fig. 11
 
 CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
     f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
@@ -244,14 +244,14 @@ def jumps() -> Measured:
     return answers_of(on_ring, data=data)
 
 
-# --- Stability of the whirl of Fig. 11 on the ring, by (23) and for a pin
+# --- Stability of the whirl of Fig. 11
 
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 
 SIGN = "Sign of the largest real part."
 
 SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
-"""Speeds ω of the pins in rad/s; their β is between ``LOW`` and ``HIGH`` in N s/m."""
+"""ω of the pins in rad/s; their β is between ``LOW`` and ``HIGH`` in N s/m."""
 
 
 @STUDY.claim(
@@ -273,7 +273,7 @@ def stable_by_23() -> Measured:
 
 
 def _side(law: str, sign: float) -> Measured:
-    """Check that the largest real part of Fig. 11's whirl by ``law`` has this ``sign``."""
+    """Check the sign of the largest real part of Fig. 11's whirl by ``law``."""
     (whirl,) = whirls(theory.DISC, LAWS[law])
     values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
     near = theory.nearest(

@@ -225,7 +225,7 @@ def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray
 
 
 def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the coordinates of ``points`` (shape (n, 2 or more)) in the figure, which shows ω − Ω instead of Ω."""
+    """Return the coordinates of ``points``, shape (n, 2 or more), in the figure, which shows ω − Ω instead of Ω."""
     first, second = points[:, 0], points[:, 1]
     return (first, first - second) if plane == "speeds" else (first, second)
 

@@ -27,29 +27,29 @@ LINES = (
     ("speeds", "disc_speed", 1.3),
     ("inertia", "polar_inertia", 0.4),
 )
-"""Lines of simulated discs on both sides of the ring's Hopf curves: plane, fixed parameter, its value."""
+"""Lines across the ring's Hopf curves: plane, fixed parameter, its value."""
 
-ASIDE = 0.01  # relative distance of these simulations from the curves
+ASIDE = 0.01  # relative distance from the curves
 
 DEVIATION = 0.02
-"""Initial deviation from the whirl, as a share of the distance to U = W, where a point of the ring comes to rest."""
+"""Initial deviation from the whirl over the distance to U = W, where a point of the ring comes to rest."""
 
 FLOW_TOLERANCE = 100 * WORKING  # tolerance of simulations whose small differences are evaluated
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
-"""State x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""
+"""x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""
 
 LOADS = (
     *(0.0195, 0.0208, 0.0211, 0.0214, 0.0217, 0.0221, 0.0225),
     *(0.0232, 0.024, 0.0247, 0.0251, 0.0255, 0.028),
 )
-"""Friction forces in N in the bifurcation diagram."""
+"""μN in N in the bifurcation diagram."""
 
 
-# --- Small deviations from the whirl on both sides of the Hopf curves
+# --- Small deviations from the whirl next to the Hopf curves
 
 Lines = Sequence[tuple[str, str, float]]
-"""Plane, fixed parameter and its value, for each line."""
+"""Plane, fixed parameter and its value."""
 
 BESIDE_CURVES = (
     f"Discs {100.0 * ASIDE:g} % away from the curves on either side. Starts on the whirl, and slightly off it "
@@ -112,7 +112,7 @@ def _place(one: Deviation) -> str:
 
 @functools.lru_cache(maxsize=4)
 def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
-    """Simulate a small deviation from the whirl on both sides of the ring's Hopf curves that ``lines`` cross."""
+    """Simulate small deviations on both sides of the Hopf curves that ``lines`` cross."""
     found = []
     for plane, disc in discs_beside(lines):
         whirl = min(whirls(disc), key=lambda whirl: abs(whirl.eigenvalues[1].real))
@@ -133,8 +133,8 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
     """Return the growth rate λ in 1/s of a small deviation in the plane of the slow pair, and its error.
 
-    Two motions start on either side of the whirl. Half their difference, in the frame that turns with the whirl and
-    projected onto the plane by the left eigenvector, grows by exp(λt).
+    Half the difference of two motions that start on either side of the whirl, in axes that turn with it and projected
+    by the left eigenvector, grows by exp(λt).
     """
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
     which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
@@ -158,7 +158,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
     return found, math.hypot(*error) + abs(rate(2.0 * DEVIATION, FLOW_TOLERANCE) - found)
 
 
-# --- Final motions in each region of the map and next to its borders
+# --- Final motions
 
 
 @STUDY.claim(
@@ -184,7 +184,7 @@ def coexist(
 
 
 def starts_in_regions() -> tuple[theory.Start, ...]:
-    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # it turns with the master disc
+    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 
@@ -210,7 +210,7 @@ def starts_in_regions() -> tuple[theory.Start, ...]:
 def coexisting() -> tuple[theory.Start, ...]:
     """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off.
 
-    The modulated cycle coexists with the whirl 0.3 % outside the curves, and is gone 2 % outside.
+    The modulated cycle coexists with the whirl 0.3 % outside the curves, but not 2 % outside.
     """
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
     starts = []
@@ -238,7 +238,7 @@ def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
 
 
 def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
-    """Return friction force in N and smallest and largest final radius in m, shape (n, 3)."""
+    """Return μN in N and smallest and largest final radius in m, shape (n, 3)."""
     rows = []
     for load in loads:
         slow = load in (0.0208, 0.0211)  # the whirl is stable, but disturbances decay slowly

@@ -60,8 +60,8 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error in 1/s.
 
-    The error is that of the matrix, by the condition of the eigenvalue, plus that of the state: if U and W are nearly
-    equal, the slopes of friction depend on their small difference.
+    The error includes the effect of the state: if U and W are nearly equal, the slopes of friction depend on their
+    small difference.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -75,7 +75,7 @@ def critical_eigenvalues(
 
 
 def spectra(wanted: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
-    """Return the ``critical_eigenvalues`` of the whirls at all points of the curves of one kind."""
+    """Return ``critical_eigenvalues`` at all points of the curves of one kind."""
     found = []
     for (plane, law, kind), branches in curves.items():
         for curve in branches if kind == wanted else ():
@@ -106,7 +106,7 @@ def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
-    """Return the parameter value where a pair of the whirl crosses the imaginary axis, and its error.
+    """Return the value where a pair of the whirl crosses the imaginary axis, and its error.
 
     The value is NaN if no pair crosses within 0.1 % of ``near``.
     """
@@ -140,7 +140,7 @@ def curves() -> Data:
 
 
 def section() -> Data:
-    """Return friction force in N, radius in m and growth rate in 1/s of Fig. 11's whirls over α, for each law."""
+    """Return μN in N, radius in m and growth rate in 1/s of Fig. 11's whirls over α, for each law."""
     data: Data = {}
     alphas = np.linspace(0.45, np.pi / 2.0 - 1e-3, 240)
     for name, law in LAWS.items():
@@ -157,17 +157,17 @@ def section() -> Data:
 
 SETTLED = 600.0
 WATCHED = 350.0
-"""Time in s until motions have settled, and length in s of the final interval that is evaluated."""
+"""Time in s until motions have settled, and length in s of the evaluated end."""
 
 SLOWLY_SETTLED = 2400.0
 """Settling time in s just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3  # radius in units of R below which a motion counts as rotation about the axis
+AXIS = 1e-3  # largest radius over R of rotation about the axis
 
 MODULATED = 0.05
-"""Smallest (largest − smallest)/(largest + smallest) radius of a motion that counts as modulated."""
+"""Smallest (largest − smallest)/(largest + smallest) radius of a modulated motion."""
 
 
 ENDS = ("rotation", "whirl", "modulated cycle", "sticking")

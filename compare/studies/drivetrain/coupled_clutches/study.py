@@ -50,7 +50,7 @@ from reference_model.systems import FloatArray
 
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]
-"""Steps in s of the runs that continue to the end. The claim about the order only needs the initial slip phase."""
+"""Steps in s of the runs to the end."""
 
 EVENTS = tuple(
     f"clutch {clutch + 1} {'sticks' if mode == STUCK else 'releases'} at {time:.4f} s"
@@ -88,7 +88,7 @@ def _is_native(engine: Engine) -> bool:
 
 @functools.lru_cache(maxsize=2)
 def _runs(engine: Engine) -> list[Run]:
-    """Return the runs with Exudyn's own connector or with explicit steps, each twice as coarse as the one before."""
+    """Return runs with Exudyn's connector or with explicit steps, each twice as coarse as the previous one."""
     if _is_native(engine):
         return [with_bristles(*of_one) for of_one in BRISTLES]
     return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
@@ -317,7 +317,7 @@ def published_switches() -> Measured:
 # --- Figure
 
 EXACT = 1e-7
-"""In rad/s: lower end of the axis of errors."""
+"""Lower end of the axis of errors in rad/s."""
 
 
 def draw(data: ByEngine) -> Figures:

@@ -20,63 +20,63 @@ from reference_model.systems import FloatArray
 # --- Parameters
 
 INERTIAS = (1.0, 1.0, 1.0, 1.0)
-"""Inertias of the rotors in kg m²."""
+"""In kg m²."""
 
 SPEED = 10.0
-"""Initial speed of the first rotor in rad/s; the others are at rest."""
+"""Initial speed of the first rotor in rad/s; the others rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
 """Amplitude in N m and frequency in Hz of the torque on the first rotor."""
 
 RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
-"""Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load in N of each clutch."""
+"""Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load of a clutch in N."""
 
 OPENS = 0.2
 """Frequency in Hz of the cosine that unloads the first clutch; the load stays 0 after its first root."""
 
 OPEN_FROM = 0.25 / OPENS
 ENGAGED_FROM = (0.4, 0.9)
-"""In s, when the second and the third clutch receive the whole load at once."""
+"""Times in s when the second and the third clutch receive the whole load at once."""
 
 BREAKS = (*ENGAGED_FROM, OPEN_FROM)
 UNTIL = 1.5
 """End of the motion in s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
-"""Times of the compared speeds in s, at least 5 ms from any event. A clutch releases 0.3 ms after 1 s."""
+"""Times of compared speeds in s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
 
 EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""In m/s, which at the radius of 1 m equals rad/s."""
+"""In m/s, which equals rad/s at the radius of 1 m."""
 
 TOLERANCE = 1e-9
 """Tolerance of explicit steps in rad/s, a millionth of the effect of the smallest ε."""
 
 SMALL_EPSILON = 1e-5
-"""ε of implicit runs in m/s. Its effect is at most a tenth of the effect of the shortest of ``STEPS``."""
+"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest of ``STEPS``."""
 
 STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
 """Steps of implicit runs in s."""
 
 ALL_SLIP_UNTIL = 0.7
-"""In s, one of ``SHOWN``; up to this time all closed clutches slip."""
+"""In s, one of ``SHOWN``; until then all closed clutches slip."""
 
 LETS_GO_FROM = 0.82
-"""In s, a time while the first and the second clutch stick, before the first one releases."""
+"""In s, before the first clutch releases; the first and the second stick."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
-"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector. All errors double from each to the next.
+"""Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
 
 The damping of the bristle in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
 """
 
 DECAY = 1e-4
-"""Range of slip in rad/s where the friction of that connector falls from its static to its sliding value."""
+"""Range of slip in rad/s where that connector's friction falls from its static to its sliding value."""
 
 PUBLISHED_TOLERANCE = 1e-6
 """Relative tolerance of DASSL in the published result."""
 
 ACCUMULATED = 10.0
-"""Assumed ratio of the error of the whole motion to the tolerance of a step."""
+"""Assumed ratio of the motion's error to the tolerance of a step."""
 
 
 def first_load(time: float) -> float:
@@ -123,7 +123,7 @@ def exact() -> Motion:
 
 @functools.cache
 def switches() -> list[tuple[float, int, int]]:
-    """Return times in s, clutch numbers and new modes of all events that friction alone causes."""
+    """Return time (s), clutch number and new mode of each event that friction alone causes."""
     found = [
         (time, clutch, mode)
         for clutch in range(len(INERTIAS) - 1)
@@ -170,7 +170,7 @@ def first_and_slips(values: FloatArray) -> FloatArray:
     return np.column_stack((values[:, 0], np.diff(values, axis=1)))
 
 
-# --- The four rotors in Exudyn, with our contact and with Exudyn's own connector with bristles
+# --- Exudyn with our contact, and with its own bristle connector
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ class Run:
     speeds: FloatArray
 
     def at(self, times: FloatArray) -> FloatArray:
-        """Return the interpolated speeds at other times. The run contains each break twice."""
+        """Return interpolated speeds. The run contains each break twice."""
         return np.column_stack([np.interp(times, self.times, speed) for speed in self.speeds.T])
 
     @property
@@ -200,10 +200,10 @@ def _rotors() -> Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` in s with ``add_ring_friction`` at ε in m/s.
+    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε in m/s.
 
-    The run takes implicit steps of ``step`` in s, or explicit steps if there is no ``step``. It also stops at the
-    times ``SHOWN``, so speeds there are not interpolated.
+    It takes implicit steps of ``step`` (s), or explicit steps without ``step``. It stops at the times ``SHOWN``, so
+    speeds there are not interpolated.
     """
     from exudyn_models import add_ring_friction
 
@@ -229,10 +229,10 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
 
 
 def with_bristles(step: float, stiffness: float) -> Run:
-    """Return the run with Exudyn's own connector, for a bristle ``stiffness`` in N m/rad and a ``step`` in s.
+    """Return the run with Exudyn's own connector, for a bristle ``stiffness`` (N m/rad) and a ``step`` (s).
 
-    The connector has no input for the load, so a function sets its torques before each step. The resulting slip is
-    of second order in the step. A clutch without load is switched off, because its bristle would keep its grip.
+    The connector has no input for the load, so a function sets its torques before each step; the resulting slip is of
+    second order in the step. A clutch without load is switched off, because its bristle would hold on.
     """
     rotors = _rotors()
     mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS

@@ -23,7 +23,7 @@ from compare.studies.toolkit.drivetrain_bench import passenger_car
 MM = 1e3
 
 NO_WHIRL = "#d0d0d0"
-"""The hatching distinguishes it from a growth of zero."""
+"""Hatching distinguishes it from a growth of zero."""
 
 
 def draw(data: ByEngine) -> Figures:

@@ -131,8 +131,7 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
     return speed, 2.0 * radial(speed)[1] / slope
 
 
-# --- Steady motions on the bench: below the onset and with an offset, the disc comes to rest in space; above the
-# onset and without offset, it whirls on its stop.
+# --- Steady motions on the bench: rest below the onset, with an offset; whirl on the stop above it, without offset
 
 NOTE = (
     f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
@@ -143,9 +142,9 @@ NOTE = (
 
 
 class Steady(NamedTuple):
-    """A steady motion on the bench at ``speed`` in rpm, measured and predicted by the reference, shape (3,) each.
+    """A steady motion on the bench at ``speed`` (rpm), measured and predicted by the reference, shape (3,) each.
 
-    The values are x and y in m, or for a whirl the radius in m and the frequency in rad/s, and the slip in rad/s.
+    The values are x, y (m) and slip (rad/s), or for a whirl radius (m), frequency and slip (rad/s).
     """
 
     speed: float
@@ -208,7 +207,7 @@ def _measured(
     components: Sequence[str] = (),
     data: Mapping[str, ArrayLike] | None = None,
 ) -> Measured:
-    """Compare the values at index ``place`` for a disc with ``offset`` in m."""
+    """Compare the values at index ``place`` for a disc with ``offset`` (m)."""
     predicted = np.array([one.predicted.value[place] for one in motions])
     return Measured(
         predicted=predicted,
@@ -235,7 +234,7 @@ def _shown(motions: Sequence[Steady]) -> FloatArray:
 
 @functools.lru_cache(maxsize=4)
 def _motions(engine: Engine, speeds: tuple[float, ...], whirling: bool) -> tuple[Steady, ...]:
-    """Return the whirls at ``speeds`` in rpm without offset, or the states of rest with the car's offset."""
+    """Return whirls at ``speeds`` (rpm) without offset, or states of rest with the car's offset."""
     return tuple(_motion(speed, whirling) for speed in speeds)
 
 
@@ -244,7 +243,7 @@ def _motion(speed: float, whirling: bool) -> Steady:
     bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, 0.0 if whirling else car.offset)
 
     def by_reference(rings: int) -> tuple[FloatArray, float]:
-        """Return the values and the decay rate in 1/s of the slowest mode."""
+        """Return the values and the decay rate (1/s) of the slowest mode."""
         if whirling:
             whirl = whirl_of(car, bench, rings)
             values = (whirl.radius, whirl.frequency, bench.speed - whirl.spin)
@@ -260,7 +259,7 @@ def _motion(speed: float, whirling: bool) -> Steady:
 def _settled(car: Drivetrain, operation: Operation, rate: float, *, whirling: bool) -> Measurement:
     """Return x, y and slip, or for a whirl radius, frequency and slip, after all transients.
 
-    ``rate`` in 1/s is the decay rate of the slowest mode.
+    ``rate`` is the decay rate (1/s) of the slowest mode.
     """
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:

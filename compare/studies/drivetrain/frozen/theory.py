@@ -1,9 +1,9 @@
 """Predictions of the reference for the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
 
-The small motions have five coordinates: x and y of the disc's centre, its angle φ, the angle θ of the engine and ψ of
-the vehicle. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The
-transpose of this map applies friction to the disc and its whole reaction, the moment −(M + z×F), to the engine. In
-axes that turn with the whirl, the whirl is a fixed point, so its stability is an eigenvalue problem.
+The small motions have five coordinates: x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the
+vehicle. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The
+transpose of this map applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes
+that turn with the whirl, its stability is an eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -70,40 +70,39 @@ MODULATED = (6000.0, 0.6, 0.1)
 """Speed in rpm, torque in N m, and relative surplus of the load over the load that this torque needs."""
 
 WHIRLS = (MODULATED, (3800.0, 1.3, 0.05), (4500.0, 8.0, 0.01))
-"""More whirls with such values. The second is not modulated, the third touches the stop."""
+"""The second whirl is not modulated, the third touches the stop."""
 
 BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
-"""Relative surplus of the load, and torques in N m, from a small whirl to one that almost reaches the stop."""
+"""Surplus, and torques in N m from a small whirl to one that almost reaches the stop."""
 
 BETWEEN = (3900.0, 4300.0)
 """Speeds in rpm below and above the border."""
 
 TIME = 0.4
-"""Duration in s of the runs with small deviations."""
+"""Duration in s of runs with small deviations."""
 
 DEVIATION = 3e-3
-"""Initial deviation relative to the radius."""
+"""Initial deviation over the radius."""
 
 TOLERANCE = 20 * WORKING
 """Tolerance of the runs whose difference is taken."""
 
 PUSH, UNTIL = 0.2, 6.0
-"""For the modulated motion: initial deviation relative to the radius, and end in s."""
+"""Modulated motion: initial deviation over the radius, and end in s."""
 
 ROUGHER = 80.0
-"""For the modulated motion: ratio of its tolerance to the usual one."""
+"""Tolerance of the modulated motion over the usual one."""
 
 CYCLE_SAMPLE = 2e-3
 """Sampling interval of the modulated motion in s."""
 
 SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""Speeds of the map in rpm, from just above the natural frequency."""
+"""In rpm, from just above the natural frequency."""
 
 TORQUES = np.geomspace(0.2, 60.0, 32)
-"""Torques of the maps in N m."""
+"""In N m."""
 
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
-"""Surpluses of the map."""
 
 SURPLUS, SPEED = 0.1, 6000.0
 """Surplus in the map over speeds, and speed in rpm in the map over surpluses."""
@@ -117,7 +116,7 @@ CENTRE = slice(2, 4)
 
 @dataclass(frozen=True)
 class CarWhirl:
-    """A steady whirl of the clutch disc in a car whose engine and load both have a constant torque in N m.
+    """A steady whirl of the clutch disc in a car whose engine and load have constant torques in N m.
 
     ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
     ρ·βκρ of friction about its axis.
@@ -135,11 +134,11 @@ class CarWhirl:
 def whirl_under_surplus(
     car: Drivetrain, engine_speed: float, torque: float, surplus: float
 ) -> CarWhirl | None:
-    """Return the whirl of a clutch whose load exceeds the load that the torque needs by ``surplus``, or None.
+    """Return the whirl of a clutch whose load exceeds the needed one by the fraction ``surplus``, or None.
 
-    A centred disc would lock up under this load. The whirl reduces the friction moment: the ratio of the slip U of
-    the centre to the slip S of the rim is such that M(U, S) equals the torque. This ratio determines the force, and
-    the force determines the radius, ρ·β·κ(ρ) = μN·F. The slip is then S = (ω − κ)ρ, divided by the ratio.
+    A centred disc would lock up under this load. The whirl reduces the friction moment: M(U, S) equals the torque at
+    a certain ratio of the slips U of the centre and S of the rim. This ratio determines the force, and the force the
+    radius, ρ·β·κ(ρ) = μN·F. S is (ω − κ)ρ over the ratio.
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)
@@ -162,7 +161,7 @@ def whirl_under_surplus(
 
 @functools.lru_cache(maxsize=64)
 def _ratio_of_moment(law: Annulus, needed: float) -> float:
-    """Return the ratio U/S in m for the moment ``needed`` per unit of friction force (m)."""
+    """Return the ratio U/S (m) for the moment ``needed`` per unit of friction force (m)."""
     widest = 10.0 * law.outer_radius
     return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
 
@@ -182,7 +181,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
     slip = 1j * (whirl.frequency - omega) * x
     force, _ = law.force_and_moment(slip, whirl.slip, 0.0)
     changes = whirl.friction_force * law.jacobian(slip, whirl.slip, 0.0)[:, :3]
-    # Friction resists S with the moment on the disc. As a generalised force of S, this moment has a negative sign.
+    # Friction resists S with the moment on the disc, whose generalised force for S is negative.
     put = rate_to_slip.T @ np.diag([1.0, 1.0, -1.0])
     stiffness, damping = -put @ changes @ place_to_slip, -put @ changes @ rate_to_slip
     fx, fy = whirl.friction_force * force.real, whirl.friction_force * force.imag
@@ -203,7 +202,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
 def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
     """Return the matrix of small motions in axes that turn with ``frequency`` (rad/s), shape (8, 8).
 
-    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ. Only the twist of the angles has an effect.
+    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ; only the twist of the angles has an effect.
     """
     turned = matrix.copy()
     for first in (2, 7):
@@ -213,7 +212,7 @@ def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
 
 
 def of_modulation(matrix: FloatArray, frequency: float) -> ComplexArray:
-    """Return six eigenvalues in 1/s, slowest decay first, without those of free phase and free speed of the car."""
+    """Return six eigenvalues (1/s), slowest decay first, without those of free phase and free speed of the car."""
     values = np.linalg.eigvals(in_turning_axes(matrix, frequency)).astype(complex)
     values = values[np.argsort(np.abs(values))[2:]]
     return np.asarray(values[np.lexsort((-values.imag, -values.real))])
@@ -231,8 +230,8 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 def curves(every: int = 1) -> Data:
     """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
 
-    Over the speed in rpm: x, y at rest, and radius and frequency of a whirl. Over (torque, speed) and over
-    (torque, surplus): see :func:`whirl_growth`. The radius shows whether the disc touches the stop.
+    Over the speed (rpm): x, y at rest, and radius and frequency of a whirl. Over (torque, speed) and over (torque,
+    surplus): :func:`whirl_growth`.
     """
     car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
@@ -254,7 +253,7 @@ def curves(every: int = 1) -> Data:
 
 
 def whirl_growth(car: Drivetrain, speed: float, torque: float, surplus: float) -> FloatArray:
-    """Return the growth rate in 1/s of the modulation and the radius in m of the whirl; NaN if there is none."""
+    """Return the growth rate (1/s) of the modulation and the radius (m) of the whirl; NaN if there is none."""
     whirl = whirl_under_surplus(car, speed * RPM, torque, surplus)
     if whirl is None:
         return np.array([np.nan, np.nan])
@@ -281,8 +280,6 @@ def build(
     start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
     return model
 
-
-# --- The study
 
 STUDY = Study.beside(
     __file__,

@@ -35,16 +35,16 @@ OPEN = 0.7
 """Angle in rad that turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
-"""Magnification of radial motion in the pictures."""
+"""Magnification of radial motion."""
 
 SHOWN = (2000.0, 3100.0, 5000.0)
 """Speeds of the pictures in rpm."""
 
 FRAMES = 15
-"""Number of frames of each slow motion."""
+"""Frames of each slow motion."""
 
 SIZE = (330, 280)
-"""Width and height of the drivetrain in a frame, in pixels."""
+"""Size of the drivetrain in a frame, in pixels."""
 
 STEP = math.radians(48.0)
 """Rotation of the engine per frame in rad."""
@@ -176,7 +176,7 @@ def show(panel: Axes, image: Any, title: str) -> None:
 
 
 def time_of(found: Data, turns: float) -> float:
-    """Return the time when the speed of the engine without its ripple reaches ``turns`` (rpm)."""
+    """Return the time when the engine's speed without its ripple reaches ``turns`` (rpm)."""
     angle, times = found["engine"][:, 0], found["times"]
     smooth = np.polyfit(times, angle, 4)
     return float(np.interp(turns * RPM, np.polyval(np.polyder(smooth), times), times))

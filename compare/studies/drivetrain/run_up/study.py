@@ -39,13 +39,13 @@ IDLE, TOP = 800.0, 6000.0
 """Speeds in rpm."""
 
 TORQUE, RIPPLE = 100.0, 1.0
-"""Mean torque of the engine in N m, and amplitude of its firing order relative to the mean."""
+"""Mean torque of the engine in N m, and amplitude of its firing order over the mean."""
 
 SLIP, GAIN = 12.0, 0.05
 """Target slip in rad/s, and relative increase of the load per rad/s of excess slip."""
 
 TOLERANCE = 6.4e-6
-"""In the units of the state. The energy balance then has an error of 2.5e-7; the claim allows 1e-6."""
+"""Gives the energy balance an error of 2.5e-7; the claim allows 1e-6."""
 
 LINES_APART = 0.06
 """Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
@@ -54,11 +54,11 @@ SAMPLE = 5e-4
 """Sampling interval in s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
-"""Length of a window of the spectrum in turns of the engine, and samples per turn."""
+"""Window of the spectrum in turns of the engine, and samples per turn."""
 
 
 def duration(car: Drivetrain, top: float) -> float:
-    """Return the time in s until the mean torque has accelerated engine and vehicle from idle to ``top`` (rpm)."""
+    """Return the time (s) until the mean torque has accelerated engine and vehicle from idle to ``top`` (rpm)."""
     inertia = car.engine_inertia + car.disc_inertia + car.vehicle_inertia
     return (top - IDLE) * RPM * inertia / TORQUE
 
@@ -69,7 +69,7 @@ def transmitted(car: Drivetrain) -> float:
     return TORQUE * behind / (car.engine_inertia + behind)
 
 
-# --- Predictions of the reference for the reduced disc at frozen speeds of the run-up
+# --- Predictions of the reference for the reduced disc at frozen speeds
 
 
 @functools.lru_cache(maxsize=2)
@@ -88,7 +88,7 @@ def curves(count: int = 120) -> Data:
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
     slow = np.linspace(IDLE * RPM, onset, count + 1)[:-1]
     rests = [rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
-    # Small motions of the disc with its unbalance, at its own speed s: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist)
+    # Small motions with unbalance, at the disc's own speed s: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist)
     own = slow - SLIP
     dynamic = car.radial_stiffness - car.disc_mass * own**2
     net = (car.radial_damping + damping) * own - slow * damping
@@ -122,16 +122,16 @@ def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion
     return model.run(duration(car, top), sample_every=SAMPLE, tolerance=tolerance)
 
 
-# --- The order-tracked spectrum of the disc's motion, and its strongest line
+# --- Order-tracked spectrum of the disc's motion
 
 HOP = 2 * SAMPLES
 """Samples from one window to the next."""
 
 
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return speeds in rad/s (m,), orders (n,) and amplitudes of x + iy in m (n, m).
+    """Return speeds (rad/s, shape (m,)), orders (n,) and amplitudes of x + iy (m, shape (n, m)).
 
-    The samples are at equal angles of the engine, so an order is constant although the speed increases.
+    Samples at equal angles of the engine keep an order constant although the speed increases.
     """
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
@@ -152,8 +152,8 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    Orders below one half are excluded, so a disc that is almost at rest does not count. A parabola through three
-    logarithms locates the maximum between the lines.
+    Orders below one half are excluded, so a disc almost at rest does not count. A parabola through three logarithms
+    locates the maximum between the lines.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))

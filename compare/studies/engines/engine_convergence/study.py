@@ -101,7 +101,6 @@ def _events(run: theory.Simulate, tolerance: float) -> FloatArray:
 
 @functools.cache
 def _exact_events() -> tuple[FloatArray, float]:
-    """Return these times by the reference at its tightest tolerance, and their error."""
     exact = _events(simulate, TRUTH)
     return exact, theory.root_mean_square(_events(simulate, COARSENING * TRUTH) - exact)
 
@@ -204,10 +203,7 @@ def first_stick(engine: Engine) -> Measured | None:
 
 
 class Smoothing(NamedTuple):
-    """Errors of later events and, in the last column, of the state over ``REGULARISATIONS``; and their exponents.
-
-    The errors have the shape (ε, n).
-    """
+    """Errors of later events and of the state (last column) over ``REGULARISATIONS``, shape (ε, n), and exponents."""
 
     errors: FloatArray
     exponents: FloatArray

@@ -22,13 +22,13 @@ from reference_model.systems import FloatArray
 # --- Starts, tolerances, steps and slip speeds of the measurements
 
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
-"""One start near the whirl and one a third farther out, because the pin slides all the time in both (our choice)."""
+"""Near the whirl, and a third farther out; the pin always slides (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
-"""In s, multiples of every step, so the samples are a solver's own states and not interpolated."""
+"""In s, multiples of every step, so the samples are not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""Like the starts of Fig. 5, where vx is 0 and 0.03 m/s. Each pin sticks and is released once in the first 8 s."""
+"""Starts like those of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
 """Duration in s."""
@@ -42,9 +42,8 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 class Scan:
     """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Error and error estimate have the same ``order`` in the step. The step is therefore ~ tolerance^(1/order), and
-    the next term is smaller by one power of the step. ``sticking_term`` is its power of the tolerance if the pin
-    sticks.
+    Error and error estimate have the same ``order`` in the step, so the step is ~ tolerance^(1/order). The next term
+    is smaller by one power of the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
     """
 
     order: int
@@ -82,7 +81,7 @@ CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
 """ε in m/s for the first release by RK44, whose step must be below 2.8·mε/μN = 31 s²/m·ε."""
 
 TOLERANCE = WORKING / 10
-"""Tolerance so small that ε dominates all other errors."""
+"""So small that ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
 """In s, until after the last of nine stick phases on the way to the whirl."""
@@ -121,16 +120,16 @@ def sliding_truth() -> tuple[FloatArray, float]:
 
 @functools.cache
 def stick_slip_truth() -> FloatArray:
-    """Return the states on the way to the whirl of Fig. 5 by the reference at its tightest, shape (time, 4)."""
+    """Return the reference's states on the way to the whirl of Fig. 5, shape (time, 4)."""
     return simulate(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, tolerance=TRUTH).states
 
 
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     """Return the shift of the end of a stick phase by creep, in s per m/s of ε.
 
-    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force that friction must balance (eq. 6) and
-    g = μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt. The integral has a closed form because
-    a is linear in z = z₀·exp(iωt). The release occurs at |a| = g (eq. 7), so the shift is −d|a|/dε over d|a|/dt.
+    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force that friction must balance (eq. 6) and g
+    = μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is
+    linear in z = z₀·exp(iωt). The release occurs at |a| = g (eq. 7), so the shift is −d|a|/dε over d|a|/dt.
     """
     omega = 1j * pin.disc_speed
     spring = pin.stiffness / pin.mass
@@ -163,7 +162,7 @@ def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
 def _cost(
     run: Simulate, starts: Iterable[tuple[float, ...]], times: FloatArray, truth: FloatArray, **how: Any
 ) -> tuple[float, float, float]:
-    began = time.process_time()  # in contrast to wall time, other studies on the same cores do not affect it
+    began = time.process_time()  # in contrast to wall time, independent of other processes
     trajectories = [run(FIG5, start, times, **how) for start in starts]
     spent = time.process_time() - began
     error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)

@@ -78,14 +78,14 @@ def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> M
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
-    """Return the calibration of one kind of problem; ``motions`` are shared by all kinds that can be simulated."""
+    """Return the calibration of one kind of problem; all kinds that can be simulated share ``motions``."""
     each = -(-motions // len(simulated(engine)))
     return theory.calibrated(engine, drawn(kind, each))
 
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def drawn(kind: str, motions: int) -> tuple[tuple[theory.Problem, float], ...]:
-    """Return ``motions`` problems of a kind, each with its tolerance; they are the same for every engine."""
+    """Return ``motions`` problems of a kind with their tolerances, the same for every engine."""
     random = np.random.default_rng(
         [theory.SEED, list(theory.PROBLEMS).index(kind)]
     )  # a separate stream for each kind
@@ -123,7 +123,7 @@ def _scatter(data: ByEngine) -> Figure:
         for engine in engines_in(data):
             if f"{kind}: errors" in data[engine]:
                 errors, estimates = (data[engine][f"{kind}: {what}"] for what in ("errors", "estimates"))
-                right = errors > 0.0  # the logarithmic axis has no place for zero
+                right = errors > 0.0  # the logarithmic axis cannot show zero
                 seen += [errors[right], estimates[right]]
                 look = points(engine, markersize=3.0, markeredgewidth=0.6)
                 panel.loglog(errors[right], estimates[right], **look)

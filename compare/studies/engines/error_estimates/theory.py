@@ -38,7 +38,7 @@ from reference_model.trajectory import Trajectory
 # --- Number and distribution of the motions, and requirements for the error bars
 
 MOTIONS = 360
-"""Number of random motions per engine, equal for every kind of problem that the engine can simulate."""
+"""Random motions per engine, shared equally by the kinds of problem that the engine can simulate."""
 
 TOLERANCES = (1e-7, 1e-5)
 """Range of the random tolerance of a motion."""
@@ -46,7 +46,7 @@ TOLERANCES = (1e-7, 1e-5)
 SEED = 20
 
 LEAST_COVERAGE, MOST_OVER_ESTIMATE = 0.99, 30.0
-"""Requirements for the error bars in each kind of motion."""
+"""Requirements for each kind of motion."""
 
 SOURCE = (
     f"assumption: parameters, starts, times and tolerances (from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}) "
@@ -54,13 +54,13 @@ SOURCE = (
 )
 
 KNOWN = 4.0 * np.finfo(float).eps
-"""Relative accuracy of an exact motion, with respect to its largest number: rounding of a sine, a root and a product.
+"""Accuracy of an exact motion relative to its largest number: rounding of a sine, a root and a product.
 
 A smaller true error is a coincidence of two roundings, so its ratio to an estimate means nothing.
 """
 
 EXACT = 100.0 * TRUTH
-"""Tolerance of the reference if there is no closed form, a thousandth of the smallest tolerance of a motion."""
+"""Tolerance of the reference without a closed form, a thousandth of the smallest tolerance of a motion."""
 
 SMALL_OFFSET = 1e-7
 """X0/ρ_c in the response. Terms of second order are smaller by this factor, and errors are ~ tolerance/X0."""
@@ -69,9 +69,9 @@ SAMPLES = 16
 """Samples per turn of the whirl; their mean is exact for both harmonics."""
 
 THROWS = ((0.7, 20.0), (0.8, 60.0), (1.3, 50.0), (1.5, 15.0))
-"""J/(mR²) of the thrown rings, and atan(W/U) in degrees at the start.
+"""J/(mR²) of the thrown rings, and the initial atan(W/U) in degrees.
 
-J/(mR²) is not 1, because the integrals then end like exp(−A/t) and have errors of 1e-11 instead of 1e-13.
+J/(mR²) is not 1, because the integrals then end like exp(−A/t), with errors of 1e-11 instead of 1e-13.
 """
 
 
@@ -160,7 +160,7 @@ def _at_end(trajectory: Trajectory) -> FloatArray:
 
 
 def _duration(random: Generator, system: System) -> float:
-    """Draw a duration in s of one to two periods of the support's own oscillation."""
+    """Draw a duration in s of one to two natural periods of the support."""
     return between(random, 2.0 * math.pi, 4.0 * math.pi) / system.natural_frequency
 
 
@@ -221,8 +221,7 @@ def stick(random: Generator) -> Problem:
 def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
     """Return position, velocity and release time in units of the radius and the disc speed, all of order 1.
 
-    In metres and seconds, positions would be small compared with the time, and rounding of the time would exceed
-    their errors.
+    In metres and seconds, the rounding of the time would exceed the errors of the positions.
     """
     omega, start = trajectory.system.disc_speed, trajectory.states[0]
     state = trajectory.states[1] / math.hypot(start[0], start[1]) / (1.0, 1.0, omega, omega)
@@ -291,7 +290,7 @@ def free_ring(random: Generator) -> Problem:
 
 @functools.cache
 def _unit_stop(inertia: float, degrees: float) -> tuple[float, float, float]:
-    """Return time and distances until rest of a ring with √(U² + W²) = 1 m/s at the start and μN/m = 1 m/s²."""
+    """Return time and distances to rest for an initial √(U² + W²) of 1 m/s and μN/m = 1 m/s²."""
     angle = math.radians(degrees)
     return Slowing(inertia).stop(math.cos(angle), math.sin(angle))[:3]
 

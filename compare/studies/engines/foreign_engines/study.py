@@ -70,7 +70,7 @@ _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", re
 _of_law = functools.partial(
     STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
 )
-"""Declares a claim about the deviation from the exact motion due to another friction law."""
+"""Declares a claim about the deviation from the exact motion under another friction law."""
 
 
 @_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
@@ -173,7 +173,7 @@ def pyramid_releases() -> Measured:
 
 
 def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
-    """Compare the deviations of the ``wanted`` settings, of order 1, in a case with the deviation by ``law``."""
+    """Compare the deviations of the ``wanted`` settings, of order 1, with the deviation by ``law``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
@@ -249,7 +249,7 @@ ROWS = (
     *(("Bullet",), ("DART",), ("Drake",), ("MuJoCo",)),
     *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
 )
-"""Engines of the rows; the engines of the last two rows have two settings each."""
+"""Engines of the rows; those of the last two rows have two settings each."""
 
 LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
 """Colours and markers of an engine's settings."""
@@ -269,7 +269,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
-    """Draw one row for each engine and one column for each motion, which all share their axes."""
+    """Draw a row for each engine and a column for each motion, with shared axes."""
     columns = len(titles)
     figure, axes = new_figure(
         columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True

@@ -37,13 +37,13 @@ FIRST_ORDER = (
     "Rapier, contact",
     "Jolt, contact",
 )
-"""Settings with steps of order 1 during slip and with Coulomb friction, at least for a pin."""
+"""Settings of order 1 during slip with Coulomb friction, at least for a pin."""
 
 SINGLE_PRECISION = ("Box2D, friction joint", "Rapier, contact", "Jolt, contact")
 """Settings whose rounding exceeds the error of a step after few halvings."""
 
 OFF_FOR_DISCS = ("Bullet, cone", "Chipmunk, pivot joint")
-"""Settings with Coulomb friction for a pin, but with a different law for a disc on several points."""
+"""Settings with Coulomb friction for a pin, but not for a disc on several points."""
 
 BOXES, PYRAMIDS = ("Bullet, box", "DART, Dantzig", "DART, PGS"), ("MuJoCo, pyramidal cone",)
 
@@ -64,7 +64,7 @@ TANGENTS = (
 """Settings that leave no slip at the end of a step during stick, and whose rounding is negligible."""
 
 WANTED = 1e-3
-"""Error in m whose computing time the table lists, the largest that is invisible in the figures of the paper."""
+"""Error in m whose computing time the table lists, the largest that is invisible in the paper's figures."""
 
 HALVED = 0.02
 """Allowed deviation of the ratio of step numbers from 2, because steps divide the interval between output times."""
@@ -88,10 +88,10 @@ def halvings(runs: FloatArray) -> FloatArray:
     return runs[strange[-1] + 1 :] if strange.size else runs
 
 
-# --- Deviations from Coulomb's law in engines
+# --- Friction laws other than Coulomb's
 
 Law = Callable[[complex, float], complex]
-"""Friction as a function of the slip in m/s and the smoothing slip speed ε in m/s, as a fraction of μN."""
+"""Friction over μN as a function of the slip and the smoothing slip speed ε in m/s."""
 
 
 def box(slip: complex, epsilon: float) -> complex:
@@ -116,7 +116,7 @@ def creep(steps: int) -> float:
 
 
 def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
-    """Return the solution of ``case`` by ``solve_ivp`` under ``law``, smoothed over the slip ``epsilon`` in m/s."""
+    """Integrate ``case`` under ``law``, smoothed over the slip ``epsilon`` in m/s."""
     pin = case.system
 
     def friction(slip_x: float, slip_y: float, *_: float) -> tuple[float, float, float]:
@@ -135,8 +135,7 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 def release_by(law: Law) -> tuple[float, float]:
     """Return the time in s when ``law`` releases a stuck pin, and its error, see ``refined``.
 
-    While friction holds the pin, its slip along each axis of the world creeps below ε. The release is the time
-    when it reaches ε.
+    A held pin creeps along each axis of the world with a slip below ε; it is released when the slip reaches ε.
     """
     case = CASES["release"]
     turning = 1j * case.system.disc_speed
@@ -176,7 +175,7 @@ def release_where(held: Callable[[complex], float]) -> float:
 def error_of(law: Law, name: str) -> tuple[float, float]:
     """Return the deviation in m of a pin under ``law`` from the exact motion of the case ``name``, and its error.
 
-    The error is estimated from the change at smaller ε and tolerance, see ``refined``.
+    The error is the change at smaller ε and tolerance, see ``refined``.
     """
     case = CASES[name]
     pin = case.system
@@ -311,7 +310,7 @@ def _at(wanted: float, runs: FloatArray, column: int) -> float:
 
 
 def _finest(runs: FloatArray) -> str:
-    """Return the error in m of the finest of ``runs``, its estimate and, for several runs, the order, as text."""
+    """Return as text the error in m of the finest of ``runs``, its estimate and, for several runs, the order."""
     steps, error = runs[:, STEPS], runs[:, ERROR]
     if len(runs) == 1 or not np.all(error[-2:] > 0.0):
         return f"{error[-1]:.1g}"
@@ -320,7 +319,7 @@ def _finest(runs: FloatArray) -> str:
 
 
 def time_to(wanted: float, runs: FloatArray) -> str:
-    """Return the processor time in ms for the error ``wanted`` as text."""
+    """Return as text the processor time in ms for the error ``wanted``."""
     if math.isnan(seconds := _at(wanted, runs, SECONDS)):
         return "not reached"
     return f"{'≤ ' * bool(runs[0, ERROR] <= wanted)}{1e3 * seconds:.3g}"

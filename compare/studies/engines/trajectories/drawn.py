@@ -71,7 +71,7 @@ def _on_points(random: Generator, disc_speed: float) -> DiscOnDisc:
 
 
 def _sliding(random: Generator, system: System) -> tuple[float, ...]:
-    """Draw a start such that the support's spring swings the body round in either sense, not through the centre."""
+    """Draw a start that lets the support's spring swing the body around the centre in either sense."""
     w = cmath.rect(between(random, 0.2, 0.6), random.uniform(-math.pi, math.pi))
     z = w + system.offset
     v = sign(random) * 1j * system.natural_frequency * between(random, 0.7, 1.4) * w
@@ -84,7 +84,7 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
 
 
 def _slides(motion: Motion) -> bool:
-    """Return whether forces are smooth: everything slips clearly, and the stop is touched always or never."""
+    """Return whether everything slips clearly, and the stop is touched always or never, so forces are smooth."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
@@ -130,9 +130,9 @@ def _sticks(motion: Motion) -> bool:
 
 @dataclass(frozen=True)
 class Drawn:
-    """Random motions of one kind, drawn when they are needed: at all ``SPEEDS``, in both senses.
+    """Random motions of one kind, drawn on demand: at all ``SPEEDS``, in both senses.
 
-    ``number`` is part of the seed and differs from kind to kind.
+    ``number`` is part of the seed and differs between kinds.
     """
 
     number: int

@@ -41,10 +41,9 @@ from compare.studies.engines.trajectories.theory import (
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.systems import FloatArray
 
-# --- One claim about several motions, with all their numbers and error bars
+# --- One claim about several motions
 
 Motions = Iterable[Motion]
-"""The motions of one claim."""
 
 Measure = Callable[[Engine, Motion], "Measured | None"]
 MeasureAll = Callable[[Engine, Motions], "Measured | None"]
@@ -96,7 +95,7 @@ def _sizes(part: Measured) -> FloatArray:
 
 
 def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
-    """Return for each parameter the common value, or the smallest and the largest value as text."""
+    """Return the common value of each parameter, or its smallest and largest value as text."""
     found: dict[str, float | str] = {}
     for name, value in parameters[0].items():
         values = [one[name] for one in parameters]
@@ -333,7 +332,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
     return Measured(
         predicted=predicted,
         value=found.value,
-        # The first of two numbers may be right by chance, but an error of the tolerance affects all of them.
+        # A single error may be small by chance, but an error of the tolerance affects all numbers.
         error=found.largest + motion.tolerance * motion.until,
         size=1.0 / motion.system.natural_frequency,
         components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],

@@ -1,8 +1,8 @@
 """Motions with given parameters, ranges of the random motions, and integrals of rates over panels of time.
 
-In the paper's parameters m, J and C are all one, so an engine that confuses two of them still moves correctly. Here
-no two parameters are equal, so each has its own effect. A mistake may also occur only in a corner of the parameter
-space, for a slow disc or for one that turns the other way. Therefore random motions cover the whole range.
+The paper's parameters m, J and C are all one, so an engine that confuses two of them still moves correctly. Here no
+two parameters are equal. A mistake may also occur only for certain parameters, such as a slow disc or one that turns
+the other way, so random motions cover the whole range.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ PANEL = 0.25
 """Length in s of the integration intervals of forces."""
 
 STICK_RESOLUTION = 5e-4
-"""In s, to detect a millisecond. Approximate laws of stick release late, by about 1e-5 s at a tolerance of 1e-9."""
+"""In s, to detect a millisecond. Approximate laws of stick release about 1e-5 s late at a tolerance of 1e-9."""
 
 PIN = PinOnDisc(mass=1.3, stiffness=2.1, damping=0.17, friction_force=0.11, disc_speed=1.9, offset=0.07)
 
@@ -113,7 +113,7 @@ UNTIL = 3.0
 """Duration in s."""
 
 LEAST_SLIP = 0.15
-"""Smallest slip relative to the largest, so nothing is almost at rest where forces are integrated."""
+"""Smallest slip over the largest, so nothing almost rests where forces are integrated."""
 
 MOST_TURN = 2.0
 """Largest rotation in rad of a disc on points during a ``PANEL``, because its forces turn with it."""
@@ -124,12 +124,12 @@ STICKS_FOR = (0.2, 2.0)
 MOST_PHASES = 6
 
 LEAST_SAMPLES = 4
-"""Smallest number of samples in a stick phase, so (7) can be evaluated in its middle."""
+"""Fewest samples in a stick phase, so (7) can be evaluated in its middle."""
 
 # --- Motions by the reference, and integrals along them
 
 NODES, WEIGHTS = leggauss(10)
-"""Gauss's rule on (−1, 1), exact to rounding for the forces if no point of the contact comes to rest."""
+"""Gauss's rule on (−1, 1), exact to rounding for the forces unless a point of the contact comes to rest."""
 
 SLOWEST_FALL = 0.9
 """Largest assumed ratio of neighbouring Legendre coefficients of the integrand."""
@@ -161,8 +161,8 @@ def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
 
     The rule with n nodes misses the Legendre coefficients from 2n on. The error estimate assumes that they decay at
-    the mean rate between the middle and the last of the first n coefficients, and contains SAFETY: if a point of the
-    contact comes to rest, they decay more slowly, as a power of their number.
+    the mean rate between the middle and the last of the first n coefficients. It contains SAFETY, because they decay
+    more slowly if a point of the contact comes to rest.
     """
     n = len(NODES)
     project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)

@@ -45,7 +45,7 @@ def draw(data: ByEngine) -> Figures:
     orbit.legend(loc="best")
 
     value, low, high = found["whirl"].T
-    # Points without a line, because the share between two speeds is unknown.
+    # No line, because the share between two speeds is unknown.
     bars = np.abs([value - low, high - value])
     share.errorbar(
         found["speeds"],

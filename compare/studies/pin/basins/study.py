@@ -25,35 +25,35 @@ from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
 
-PLANE = ((-0.3, 0.5), (-0.4, 0.4))  # ranges of x0 in m and vx0 in m/s; y0 and vy0 are zero
-RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"  # the same ranges as text
+PLANE = ((-0.3, 0.5), (-0.4, 0.4))  # x0 in m and vx0 in m/s; y0 = vy0 = 0
+RECTANGLE = "−0.3 m < x < 0.5 m, |ẋ| < 0.4 m/s, y = ẏ = 0"
 
 FROM_REST = "Fig. 5; starts from rest in y"
 
 SIDE, FINER = 334, 3
-"""Starts along each side of the plane, and refinement factor of the grid where ends differ."""
+"""Starts along each side of the plane, and refinement of the grid where ends differ."""
 
 FASTEST = replace(FIG5, disc_speed=3.0)
-"""Fig. 5 at twice its speed, where the basin is small."""
+"""Twice the speed of Fig. 5, with a small basin."""
 
 WHERE = {FIG5: ((-0.2, 0.4), (-0.35, 0.25)), FASTEST: ((-0.03, 0.07), (-0.16, 0.06))}
-"""Search range for the boundary of each pin. The ends on the grid show that no part of it lies outside."""
+"""Search range of each boundary; the ends on the grid show that no part lies outside."""
 
 CELLS, ON_BOUNDARY = 8, 1e-5
-"""Resolution and tolerance of the boundary. Splines between its points are 1.2e-3 off, half a step of the grid."""
+"""Resolution and tolerance of the boundary; splines between its points are 1.2e-3 off, half a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6
 """Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
 
-UNTIL = 3000.0  # duration in s until every start has reached its end
+UNTIL = 3000.0  # duration in s
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
-STARTS, SEED = 2000, 5  # number of random starts in the plane, the same at every speed, and seed
+STARTS, SEED = 2000, 5  # random starts, the same at every speed
 RECOMPUTED = 16  # starts that the plain reference recomputes, half of them near the boundary
 SETTLED = 250.0  # duration in s until the plain reference has reached one of the two ends from these starts
 STEP = 5e-3  # distance in rad of other releases from the saddle's, for an engine's multiplier
 
 PLACES, ASIDE = 4, 5e-3
-"""Number of starts on the boundary for each engine, and distance from it to either side in m and m/s."""
+"""Starts on the boundary, and distance of simulated starts from it in m and m/s."""
 
 WITHIN, REACH = (0.05, -0.1), 0.4
 """A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
@@ -80,7 +80,7 @@ def curves(
 
 @functools.cache
 def saddle(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the orbit of ``pin`` whose stable set is the boundary."""
+    """Return the orbit whose stable set is the boundary."""
     (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=TIGHTEST) if not orbit.stable)
     return orbit
 
@@ -112,7 +112,7 @@ def enclosed(curve: FloatArray) -> float:
 
 
 def beyond_equilibrium(state: FloatArray) -> float:
-    """Return the distance in m of a state from the equilibrium minus X0; it is positive on the whirl."""
+    """Return the distance (m) of a state from the equilibrium minus X0; it is positive on the whirl."""
     (rest,) = self_centred_equilibria(FIG5)
     return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
 
@@ -140,8 +140,7 @@ def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
 def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
     """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
 
-    Only starts in cells of the grid of ``side`` whose corners have different ends are simulated. All other starts get
-    the end of the corners of their cell.
+    Only starts in cells whose corners have different ends are simulated. All others get the end of their cell.
     """
     coarse = ends_on_grid(pin, side)
     cell = np.arange(FINER * (side - 1) + 1) // FINER
@@ -237,7 +236,7 @@ def returns(engine: Engine) -> Measured:
         return np.array([middle.time, middle.stick_time, multiplier(STEP, tolerance)])
 
     found = refined(one_turn)
-    # For differences of fourth order, twice the step has 16 times the error, so the change is 15 times the error.
+    # The change is 15 times the error, because twice the step multiplies an error of fourth order by 16.
     bent = abs(multiplier(2.0 * STEP, WORKING) - found.value[2]) / 7.5
     return Measured(
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),

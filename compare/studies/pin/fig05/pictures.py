@@ -113,7 +113,7 @@ def _legend_of_errors(engines: tuple[str, ...]) -> list[Line2D]:
 
 
 def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
-    """Show the first ``until`` s of both motions on the turning disc: stick phases, equilibrium and whirl."""
+    """Show the first ``until`` s of both motions on the turning disc."""
     from compare.report.animation import gif
 
     if not engines_in(data):

@@ -24,19 +24,19 @@ from reference_model.systems import FloatArray
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
-"""Duration in s, which the paper does not print. The slowest transients have then decayed to 1e-8."""
+"""Duration in s, which the paper omits; the slowest transients then have decayed to 1e-8."""
 
 SAMPLES = 4001
 
 FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # A start near the whirl that leads to permanent slip (our choice)
+SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # near the whirl, with permanent slip (our choice)
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
-CAPTURE = 1e-6  # required accuracy of the critical initial velocity in m/s
+CAPTURE = 1e-6  # required accuracy of the critical velocity in m/s
 
 AFTERWARDS = 220.0
-"""Duration in s. A deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
+"""Duration in s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
 
 SIDES_TOLERANCE = 1e-7
 
@@ -47,34 +47,34 @@ RUNS_TOLERANCE = 5.0 * WORKING
 """Tolerance of the runs of Fig. 5."""
 
 CRITICAL_TOLERANCE = WORKING / 5.0
-"""The error of the critical velocity of a regularised law is about a hundred times larger."""
+"""The critical velocity of a regularised law has an error about a hundred times larger."""
 
 LEAST_SHARE = 1e-5
-"""Smallest error of stick times relative to their resolution.
+"""Smallest error of stick times over their resolution.
 
-The stick times of an engine with events do not change smoothly with the tolerance, so the change between two
-tolerances may be small by chance. Correct engines deviated by up to 1.2e-6 of the resolution.
+Stick times of engines with events jump with the tolerance, so their change may be small by chance. Correct engines
+deviated by up to 1.2e-6 of the resolution.
 """
 
 STICK_RESOLUTIONS = {"first": 1e-3, "all": 1e-2}
-"""Resolutions in s of the first stick phase, and of all stick phases."""
+"""In s, of the first stick phase and of all."""
 
 
 @functools.cache
 def whirl() -> Orbit:
-    """Return the periodic orbit by shooting with the reference at its tightest tolerance."""
+    """Return the periodic orbit by shooting with the reference."""
     return whirl_orbit(FIG5)
 
 
 @functools.cache
 def reference_events(name: str) -> FloatArray:
-    """Return all stick and release times in s by the reference at its tightest tolerance."""
+    """Return all stick and release times (s) by the reference at its tightest tolerance."""
     return simulate(FIG5, FIG5_STARTS[name], [0.0, UNTIL], tolerance=TRUTH).stick_times
 
 
 @functools.cache
 def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
-    """Return both times from eq. 1 with a simple event on the slip speed, and eq. 7, without ``simulate``.
+    """Return both times from (1) with a simple event on the slip speed, and (7), without ``simulate``.
 
     The event occurs at a slip speed s that falls with the tolerance. The remaining slip lasts for s/(μN/m − |a|),
     where ma is the force that friction must balance during stick.
@@ -115,8 +115,8 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 def critical_velocity(engine: Engine, tolerance: float) -> float:
     """Return vx(0) in m/s that puts the second stick phase as far from the axis as the first.
 
-    The result is NaN if the pin of an engine does not stick twice, or moves in the same direction from both starts.
-    At small tolerances, the search begins near the result of a larger tolerance.
+    It is NaN if a pin does not stick twice, or moves in the same direction from both starts. At small tolerances, the
+    search begins near the result of a larger tolerance.
     """
 
     def outward(velocity: float) -> float:
@@ -169,7 +169,7 @@ def slides(engine: Engine) -> Measured:
     return Measured(
         predicted=predicted,
         value=found.value,
-        error=found.plus(np.abs(rougher - predicted)).largest,  # a single number may be right by chance
+        error=found.plus(np.abs(rougher - predicted)).largest,  # a single error may be small by chance
         components=[f"t = {t:g} s, {name}" for t in SLIDING_TIMES for name in components_of(FIG5)],
         source="Fig. 5; start (0.9, 0, 0, 0.9) near the whirl and without stick is our choice",
     )
@@ -281,7 +281,7 @@ def all_sticks(engine: Engine, name: str) -> Measured:
 
 
 def _events(engine: Engine, name: str, which: str, size: int) -> Measurement:
-    """Return the ``size`` "first" or "all" stick and release times in s of a run."""
+    """Return the ``size`` "first" or "all" stick and release times (s) of a run."""
 
     def times(tolerance: float) -> FloatArray:
         found = run_of(engine, name, tolerance).stick_times

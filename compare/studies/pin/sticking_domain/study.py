@@ -31,30 +31,32 @@ PIN = FIG4
 SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are our choice"
 RESONANCE = resonant_disc_speed(PIN)
 
-SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s of the starts inside and outside the radius (9)
+SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s of the starts
 
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Radii of the starts, relative to (9)."""
-CREEP = 1e-2  # relative displacement of a stuck pin above which it is uncertain whether it sticks
+"""Radii of the starts over (9)."""
+CREEP = 1e-2  # relative displacement above which stick is uncertain
 
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
-"""The same for a pin just outside: creep by this fraction of its distance to the edge may hold it for too long."""
+"""Such a displacement just outside (9), where creep by this fraction of the distance to the edge may hold a pin too
+long.
+"""
 
-LATEST = 1.1  # duration for a pin outside, relative to the time that (7) predicts
+LATEST = 1.1  # duration for a pin outside, over the time (7)
 REVOLUTIONS = 2.0  # duration for a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
 
 BRACKET = (0.03, 4.0)
-"""Initial bracket of the search, relative to X0. It does not use (9), so it cannot favour it."""
+"""Initial bracket of the search over X0, independent of (9)."""
 
 PRECISION = 6e-5  # relative accuracy of this search
 
 SEARCH_TOLERANCE = 1e-7
 
-TOLERANCE = 3e-8  # moderate, because the cost of stick rises as a regularised law approaches Coulomb's
+TOLERANCE = 3e-8  # moderate, because regularised laws close to Coulomb's make stick expensive
 DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m for the search of the largest radius (9)
 FAST = (10.0, 30.0, 100.0)  # ω in rad/s far above the resonance
 
@@ -86,8 +88,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is the error of the radii A. If a radius is missing, the vertex is missing; it is open if the
-    errors of all missing radii are infinite.
+    ``relative_error`` is that of the radii A. If a radius is missing, the vertex is missing; it is open if the errors
+    of all missing radii are infinite.
     """
 
     def found(values: FloatArray) -> float:
@@ -107,7 +109,7 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
 
 
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
-    """Return ω in rad/s at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
+    """Return ω (rad/s) at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
     step = width * speed
     # The nodes are not symmetric, so the result does not contain its own prediction.
     nodes = speed + step * np.array([-0.6, 0.4, 1.4])
@@ -222,7 +224,7 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
 @functools.lru_cache(maxsize=2)
 def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
-    """Return the largest sticking radii in m at ``searched`` ω in rad/s, by bisection, shape (n,)."""
+    """Return the largest sticking radii (m) at ``searched`` ω (rad/s), by bisection, shape (n,)."""
     pins = [pin_at(speed) for speed in searched]
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
@@ -262,10 +264,9 @@ def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
 def _between(
     engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return radii in m that enclose the largest sticking radius, by bisection.
+    """Return radii (m) that enclose the largest sticking radius, by bisection, or NaN if the search fails.
 
-    The search begins between the radii ``around`` and extends beyond them if necessary. The result is NaN if the
-    search fails.
+    The search begins between the radii ``around`` and extends beyond them if necessary.
     """
     # The holding force goes from its minimum to its maximum in half a revolution.
     end = 1.02 * math.pi / pin.disc_speed

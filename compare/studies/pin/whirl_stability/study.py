@@ -1,4 +1,4 @@
-"""Eq. 12 to 16 over speed and damping, and motions near the whirl."""
+"""Eqs. (12) to (16) over speed and damping, and motions near the whirl."""
 
 from __future__ import annotations
 
@@ -32,8 +32,9 @@ K = CENTRED.natural_frequency
 
 SPEEDS = (1.1, 1.5, 4.0)
 DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
-"""Long simulations: ω in rad/s, radius at the start relative to (11), duration in s, and its final part in s, which
-yields the estimate of the remaining transient. The slowest deviation falls to 1e-10 of its initial value."""
+"""Long simulations: ω in rad/s, initial radius over (11), duration in s, and its final part in s, which yields the
+remaining transient. The slowest deviation falls to 1e-10.
+"""
 
 STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
 CAUGHT = 18.0
@@ -45,11 +46,11 @@ FLOW_DURATION = 0.5
 
 DEVIATION = 1e-3
 DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
-"""Amplitude of the decaying deviation, relative to the radius (11), and times in s."""
+"""Amplitude of the decaying deviation over the radius (11), and times in s."""
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues, including ω < k."""
+"""ω/k, also below 1, and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues."""
 
 
 def pin_at(speed: float, damping: float = CENTRED.damping) -> PinOnDisc:
@@ -78,7 +79,7 @@ def grid() -> tuple[PinOnDisc, ...]:
 
 @functools.cache
 def largest_real_parts() -> tuple[FloatArray, FloatArray]:
-    """Return the largest real part in 1/s of the roots of (13) at each point of the grid, and its rounding error."""
+    """Return the largest real part (1/s) of the roots of (13) at each point of the grid, and its rounding error."""
     values, rounding = eigenvalues_with_rounding([variational_matrix(pin) for pin in grid()])
     at = np.arange(len(values)), np.argmax(values.real, axis=1)
     return values.real[at], rounding[at]
@@ -135,7 +136,7 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
 
 
 def holds(margin: Callable[[PinOnDisc], float]) -> NDArray[np.bool_]:
-    """Return whether a condition holds, which is if its ``margin`` is positive, at each point of the grid."""
+    """Return whether ``margin`` is positive at each point of the grid."""
     return np.array([margin(pin) > 0.0 for pin in grid()])
 
 
@@ -191,7 +192,7 @@ def turning_speed(states: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
-    """Return radius in m and frequency in rad/s at the end of long simulations, shape (n, 2)."""
+    """Return radius (m) and frequency (rad/s) at the end of long simulations, shape (n, 2)."""
 
     def track(speed: float, times: list[float], tolerance: float) -> FloatArray:
         pin = pin_at(speed)
@@ -203,7 +204,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=DURATION,
             delay=DELAY,
-            period=np.pi / K,  # approximate period of deviations in the frame that turns with the whirl
+            period=np.pi / K,  # approximate period of deviations in axes that turn with the whirl
             rate=-whirl_eigenvalues(pin_at(speed))[1].real,
             tolerance=WORKING / 5,  # for a resolution of 1e-9
         )

@@ -23,26 +23,25 @@ from reference_model.systems import FloatArray, PinOnDisc
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
 BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
-"""Free block on a plane at rest."""
 
 FRICTION = BLOCK.friction_force
 DECELERATION = FRICTION / BLOCK.mass
-"""Deceleration g in m/s² by friction alone."""
+"""Deceleration g in m/s²."""
 
 HEADINGS = (0.0, 22.5, 45.0, 67.5)
 """Headings in degrees from the x axis: sides, corners and neither of squares and octagons in any orientation."""
 
 SPEED = 1.0
-"""Initial speed v₀ of a throw in m/s."""
+"""Initial speed v₀ in m/s."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
-"""Sample times of a thrown block, as fractions of the time to rest."""
+"""Sample times over the time to rest."""
 
 AT_REST = 1.5
-"""Sample time after rest, as such a fraction, late enough for regularised laws."""
+"""Sample time over the time to rest, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
-"""Block on a spring that pulls with μN when stretched by 10 m, so its pull changes slowly during the motion."""
+"""A stretch of 10 m pulls with μN, so the pull changes slowly."""
 
 LOADS = (0.1, 0.5, 0.9, 0.99)
 """Pulls over μN that friction holds."""
@@ -51,42 +50,42 @@ BEYOND = 1.01
 """Pull over μN that friction does not hold."""
 
 HELD = 10.0
-"""Duration in s of a hold, equal to the duration of a slide beyond the cone."""
+"""Duration in s of a hold, and of a slide under the pull ``BEYOND``."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
-"""Smallest displacement in m of a block that counts as moved, half of its slide beyond the cone."""
+"""Smallest displacement in m that counts as motion: half of the slide under the pull ``BEYOND``."""
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
 """Position of release over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
-"""Number of half swings to rest."""
+"""Half swings to rest."""
 
 DIAGONAL = 45.0
-"""Heading of the swings in degrees, between the axes."""
+"""Heading of the swings in degrees."""
 
 PULL = 1.5
-"""Initial pull over μN of a distant spring on a block thrown along it."""
+"""Initial pull over μN on a block thrown along it."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
-"""Block with a spring stretched by 150 m at the start; at larger distances positions have too few digits."""
+"""The spring is stretched by 150 m at the start. A larger distance would leave too few digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
-"""Sample times in s of the block thrown along the pull."""
+"""Sample times in s."""
 
 ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
-"""Block at the origin that a spring pulls with μN along x; the pull is constant to about 1e-6."""
+"""A block at the origin is pulled with μN along x; the pull is constant to about 1e-6."""
 
 TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
-"""Sample times in s of a block thrown across the pull; in the end it moves almost along the pull."""
+"""Sample times in s; in the end the block moves almost along the pull."""
 
 
 def direction(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
-# --- Closed forms of a block on a plane at rest, from Newton's law and friction μN against the slip
+# --- Closed forms, from Newton's law and friction μN against the slip
 # Lengths are in m, speeds in m/s, times in s; s is the distance along a line, and v = ds/dt.
 
 STOPPING_TIME = SPEED / DECELERATION
@@ -94,16 +93,16 @@ STOPPING_DISTANCE = 0.5 * SPEED**2 / DECELERATION
 
 
 def thrown(times: ArrayLike) -> FloatArray:
-    """Return s and v of a block under friction alone, shape (n, 2): s = v₀t − gt²/2 until it rests."""
+    """Return s and v under friction alone, shape (n, 2): s = v₀t − gt²/2 until the block rests."""
     t = np.minimum(times, STOPPING_TIME)
     return np.column_stack((SPEED * t - 0.5 * DECELERATION * t**2, SPEED - DECELERATION * t))
 
 
 def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
-    """Return s and v, shape (n, 2), of a block released at s = ``start`` > f = μN/C, with the spring relaxed at 0.
+    """Return s and v, shape (n, 2), after release at s = ``start`` > f = μN/C, with the spring relaxed at 0.
 
-    In half swing n (from 0) the block moves like cos kt about (−1)^n·f with the amplitude start − (2n + 1)·f. It
-    rests when the next amplitude would not be > 0.
+    In half swing n (from 0) the block oscillates like cos kt about (−1)^n·f with the amplitude start − (2n + 1)·f. It
+    rests when the next amplitude would not be positive.
     """
     k, f = pin.natural_frequency, pin.friction_force / pin.stiffness
     last = math.ceil(0.5 * (start / f - 1.0))
@@ -116,7 +115,7 @@ def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
 def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> FloatArray:
     """Return s and v, shape (n, 2), of a block that slides along the pull of a spring stretched by ``stretch``.
 
-    s = a·(1 − cos kt) + (v₀/k)·sin kt with a = stretch − μN/C, valid while the block slides.
+    s = a·(1 − cos kt) + (v₀/k)·sin kt with a = stretch − μN/C.
     """
     k, t = pin.natural_frequency, np.asarray(times, dtype=float)
     a = stretch - pin.friction_force / pin.stiffness
@@ -127,9 +126,9 @@ def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> Fl
 def across(times: ArrayLike) -> FloatArray:
     """Return the velocity along and across a constant pull μN of a block thrown across it, shape (n, 2).
 
-    The sum of the speed and the velocity along the pull is v₀, because pull and friction change both at opposite
-    rates. With the angle θ between pull and velocity and w = tan²(θ/2) they are v₀(1 ± w)/2, and the velocity across
-    is v₀√w. Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
+    The sum of the speed and the velocity along the pull is constant, because pull and friction change them at
+    opposite rates. With the angle θ between pull and velocity and w = tan²(θ/2), they are v₀(1 ± w)/2, and the
+    velocity across is v₀√w. Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
     """
     w = lambertw(np.exp(1.0 - 4.0 * DECELERATION * np.asarray(times, dtype=float) / SPEED)).real
     return np.column_stack((0.5 * SPEED * (1.0 - w), SPEED * np.sqrt(w)))
@@ -138,8 +137,8 @@ def across(times: ArrayLike) -> FloatArray:
 def bend_by_spring(times: FloatArray) -> float:
     """Return the largest error in m/s of ``across`` due to the change of the spring's pull along the path.
 
-    The pull changes by C·r after a distance r. Friction is monotone in the slip, so it does not increase the
-    difference of two velocities: this grows at most at the rate C·r/m, with r ≤ v₀t.
+    The pull changes by C·r after a distance r ≤ v₀t. Friction is monotone in the slip, so the difference of two
+    velocities grows at most at the rate C·r/m.
     """
     return float(0.5 * ACROSS.stiffness / ACROSS.mass * SPEED * times[-1] ** 2)
 
@@ -177,7 +176,7 @@ def moved(
     start: tuple[complex, complex],
     times: FloatArray,
 ) -> Measurement:
-    """Return the states at all ``times`` but the first, along and across each heading, shape (headings, n, 4).
+    """Return the states after the first of ``times``, along and across each heading, shape (headings, n, 4).
 
     ``start`` is position and velocity, along + i·across. Positions are relative to (X0, 0), where the spring is
     relaxed.
@@ -201,21 +200,20 @@ def moved(
 
 
 def on_a_line(motion: FloatArray, headings: Sequence[float]) -> FloatArray:
-    """Return the states of s and v, shape (n, 2), along each heading and zero across, shape (headings, n, 4)."""
     states = np.zeros((len(headings), len(motion), 4))
     states[..., ::2] = motion
     return states
 
 
 def largest_by_component(found: Measurement) -> FloatArray:
-    """Return the largest error of each component, because a single number may be right by chance."""
+    """Return the largest error of each component, because a single error may be small by chance."""
     return np.asarray(np.max(found.error, axis=tuple(range(found.error.ndim - 1))))
 
 
 def along(
     found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
 ) -> Measured:
-    """Compare the states ``found`` with ``way``, s and v at ``times`` (n, 2), along all headings."""
+    """Compare the states ``found`` with ``way``, s and v of shape (n, 2), along all headings."""
     return Measured(
         predicted=on_a_line(way, headings),
         value=found.value,

@@ -1,9 +1,9 @@
 """Pushes simulated forward: the hand follows its measured path, and the body slides on its feet.
 
-The hand is a point that pushes an edge of the triangle without adhesion and with friction of its own. Two codes
-simulate this independently. The quasi-static one has exact friction and no inertia: of all motions that the hand
-allows, the body takes the one of least friction power (Moreau's principle of maximum dissipation). The Exudyn
-model has inertia, a stiff edge and regularised friction, and moves at the measured speed.
+The hand is a point that pushes an edge of the triangle with friction and without adhesion. Two independent codes
+simulate it. The quasi-static code has exact friction and no inertia: the body takes the motion of least friction
+power that the hand allows (Moreau's principle of maximum dissipation). The Exudyn model has inertia, a stiff edge and
+regularised friction, and moves at the measured speed.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from reference_model.systems import FloatArray
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.
 
-Estimated from the measured forces alone: three quarters lean less than 26 degrees from the normal of the edge. A
-hand that slides would lean by one angle, here by 26.6 degrees. The median error of the final position is
-0.9 to 1.3 mm for coefficients from 0.2 to 0.6, and 2 mm for 0.1 and 0.8.
+Three quarters of the measured forces lean less than 26 degrees from the edge's normal; a sliding hand would always
+lean by 26.6 degrees with this coefficient. The median error of the final position is 0.9 to 1.3 mm for coefficients
+from 0.2 to 0.6, and 2 mm for 0.1 and 0.8.
 """
 
 SPEED = 2.45e-3
@@ -41,7 +41,7 @@ EDGES = {  # points on the edges in mm, and directions into the triangle
 
 @dataclass(frozen=True)
 class Path:
-    """Path of the hand in the frame of the body before the push, about its centre of mass, in m.
+    """Path of the hand in m, relative to the centre of mass in the body's first pose.
 
     ``normal`` points into the body, and ``depth`` is the distance of the edge from the centre of mass.
     """
@@ -53,7 +53,7 @@ class Path:
 
     @classmethod
     def of(cls, push: Push) -> Path:
-        """Return the path of a push; the hand touches the edge that it is farthest outside of at the start."""
+        """Return the path of a push against the edge that the hand is farthest outside of at the start."""
         start = complex(push.start_x, push.start_y)
         half = cmath.exp(0.5j * push.turn)
         end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
@@ -67,7 +67,7 @@ class Path:
         return self.end - self.start
 
     def gap(self, hand: complex, position: complex, angle: float) -> float:
-        """Return the distance in m of the hand from the edge of a body that has moved and turned."""
+        """Return the distance in m from the hand to the edge of the moved body."""
         outside = (hand - position) * (cmath.exp(1j * angle) * self.normal).conjugate()
         return -outside.real - self.depth
 
@@ -123,7 +123,7 @@ class QuasiStatic:
         return slip / back, spin
 
     def _sticking(self, arm: complex, velocity: complex) -> tuple[complex, float, complex]:
-        """Return slip, spin and the hand's force if the hand sticks to the body."""
+        """Return slip, spin and the hand's force for a hand that sticks to the body."""
         size = abs(velocity) / (LEGS * MM)
 
         def power(spin: float) -> float:
@@ -135,7 +135,7 @@ class QuasiStatic:
         return velocity - 1j * spin * arm, spin, force
 
     def _sliding(self, arm: complex, velocity: complex, force: complex) -> tuple[complex, float]:
-        """Return slip and spin if the hand slides along the edge and pushes in the direction of ``force``."""
+        """Return slip and spin for a hand that slides along the edge and pushes in the direction of ``force``."""
         lever = LEGS * MM
 
         def power(free: FloatArray) -> tuple[float, FloatArray]:
@@ -162,19 +162,18 @@ def measured_motion(push: Push) -> tuple[complex, float]:
     return (half * complex(push.x, push.y) + (half**2 - 1.0) * CENTRE) * MM, push.turn
 
 
-# --- The Exudyn model.
+# --- The Exudyn model
 
 STIFFNESS = 1e6
 """Stiffness of the edge in N/m; 4 N press the hand in by 4 µm."""
 
 STEPS = 300
-"""Steps of the Exudyn model."""
 
 
 def by_exudyn(push: Push, epsilon: float) -> tuple[complex, float]:
     """Return the displacement of the centre of mass (m) and the turn (rad) of an Exudyn model.
 
-    ``epsilon`` is the regularisation in m/s of the friction under the body and at the hand.
+    ``epsilon`` is the regularisation in m/s of all friction.
     """
     import exudyn as exu
     import exudyn.itemInterface

@@ -1,4 +1,4 @@
-"""Figures of the pushes: measured and predicted forces, their errors, and the limit surface."""
+"""Figures of forces, errors and the limit surface."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from compare.studies.plane.pushes.theory import (
 )
 
 SHOWN = ("10_130_10_10_10_130", "patch")
-"""Series whose forces the first figure shows."""
+"""Series of the first figure."""
 
 
 def draw(data: ByEngine) -> Figures:

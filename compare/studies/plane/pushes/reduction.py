@@ -1,21 +1,21 @@
 """Reduction of the logs of measured planar pushes to one row per push.
 
-The logs are those of the repository robinzhoucmu/MLab_EXP, commit 4d86db94, folder PushExp/sensor_log (J. Zhou,
-Carnegie Mellon University, 2015, Apache-2.0). They are not part of this project. ``reduced.csv`` next to this module
-contains all numbers that the study uses. ``friction-discs report pushes --data FOLDER`` reduces logs again.
+The logs come from the repository robinzhoucmu/MLab_EXP, commit 4d86db94, folder PushExp/sensor_log (J. Zhou, Carnegie
+Mellon University, 2015, Apache-2.0) and are not part of this project. ``reduced.csv`` contains all numbers that the
+study uses. ``friction-discs report pushes --data FOLDER`` reduces logs again.
 
-Choices, and how far each of them moves the median error of the direction of the force (5 to 9 degrees) of a series:
+Choices, and how they change the median error of the force's direction in a series, which is 5 to 9 degrees:
 
-- A body moves straight and turns uniformly during a push, because only its first and last poses are recorded. The
-  displacement and the force are in its axes halfway between both poses. A displacement linearised in the axes of the
-  first pose, with the force in the same axes, raises the median by up to 8.3 degrees.
+- Only the first and last poses of a push are recorded, so a body is assumed to move straight and turn uniformly.
+  Displacement and force are in the body's axes halfway between both poses. The axes of the first pose, with a
+  linearised displacement, raise the median by up to 8.3 degrees.
 - The mean force excludes the first 30 % of the samples (``SETTLING``), while the pusher closes a gap of 2.5 mm and
-  the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. To
-  start 0.2 s after the force exceeds 1 N instead changes them by at most 0.4 degrees and 2 %.
-- The first sample is the offset of the sensor, as the authors use it. The mean of the first 20 samples instead
-  changes the median by at most 0.5 degrees.
-- The force acts at the place of the hand at the end of the push. The place at the start instead changes the median
-  error of the whole wrench by at most 2 degrees, and the work by at most 4 %.
+  the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. A
+  start 0.2 s after the force exceeds 1 N changes them by at most 0.4 degrees and 2 %.
+- The first sample is the sensor's offset, as in the authors' work. The mean of 20 samples changes the median by at
+  most 0.5 degrees.
+- The force acts where the hand is at the end of the push. The position at the start changes the median error of the
+  wrench by at most 2 degrees, and the work by at most 4 %.
 """
 
 from __future__ import annotations
@@ -35,34 +35,35 @@ import numpy as np
 from reference_model.systems import FloatArray
 
 SETTLING = 0.3
-"""Share of a push's samples before the mean of the force."""
+"""Share of a push's samples that the mean force excludes."""
 
 AT_REST = 20
-"""Number of samples before the pusher touches the body, whose scatter is the noise of the sensor."""
+"""Number of samples before the pusher touches the body; their scatter is the sensor's noise."""
 
 SENSOR = np.array([[1.0, 1.0], [1.0, -1.0]]) / math.sqrt(2.0)
 """Minus the map from the sensor's components to the force on the body, in the axes of the hand."""
 
 NAMES = re.compile(r"((?:wood_)?(?:\d+(?:_\d+){5}|patch))-exp_.*\.txt(?:\.xz)?")
-"""File names of logs; the first part is the name of the series."""
+"""File names of logs; the first group is the name of the series."""
 
 TOLERANCE = 1e-6
-"""Largest difference between a number of the table and the same number from a log, in mm, rad or N."""
+"""Largest difference between the table and a log, in mm, rad or N."""
 
 
 @dataclass(frozen=True)
 class Push:
     """One measured push, the ``number``-th of its log.
 
-    - ``series``: surface and contact, "wood" or none for the board, and the places of three feet or "patch".
-    - ``samples``: number of samples of the force.
-    - ``x``, ``y``, ``turn``: displacement of the origin of the body's frame in mm, in axes halfway between the first
-      and the last, and rotation in rad.
-    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height in mm and of the tilt about the horizontal axes
-      in rad. A body on a flat surface keeps both, so they are errors of the poses.
+    - ``series``: "wood" or nothing for the board, then the positions of three feet or "patch".
+    - ``samples``: number of force samples.
+    - ``x``, ``y``, ``turn``: displacement in mm of the origin of the body's frame, in the axes halfway, and rotation
+      in rad.
+    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height in mm and of the tilts in rad; a flat surface
+      allows none, so they are errors of the poses.
     - ``force_x``, ``force_y``: mean force of the pusher on the body in N, in the axes halfway.
-    - ``noise``: standard deviation in N of a component of the force before the pusher touches the body.
-    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: place of the hand in mm in the body's frame, before and after.
+    - ``noise``: standard deviation in N of a force component before contact.
+    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: positions of the hand in mm in the body's frame, before and
+      after.
     """
 
     series: str
@@ -86,13 +87,8 @@ class Push:
 def reduce_log(path: Path) -> list[Push]:
     """Return the pushes of a log, a text file that may be compressed by xz.
 
-    Raises
-    ------
-    ValueError
-        If the name of the file or its content does not follow the format.
-    OSError
-        If the file cannot be read.
-
+    Raise ``ValueError`` if the file's name or content does not follow the format, and ``OSError`` if the file cannot
+    be read.
     """
     name = NAMES.fullmatch(path.name)
     if name is None:
@@ -111,14 +107,13 @@ def reduce_log(path: Path) -> list[Push]:
 
 @dataclass
 class _Log:
-    """Lines of a log that are still to be read, and the number of the last one that was read."""
+    """Unread lines of a log, and the number of the last line read."""
 
     path: Path
     lines: Iterator[str]
     line: int = 0
 
     def rows(self, rows: int, columns: int, what: str) -> FloatArray:
-        """Return the next lines of numbers; raise ``ValueError`` at the first line without them."""
         found = []
         for _ in range(rows):
             text, self.line = next(self.lines, ""), self.line + 1
@@ -132,7 +127,7 @@ class _Log:
         return np.array(found)
 
     def count(self, what: str, least: int = 1) -> int:
-        """Return the next line as a whole number; raise ``ValueError`` if it is none or below ``least``."""
+        """Return the next line as a whole number; raise ``ValueError`` unless it is at least ``least``."""
         number = float(self.rows(1, 1, what)[0, 0])
         if number < least or not number.is_integer():
             raise self.fault(f"{what} is {number:g}: it must be a whole number >= {least}")
@@ -189,7 +184,7 @@ def turned(vector: FloatArray, angle: float) -> FloatArray:
     return np.array([[cosine, -sine], [sine, cosine]]) @ vector
 
 
-# --- The table.
+# --- The table
 
 SOURCE = """\
 # Measured planar pushes, reduced by compare/studies/plane/pushes/reduction.py from the logs of the repository
@@ -223,16 +218,8 @@ def reduced_pushes() -> tuple[Push, ...]:
 def check_table(folder: Path) -> tuple[list[str], list[Push]]:
     """Compare the table with the logs in ``folder``.
 
-    Returns
-    -------
-    (list of str, list of Push)
-        Names of the series that agree with the table, and the pushes of logs that it does not contain.
-
-    Raises
-    ------
-    ValueError
-        If the folder has no log, a log is invalid or a number differs.
-
+    Return the names of the series that agree, and the pushes of logs whose series is not in the table. Raise
+    ``ValueError`` if there are no logs, a log is invalid or a number differs.
     """
     logs = sorted(path for path in folder.iterdir() if NAMES.fullmatch(path.name)) if folder.is_dir() else []
     if not logs:

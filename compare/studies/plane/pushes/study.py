@@ -25,7 +25,9 @@ from compare.studies.plane.pushes.theory import (
     pushed_above,
     summed,
     uncertainties,
+    work_error,
     work_ratio,
+    wrench_difference,
     wrench_error,
 )
 from reference_model.contact.limit_surface import largest_wrench
@@ -41,7 +43,6 @@ GROUPS = {
     "the whole face on the board": ("patch",),
     "the whole face on wood": ("wood_patch",),
 }
-"""Series by contact and surface."""
 
 HYPOTHESES: dict[str, theory.Law] = {
     "Coulomb's law, the authors' parameters": coulomb,
@@ -54,10 +55,10 @@ HYPOTHESES: dict[str, theory.Law] = {
     "friction rises with the slip speed to the power 0.1": partial(summed, exponent=0.1),
     "friction falls with the slip speed to the power 0.1": partial(summed, exponent=-0.1),
 }
-"""Other explanations of the comparison error; sizes are assumptions, and nothing is fitted."""
+"""Other explanations of the error; their sizes are assumed, not fitted."""
 
 ROUNDING = 1e-12
-"""Rounding error of a wrench over the sliding force and the radius of the pusher."""
+"""Rounding error of a wrench over the sliding force and the pusher's radius."""
 
 LIMIT = 1e-9
 """Relative error of a point on the limit surface, whose slip minimises a convex function."""
@@ -97,13 +98,13 @@ def on_limit_surface() -> Measured:
     return Measured(predicted=np.ones(len(found)), value=found, error=LIMIT)
 
 
-# --- Pushes simulated forward.
+# --- Pushes simulated forward
 
 EVERY = 10
 """Interval between the pushes of a series that are simulated forward."""
 
 EPSILON = 2e-5
-"""Regularisation in m/s of the Exudyn model; the speed of the hand is 2.45 mm/s."""
+"""Regularisation in m/s of the Exudyn model; the hand moves at 2.45 mm/s."""
 
 
 def simulated(every: int = EVERY) -> list[Push]:
@@ -144,18 +145,47 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
     )
 
 
-# --- The validation.
+# --- The validation
 
 
 def validations(every: int = EVERY) -> tuple[Validation, ...]:
-    """Return the errors of the force's direction for each surface and contact, and of the final position."""
-    return *(_of_directions(name, series) for name, series in GROUPS.items()), _of_final_positions(every)
+    """Return the errors of the force's direction by surface and contact, of wrench and work, and of the position."""
+    everything = tuple(theory.by_series())
+    return (
+        *(
+            _of(
+                series,
+                force_error,
+                "Coulomb's law with the authors' parameters predicts the direction of the force with a median "
+                f"error of {{}} degrees for {name}.",
+                "direction of the force",
+            )
+            for name, series in GROUPS.items()
+        ),
+        _of(
+            everything,
+            wrench_difference,
+            "Coulomb's law predicts the direction of the wrench, with moments over 50 mm, with a median error of {} "
+            "degrees.",
+            "direction of the wrench",
+        ),
+        _of(
+            everything,
+            work_error,
+            "Coulomb's law with the authors' sliding forces predicts the work of a push with a median error of {} %.",
+            "work",
+            unit="%",
+        ),
+        _of_final_positions(every),
+    )
 
 
-def _of_directions(name: str, series: Sequence[str]) -> Validation:
+def _of(
+    series: Sequence[str], of: theory.Difference, sentence: str, quantity: str, unit: str = "degrees"
+) -> Validation:
     groups = [theory.by_series()[one] for one in series]
-    found = np.concatenate([errors(pushes, force_error) for pushes in groups])
-    sources = [uncertainties(pushes) for pushes in groups]
+    found = np.array([np.linalg.norm(of(push, coulomb)) for pushes in groups for push in pushes])
+    sources = [uncertainties(pushes, of) for pushes in groups]
     median, uncertainty = median_with_error(found)
     total = np.concatenate([one.total for one in sources])
 
@@ -163,10 +193,9 @@ def _of_directions(name: str, series: Sequence[str]) -> Validation:
         return float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
 
     return Validation(
-        sentence="Coulomb's law with the authors' parameters predicts the direction of the force with a median error "
-        f"of {median:.1f} ± {uncertainty:.1f} degrees for {name}.",
-        quantity="direction of the force",
-        unit="degrees",
+        sentence=sentence.format(f"{median:.1f} ± {uncertainty:.1f}"),
+        quantity=quantity,
+        unit=unit,
         error=median,
         error_uncertainty=uncertainty,
         data=middle("data"),
@@ -222,13 +251,13 @@ COLUMNS = (
     "data uncertainty",
     "input uncertainty",
     "explained in %",
+    "scatter of equal pushes (pairs)",
     "direction of the wrench: median error in degrees",
     "measured over predicted work",
 )
 
 
 def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
-    """Return the cells of ``COLUMNS`` for the pushes of one series."""
     force, uncertain = errors(pushes, force_error), uncertainties(pushes)
     return (
         _text(force),
@@ -236,6 +265,7 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
         f"{np.median(uncertain.data):.1f}",
         f"{np.median(uncertain.input):.1f}",
         f"{100.0 * np.mean(force <= 2.0 * uncertain.total):.0f}",
+        "{:.1f} ({})".format(*theory.scatter(pushes)),
         _text(errors(pushes, wrench_error)),
         _text(errors(pushes, work_ratio), digits=3),
     )

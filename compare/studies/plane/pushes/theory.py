@@ -1,8 +1,7 @@
-"""Coulomb friction in measured pushes: predicted forces, their errors, and other explanations of the rest.
+"""Coulomb friction in measured pushes: predicted forces, their errors, and other explanations of these errors.
 
-A push is quasi-static, so the pusher balances friction. Friction follows from the measured displacement of the
-body: a foot that moves by d carries its share of the sliding force against d. Mass, centre of mass, feet and
-sliding force are those of the authors, and nothing is fitted.
+A push is quasi-static, so the pusher balances friction: a foot that moves by d carries its share of the sliding force
+against d. Mass, centre of mass, feet and sliding force are the authors' values; nothing is fitted.
 """
 
 from __future__ import annotations
@@ -10,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ LEGS = 150.0
 """Length of both legs of the triangle in mm; the origin is the corner between them."""
 
 PUSHER = 0.05
-"""Unit of length in m for moments in the direction of a wrench, that of the authors."""
+"""The authors' unit of length in m for moments."""
 
 SLIDING_FORCES = {"board": 4.2, "wood": 5.0}
 """Sliding force in N by surface."""
@@ -46,16 +46,16 @@ def surface(series: str) -> str:
 
 
 def feet(series: str) -> list[complex]:
-    """Return the places of the feet in mm in the frame of the body, or none for the patch."""
+    """Return the positions of the feet in mm in the frame of the body, or none for the patch."""
     numbers = [float(number) for number in series.removeprefix("wood_").split("_") if number != "patch"]
     return [complex(x, y) for x, y in zip(numbers[:3], numbers[3:], strict=True)]
 
 
 @cache
 def contact_of(series: str, centre: complex = CENTRE, divisions: int = DIVISIONS) -> Points:
-    """Return the contact of a series about the centre of mass.
+    """Return the contact of a series, relative to the centre of mass.
 
-    ``centre`` is the centre of pressure in mm. Three shares follow from it. A patch is under uniform pressure.
+    The centre of pressure ``centre`` (mm) determines the shares of three feet. A patch has uniform pressure.
     """
     places = feet(series)
     if not places:
@@ -73,7 +73,7 @@ def contact_of(series: str, centre: complex = CENTRE, divisions: int = DIVISIONS
 
 @dataclass(frozen=True)
 class Wrench:
-    """Force (N, complex) and moment (N m) on the body about its centre of mass, in its axes halfway."""
+    """Force (N, complex) and moment (N m) on the body about its centre of mass, in the axes halfway."""
 
     force: complex
     moment: float
@@ -105,7 +105,7 @@ def measured(push: Push) -> Wrench:
 
 
 def predicted(motion: Motion, contact: Points, sliding_force: float) -> Wrench:
-    """Return the wrench against which the friction of a contact acts during a motion."""
+    """Return the wrench that balances friction during a motion."""
     force, moment = wrench_of_slip(contact, motion.shift, motion.spin)
     return Wrench(sliding_force * force, sliding_force * moment)
 
@@ -119,7 +119,7 @@ def coulomb(
     """Return the wrench of Coulomb friction with the authors' parameters.
 
     ``centre`` moves the centre of pressure of three feet (mm), ``factor`` multiplies the sliding force, and
-    ``divisions`` refine the patch.
+    ``divisions`` refines the patch.
     """
     contact = contact_of(push.series, centre, divisions)
     return predicted(Motion.of(push), contact, factor * SLIDING_FORCES[surface(push.series)])
@@ -130,11 +130,17 @@ def force_error(push: Push, law: Law) -> float:
     return float(np.degrees(np.angle(law(push).force * measured(push).force.conjugate())))
 
 
+def wrench_difference(push: Push, law: Law) -> FloatArray:
+    """Return the predicted minus the measured unit wrench in degrees, with moments over ``PUSHER``, shape (3,)."""
+    directions = [wrench.components for wrench in (law(push), measured(push))]
+    theory, found = (direction / np.linalg.norm(direction) for direction in directions)
+    return np.asarray(np.degrees(theory - found))
+
+
 def wrench_error(push: Push, law: Law) -> float:
-    """Return the angle in degrees between the measured and the predicted wrench, moments over ``PUSHER``."""
-    found, theory = measured(push).components, law(push).components
-    cosine = found @ theory / np.linalg.norm(found) / np.linalg.norm(theory)
-    return float(np.degrees(np.arccos(min(1.0, cosine))))
+    """Return the angle in degrees between the measured and the predicted wrench, with moments over ``PUSHER``."""
+    chord = np.radians(np.linalg.norm(wrench_difference(push, law)))
+    return float(2.0 * np.degrees(np.arcsin(min(1.0, 0.5 * chord))))
 
 
 def work_ratio(push: Push, law: Law) -> float:
@@ -144,10 +150,21 @@ def work_ratio(push: Push, law: Law) -> float:
     return float((measured(push).components @ along) / (law(push).components @ along))
 
 
-# --- Uncertainties of the direction of the force, as in ASME V&V 20: of the data, of the input, and numerical ones.
+def work_error(push: Push, law: Law) -> float:
+    """Return the measured work minus the predicted one, in per cent of the latter."""
+    return 100.0 * (work_ratio(push, law) - 1.0)
 
-GIVEN_TO = 1.0
-"""Last digit of the centre of mass and the feet in mm; the authors state no uncertainty."""
+
+# --- Uncertainties, as in ASME V&V 20
+
+Difference = Callable[[Push, Law], float | FloatArray]
+"""Prediction minus measurement, a number or components."""
+
+CENTRE_TO, SLIDING_FORCE_TO = 1.0, 0.1
+"""Last digits of the centre of mass in mm and of the sliding force in N; the authors state no uncertainty."""
+
+ROUNDED = 1.0 / np.sqrt(12.0)
+"""Standard deviation of a rounding error over the last digit."""
 
 NORMAL = 1.4826
 """Standard deviation over the median deviation of a normal distribution."""
@@ -155,7 +172,7 @@ NORMAL = 1.4826
 
 @dataclass(frozen=True)
 class Uncertainties:
-    """Standard uncertainties in degrees of the direction of the force, one for each push, shape (n,)."""
+    """Standard uncertainties of one difference, shape (n,) each."""
 
     data: FloatArray
     input: FloatArray
@@ -168,10 +185,10 @@ class Uncertainties:
 
 
 def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
-    """Return the standard uncertainties of a displacement (mm) and of a turn (rad) from the height and the tilt.
+    """Return the standard uncertainties of a displacement (mm) and of a turn (rad).
 
-    A body on a flat surface keeps its height and its tilt, so their changes show the errors of the poses. Errors in
-    the plane are assumed to be as large.
+    On a flat surface height and tilt are constant, so their changes are errors of the poses. Errors in the plane are
+    assumed to be as large.
     """
     lift = NORMAL * float(np.median([abs(push.lift) for push in pushes]))
     tilts = [abs(tilt) for push in pushes for tilt in (push.tilt_x, push.tilt_y)]
@@ -179,44 +196,62 @@ def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
 
 
 @cache
-def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
+def uncertainties(pushes: tuple[Push, ...], of: Difference = force_error) -> Uncertainties:
+    """Return the effects of a standard deviation of each measured or given number on the difference ``of``."""
     shift, turn = pose_errors(pushes)
-    rounding = GIVEN_TO / np.sqrt(12.0)
     data, inputs, numerical = [], [], []
     for push in pushes:
-        base = force_error(push, coulomb)
-        moved = [
-            replace(push, x=push.x + shift),
-            replace(push, y=push.y + shift),
-            replace(push, turn=push.turn + turn),
+        base = of(push, coulomb)
+        changes = {
+            **dict.fromkeys(("x", "y"), shift),
+            "turn": turn,
+            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # of one pose
+            **dict.fromkeys(("force_x", "force_y"), push.noise),  # of the first sample, the offset
+        }
+        moved = [replace(push, **{name: getattr(push, name) + change}) for name, change in changes.items()]
+        data.append(_size([of(other, coulomb) - base for other in moved]))
+        laws = [
+            partial(coulomb, factor=1.0 + SLIDING_FORCE_TO * ROUNDED / SLIDING_FORCES[surface(push.series)])
         ]
-        effects = [_change(force_error(other, coulomb), base) for other in moved]
-        offset = np.degrees(push.noise / abs(measured(push).force))  # of the first sample
-        data.append(np.hypot(np.linalg.norm(effects), offset))
-        centres = [CENTRE + step * rounding for step in (1.0, 1.0j)] if feet(push.series) else []
-        laws = [partial(coulomb, centre=centre) for centre in centres]
-        inputs.append(float(np.linalg.norm([_change(force_error(push, law), base) for law in laws])))
+        if feet(push.series):
+            laws += [partial(coulomb, centre=CENTRE + step * CENTRE_TO * ROUNDED) for step in (1.0, 1.0j)]
+        inputs.append(_size([of(push, law) - base for law in laws]))
         finer = partial(coulomb, divisions=2 * DIVISIONS)
-        numerical.append(0.0 if feet(push.series) else abs(force_error(push, finer) - base))
+        numerical.append(0.0 if feet(push.series) else _size([of(push, finer) - base]))
     return Uncertainties(np.array(data), np.array(inputs), np.array(numerical))
 
 
-def _change(angle: float, base: float) -> float:
-    return (angle - base + 180.0) % 360.0 - 180.0
+def _size(changes: Sequence[float | FloatArray]) -> float:
+    return float(np.linalg.norm(np.array(changes).ravel()))
 
 
-# --- Other explanations of the rest: hypotheses, not fits.
+ALIKE = 5.0, 7.5
+"""Largest differences of equal pushes: distance of the hands at the start in mm, angle of the forces in degrees."""
+
+
+def scatter(pushes: Sequence[Push], of: Difference = force_error) -> tuple[float, int]:
+    """Return the standard deviation of a difference from push to equal push, and the number of pairs."""
+    found = []
+    for first, second in combinations(pushes, 2):
+        apart = complex(first.start_x - second.start_x, first.start_y - second.start_y)
+        turn = np.angle(measured(first).force * measured(second).force.conjugate(), deg=True)
+        if abs(apart) < ALIKE[0] and abs(turn) < ALIKE[1]:
+            found.append(_size([of(first, coulomb) - of(second, coulomb)]))
+    return NORMAL * float(np.median(found)) / np.sqrt(2.0), len(found)
+
+
+# --- Hypotheses about the remaining error
 
 
 def pushed_above(push: Push, height: float) -> Wrench:
-    """Return Coulomb's wrench with a pusher ``height`` mm above the surface, which moves the centre of pressure."""
+    """Return Coulomb's wrench for a pusher ``height`` mm above the surface, which moves the centre of pressure."""
     return coulomb(push, centre=CENTRE + measured(push).force * height / (MASS * GRAVITY))
 
 
 def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrench:
-    """Return the wrench as a sum over contact points, with μ ∝ speed to the power ``exponent`` and the same mean μ.
+    """Return the wrench as a sum over contact points, with the share ``at_edges`` of a patch's load on its edges.
 
-    The share ``at_edges`` of the load acts on the edges of a patch; feet stay as they are.
+    μ is proportional to the speed to the power ``exponent``; the mean μ does not change.
     """
     contact, motion = contact_of(push.series), Motion.of(push)
     arms, shares = np.array(contact.arms(0.0)), np.array(contact.shares)
@@ -232,7 +267,7 @@ def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrenc
 
 
 def _edges(count: int = 60) -> NDArray[np.complex128]:
-    """Return points on the edges of the triangle at equal distances, in m about the centre of mass."""
+    """Return equidistant points on the edges of the triangle, in m relative to the centre of mass."""
     corners = np.array([0.0, LEGS, 1j * LEGS, 0.0])
     lengths = abs(np.diff(corners))
     along = (np.arange(count) + 0.5) / count * lengths.sum()
@@ -249,12 +284,12 @@ def by_series() -> dict[str, tuple[Push, ...]]:
 
 
 def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = coulomb) -> FloatArray:
-    """Return the sizes of the errors of ``of`` with a law, shape (n,)."""
+    """Return the absolute values of the error function ``of`` under a law, shape (n,)."""
     return np.abs([of(push, law) for push in pushes])
 
 
 def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:
-    """Return the median, and its standard error by the bootstrap."""
+    """Return the median and its bootstrap standard error."""
     generator = np.random.default_rng(1)
     medians = np.median(generator.choice(values, (draws, len(values))), axis=1)
     return float(np.median(values)), float(medians.std())

@@ -2,10 +2,12 @@
 
 import cmath
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 from studies_under_test import DIFFERS, theory_of
 
 from compare.studies.plane.pushes import forward, theory
@@ -55,14 +57,51 @@ def test_errors_agree_with_the_first_look_of_the_table():
 
 
 def test_each_push_is_validated_once():
-    *directions, position = validations(every=50)
-    assert sum(one.count for one in directions) == len(reduced_pushes()) == 350
+    *directions, wrench, work, position = validations(every=50)
+    assert sum(one.count for one in directions) == wrench.count == work.count == len(reduced_pushes()) == 350
     assert sorted(series for group in GROUPS.values() for series in group) == sorted(theory.by_series())
     assert position.count == len(simulated(50)) == 7
-    for one in (*directions, position):
+    for one in (*directions, wrench, work, position):
         assert 0.0 < one.error_uncertainty < one.error
         assert f"{one.error:.1f} ± {one.error_uncertainty:.1f}" in one.sentence
         assert 0.0 < one.explained < 1.0
+
+
+def test_the_work_is_as_uncertain_as_the_last_digit_of_the_sliding_force():
+    pushes = theory.by_series()["wood_patch"]
+    found = theory.uncertainties(pushes, theory.work_error)
+    ratios = theory.errors(pushes, theory.work_ratio)
+    assert found.input == pytest.approx(100.0 * ratios * 0.1 / math.sqrt(12.0) / 5.0, rel=0.01)
+
+
+def test_data_uncertainties_are_the_effect_of_errors_of_that_size():
+    """Here all measured numbers have random errors at once; the study changes one after the other."""
+    random = np.random.default_rng(1)
+    pushes = theory.by_series()["patch"]
+    shift, turn = theory.pose_errors(pushes)
+    sizes = {"x": shift, "y": shift, "turn": turn, "end_x": shift / 2**0.5, "end_y": shift / 2**0.5}
+    push = pushes[0]
+    sizes |= {"force_x": push.noise, "force_y": push.noise}
+    for of in (theory.force_error, theory.wrench_difference, theory.work_error):
+        found = []
+        for _ in range(300):
+            moved = {name: getattr(push, name) + random.normal(0.0, size) for name, size in sizes.items()}
+            found.append(np.ravel(of(replace(push, **moved), theory.coulomb)))
+        expected = np.linalg.norm(np.std(found, axis=0))
+        assert theory.uncertainties(pushes, of).data[0] == pytest.approx(expected, rel=0.15)
+
+
+def test_equal_pushes_scatter_by_the_errors_of_each():
+    push = obeying(theory.by_series()["patch"][0], 4.2)
+    quantiles = norm.ppf((np.arange(200) + 0.5) / 200)  # in degrees
+    turned = [
+        cmath.rect(1.0, math.radians(angle)) * complex(push.force_x, push.force_y)
+        for angle in quantiles
+    ]
+    pushes = [replace(push, force_x=force.real, force_y=force.imag) for force in turned]
+    found, pairs = theory.scatter([*pushes, replace(push, start_x=push.start_x + 6.0)])
+    assert pairs == 200 * 199 / 2
+    assert found == pytest.approx(1.0, rel=0.02)
 
 
 def test_the_theory_claims_feel_a_wrong_moment(monkeypatch):
