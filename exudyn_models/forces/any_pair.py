@@ -42,15 +42,15 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of the derivatives with respect to coordinates and velocities. Also returns the generalised
-    forces on both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
+    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
+    both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
     to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(turned[1], turned[0])
     force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
-    # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; P does not change if slip and disc are rotated together.
+    # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; rotating slip and disc together does not change P.
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
@@ -82,9 +82,9 @@ def derivatives_on_nodes(
     by_slip: FloatArray,
     slope: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return derivatives on the nodes of friction that is given over the slip, and the forces on the nodes.
+    """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` are results of
+    The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` come from
     ``slip_and_place``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
     gradient of P is ``slope`` times the force.
     """
@@ -128,10 +128,10 @@ def derivatives_on_nodes(
 def force_on_any(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on both nodes, in a user function's signature after two arguments.
+    """Return the generalised forces on both nodes; Exudyn's signature follows two arguments of our own.
 
-    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. If the
-    friction force is not constant it is given by ``law``, and the contact contains 1 N in its place.
+    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. A friction
+    force that is not constant is given by ``law``, and the contact then contains 1 N.
     """
     result: Floats = to_tuple(_forces(parameters, None, law, t, q, q_t), len(q))
     return result
@@ -141,7 +141,7 @@ def force_on_any(
 def force_on_mounted(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
     forces = _forces(parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE], law, t, q, q_t)
     result: Floats = to_tuple(forces, len(q))
     return result
@@ -161,14 +161,14 @@ def _forces(
         speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
         friction = friction_force_under(law, contact[3], t, radius, speed, spin)
         fx, fy, moment = friction * fx, friction * fy, friction * moment
-    for k in range(len(q)):  # overwrites the velocities, which are no longer needed
+    for k in range(len(q)):
         velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
     return velocities
 
 
 @compiled
 def slip_of_nodes(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
-    """Return their product; for such a small one a library would take longer."""
+    """Return their product, faster than a library for such small arrays."""
     ux = uy = spin = 0.0
     for k in range(len(velocities)):
         ux += to_slip[0, k] * velocities[k]
@@ -188,7 +188,7 @@ def jacobian_on_any(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (n, n)."""
+    """Return the derivatives of the negative forces, shape (n, n)."""
     contact, kinds, coordinates, velocities = _state(parameters, None, q, q_t)
     return friction_derivatives_on_nodes(
         kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
@@ -206,7 +206,7 @@ def jacobian_on_mounted(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
     rest, mounts = parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE]
     contact, kinds, coordinates, velocities = _state(rest, mounts, q, q_t)
     return friction_derivatives_on_nodes(

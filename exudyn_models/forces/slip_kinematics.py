@@ -5,8 +5,8 @@ axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M
 nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
 any orientation, and the derivatives of the forces follow from those of J.
 
-A contact may sit anywhere on its bodies. ``Mounts`` place it, and the lever from the disc's node to the contact then
-enters J. Without mounts the contact is that of the nodes themselves, which is cheaper.
+``Mounts`` place a contact anywhere on its bodies; the lever from the disc's node to the contact then enters J.
+Without mounts the contact is at the nodes, which is cheaper.
 
 J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
 (Squire & Trapp, SIAM Review 40 (1998) 110).
@@ -63,7 +63,7 @@ and the ground rests in it. The second is the frame of the contact in the axes o
 Kinds = tuple[int, int, Mounts | None]
 """Kinds of the nodes of master and disc, and the mounts of the contact; None if its frames are those of the nodes.
 
-Rotors and the ground then turn about and have the global z axis through the origin.
+Rotors and the ground then have the global z axis through the origin.
 """
 
 Floats = Sequence[float]
@@ -141,7 +141,7 @@ def _mounted(
 ) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
     """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
 
-    The numbers of the body's mount begin at ``mounts[mount]``. All others come from ``frame``.
+    The numbers of the body's mount begin at ``mounts[mount]``; all other arguments come from ``frame``.
     """
     if TRANSLATIONS[kind] == 0:  # a rotor or the ground
         fixed = _axes_at(mounts, mount + 3)
@@ -242,7 +242,7 @@ def _rotated_by_euler_parameters(
 
 @compiled
 def _lever(start: Vector, end: Vector, axis: Vector) -> Vector:
-    """Return the cross product of the difference of two positions and an axis."""
+    """Return (end − start) × axis."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     return y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]
 

@@ -7,8 +7,8 @@ r·|S|. Its P(U, W) is a complete elliptic integral, computed by an arithmetic-g
 
 For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
 P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
-r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. So the error of n rings per side falls like n^(−12),
-and that of the curvatures, which contain ln|r − r₀|, like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the
+r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. The error of n rings per side falls like n^(−12), and
+that of the curvatures, which contain ln|r − r₀|, like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the
 largest values. If r₀ is outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
 """
 
@@ -25,7 +25,7 @@ from reference_model.systems import FloatArray
 NEAREST = 1e-15
 """Relative distance from U = W below which the slope of the ring's friction stays constant.
 
-The slope is infinite at U = W, like a logarithm. At this distance it is a secant over an interval that a step cannot
+At U = W the slope is infinite, like a logarithm. At this distance it is a secant over an interval that a step cannot
 resolve.
 """
 
@@ -47,7 +47,7 @@ def slip_potential_gradient(
 ) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), equal for a ring.
 
-    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. The ``density`` of pressure is that of ``density_of``.
+    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. ``density`` is the code of ``density_of``.
     """
     if inner == outer:
         by_speed, by_rim = ring_potential_slopes(speed, outer * spin)
@@ -149,7 +149,7 @@ def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, f
 
 @compiled
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
-    """Return the derivatives of P with respect to its larger and its smaller argument."""
+    """Return the derivatives of P by its larger and its smaller argument."""
     ratio = smaller / larger
     complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without cancellation
     if complement == 0.0:
@@ -169,7 +169,7 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
     share = 0.25 / a
     c = m * share  # (1 − b₀)/2 without cancellation
     t = c * share
-    if c > 1e-5:  # the next c is less than the square of this one, and enters as a square
+    if c > 1e-5:  # the next c is at most the square of this one, and enters as a square
         weight, total = 1.0, 0.0
         while c > 1e-5:
             c = 0.5 * (a - b)  # its rounding error is small compared with the earlier terms
@@ -191,7 +191,7 @@ def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: fl
 
 @compiled
 def ring_potentials(speeds: FloatArray, rims: FloatArray) -> FloatArray:
-    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
+    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, shape (n,)."""
     result = np.zeros(len(speeds))
     for i in range(len(speeds)):
         result[i] = slip_potential_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0, 0)

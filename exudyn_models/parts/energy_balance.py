@@ -1,7 +1,7 @@
 """The energy balance of a model, which checks any run without a reference solution.
 
-In every correct run energy gains equal losses plus the change of the stored energy, for any bodies and force laws.
-The solver integrates powers to works along with all other coordinates, so works are as accurate as the motion.
+For any bodies and force laws, the energy gains equal the losses plus the change of the stored energy. The solver
+integrates powers to works along with all other coordinates, so works are as accurate as the motion.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, positive_number
 
 Power: TypeAlias = Callable[[Any, float], float]
-"""Takes the ``mbs`` and the time in s; returns a power in W of the current motion."""
+"""Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
 
 Energy: TypeAlias = Callable[[Any], float]
-"""Takes the ``mbs``; returns an energy in J of the current motion."""
+"""Function of ``mbs`` that returns an energy in J of the current motion."""
 
 
 CLOSED = 1e-6
@@ -91,9 +91,8 @@ def add_energy_balance(
 ) -> Callable[[], EnergyBalance]:
     """Add an energy balance to ``mbs``; return a function that reads it after a run.
 
-    The function issues a ``RuntimeWarning`` if the residual exceeds 1e-6 of the energy turned over. The kinetic
-    energy of all bodies is included automatically. Use ``spring_energy`` for native connectors with an output
-    ``PotentialEnergy``.
+    It issues a ``RuntimeWarning`` if the residual exceeds 1e-6 of the energy turned over. The kinetic energy of all
+    bodies is included automatically. Use ``spring_energy`` for native connectors with an output ``PotentialEnergy``.
 
     Parameters
     ----------
@@ -110,7 +109,7 @@ def add_energy_balance(
     ------
     ValueError
         If ``unit`` is not > 0, a name is both a gain and a loss, or a ``spring_energy`` refers to an object without
-        potential energy. The last check needs a model that can be assembled; otherwise the run reports it.
+        potential energy. A model that cannot be assembled yet reports the latter in the run.
 
     """
     unit = positive_number("unit", unit, "J")
@@ -150,7 +149,7 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
-    """Add a sensor of the kinetic energy of all bodies plus the ``stored`` energies; return its ``SensorIndex``."""
+    """Add a sensor of the kinetic energy of all bodies plus the ``stored`` energies."""
     bodies: list[int] = []
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:

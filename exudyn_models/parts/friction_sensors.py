@@ -41,7 +41,7 @@ BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
 """Values of the sensor ``"mode"``, as in Modelica's clutches."""
 
 BAND = 0.01
-"""Relative half-width of the band around the capacity that leaves ``"mode"`` unchanged."""
+"""Relative half-width of the band around the capacity in which ``"mode"`` does not change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +67,10 @@ class RingFriction:
 
     @property
     def compiled(self) -> bool:
-        """True if load and coefficient are computed without Python functions.
+        """True if load and coefficient are numbers, tables or numba functions (``@numba.njit``).
 
-        This requires that coefficient and load are numbers, tables or numba functions (``@numba.njit``), which keep
-        the values that outer names had when they were compiled. Any other function is called from compiled code too,
-        at its own cost.
+        Then no Python function is called in a run, and outer names in numba functions keep their values from
+        compilation.
         """
         return self._contact.factors.compiled
 
@@ -88,11 +87,7 @@ class RingFriction:
     ) -> None:
         """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present one.
 
-        Raises
-        ------
-        ValueError
-            If a number is out of range; both then stay unchanged.
-
+        Raises ``ValueError`` if a number is out of range; both then stay unchanged.
         """
         factors = self._contact.factors
         if self._thermal is not None and friction_coefficient is not None:
@@ -121,9 +116,8 @@ class RingFriction:
         - ``"capacity_share"``: share of the friction capacity in use: 1 in slip, P/ε in creep, and 0 without
           friction.
         - ``"mode"``: 0 locked; 1 slipping with the disc faster than the master, or sideways; −1 slipping with the
-          disc slower; 2 open, without load. The capacity distinguishes locked from slipping, not the size of the
-          slip: a contact that creeps at nearly full capacity is locked. Within ``BAND`` of full capacity the mode
-          stays that of the previous evaluation, so that it does not flicker.
+          disc slower; 2 open, without load. A contact that creeps below its capacity is locked. Within ``BAND`` of
+          full capacity the mode stays that of the previous evaluation, so that it does not flicker.
         - ``"power"``: heating power of friction, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
@@ -142,7 +136,7 @@ class RingFriction:
     def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
         asked, mode = False, _Mode()
 
-        # Slip is computed without the load, so that a load may depend on a sensor of slip.
+        # Slip needs no load, so that a load may depend on a sensor of slip.
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
             nonlocal asked
             slip, angle, radius, axes = self._slip(mbs, configuration)
@@ -185,7 +179,7 @@ class RingFriction:
         return values
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return the heating power of friction in W, in the form that ``add_energy_balance`` expects."""
+        """Return the heating power of friction in W, for ``add_energy_balance``."""
         get_coordinates, get_velocities, first, second = self._access
         values = get_velocities()
         velocities = values[first].tolist()
@@ -200,9 +194,9 @@ class RingFriction:
         forces = self._contact.functions["force"](mbs, t, 0, coordinates, velocities)
         return -float(sum(map(mul, forces, velocities)))
 
-    @cached_property  # looking them up costs as much as calling them
+    @cached_property  # a look-up costs as much as a call
     def _access(self) -> tuple[Any, Any, slice, slice | None]:
-        """Functions for coordinates, if needed, and velocities of the assembled model, and slices of the nodes."""
+        """Functions for coordinates (None if not needed) and velocities of the model, and slices of the nodes."""
         data = self.mbs.systemData
         on_axis = on_one_axis(self._contact.kinds, self._contact.factors)
         first, second, *_ = *self._places, None
@@ -233,7 +227,7 @@ class RingFriction:
         )
         return self._contact.reference + q, q_t
 
-    @cached_property  # later nodes are added behind them
+    @cached_property  # nodes added later do not change it
     def _places(self) -> list[Any]:
         """Slices of the nodes' coordinates among those of the assembled model."""
         item = present_item(self.mbs, self._contact, self.item)

@@ -47,8 +47,8 @@ PARALLEL = 1e-9
 class Side:
     """One body of a contact, by the ``name`` of its argument; ``node`` is None for the ground.
 
-    ``start``, shape (3,), and ``axes``, shape (3, 3), are the fixed frame of a rotor or the ground, with its axes as
-    columns; ``place`` and ``rotation`` are the frame of the contact on the body.
+    ``start``, shape (3,), and ``axes``, shape (3, 3), with columns, are the fixed frame of a rotor or the ground;
+    ``place`` and ``rotation`` are the frame of the contact on the body.
     """
 
     name: str
@@ -86,7 +86,7 @@ def checked_sides(
     rotations: Sequence[Any] = (None, None),
     master: str = "master",
 ) -> tuple[Side, Side]:
-    """Return both sides of a contact. Only the first, called ``master``, may be the ground.
+    """Return both sides of a contact; only the first, called ``master``, may be the ground.
 
     Raises ``ValueError`` if a node is not allowed, both are the same, or one of the ``rotations`` is not a rotation
     matrix.
@@ -103,7 +103,7 @@ def checked_sides(
 def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
     """Return the nodes, without the ground, and the kinds and mounts for compiled code."""
     nodes = (disc.node,) if master.node is None else (master.node, disc.node)
-    # The place of a rotor along its axis only matters to a master that tilts.
+    # The place of a rotor along its axis matters only to a master that tilts.
     at_nodes = master.is_at_node and disc.is_at_node and (master.kind in FLAT or disc.start[2] == 0.0)
     plain = at_nodes or _share_an_axis(master, disc)
     return nodes, (master.kind, disc.kind, None if plain else (*master.numbers, *disc.numbers))
@@ -124,7 +124,7 @@ def _share_an_axis(master: Side, disc: Side) -> bool:
 def check_axes(mbs: Any, master: Side, disc: Side) -> None:
     """Raise ``ValueError`` if a body turns across the contact's axis, so that friction does not resist its spin.
 
-    That is any other direction if both bodies turn about fixed axes, and otherwise more than 45° at the start.
+    Fixed axes must be parallel to it; others may deviate by 45° at the start.
     """
     fixed = master.kind in FLAT and disc.kind in FLAT
     axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2]
@@ -142,7 +142,7 @@ def check_axes(mbs: Any, master: Side, disc: Side) -> None:
 
 
 def _axes_and_spin(mbs: Any, side: Side) -> tuple[FloatArray, FloatArray]:
-    """Return the initial axes of a body as columns and its angular velocity, of any size if its axis is fixed."""
+    """Return the initial axes of a body as columns, and its angular velocity (only its direction if the axis is fixed)."""
     if side.kind in FLAT:
         return side.axes, side.axes[:, 2]
     entry = mbs.GetNode(side.node)
@@ -193,7 +193,6 @@ def _checked_rotation(name: str, rotation: Any) -> FloatArray:
 
 
 def _marked(name: str, mbs: Any, index: Any) -> tuple[Any, FloatArray]:
-    """Return the body or node of a marker, and the place of the marker on it."""
     count = mbs.systemData.NumberOfMarkers()
     if not 0 <= int(index) < count:
         raise ValueError(f"{name} {int(index)} does not exist: this model has {count} markers")
@@ -255,7 +254,6 @@ def _frame_of_rotor(name: str, mbs: Any, node: Any) -> tuple[FloatArray, FloatAr
 
 
 def _checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int]) -> int:
-    """Return the kind of a node, one of ``KINDS``; raise ``ValueError`` if it is not ``allowed``."""
     try:
         kind = mbs.GetNode(node)["nodeType"]
     except exu.ExudynIndexError:

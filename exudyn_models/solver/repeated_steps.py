@@ -1,7 +1,7 @@
 """Restoration of states that Exudyn's implicit solvers leave changed when they repeat a step.
 
-- If modified Newton converges badly the solver restarts the step. The rates of all first-order coordinates, such as
-  heat and work, keep the values of the diverged iterate (``examples/11_exudyn_first_order_rates.py``).
+- If modified Newton converges badly, the solver restarts the step. All first-order rates, such as heat and work, keep
+  the values of the diverged iterate (``examples/11_exudyn_first_order_rates.py``).
 - A rejected step is repeated with a smaller size. Generalised-α keeps the algorithmic accelerations of the rejected
   step, which changes all velocities.
 """
@@ -17,7 +17,7 @@ import exudyn as exu
 
 WITHOUT_RESTART: dict[str, Any] = {
     "modifiedNewtonContractivity": 1e300,
-    "maxModifiedNewtonIterations": 1,  # then a new Jacobian in each iteration, as in full Newton
+    "maxModifiedNewtonIterations": 1,  # a new Jacobian in each iteration, as in full Newton
     "maxModifiedNewtonRestartIterations": 1_000_000,
     "modifiedNewtonJacUpdatePerStep": False,
 }
@@ -25,7 +25,7 @@ WITHOUT_RESTART: dict[str, Any] = {
 
 @contextmanager
 def kept(settings: Any, *names: str) -> Iterator[None]:
-    """Restore the named ``settings`` at the end."""
+    """Restore the named ``settings`` on exit."""
     before = {name: getattr(settings, name) for name in names}
     try:
         yield
@@ -36,7 +36,7 @@ def kept(settings: Any, *names: str) -> Iterator[None]:
 
 @contextmanager
 def changed(settings: Any, **values: Any) -> Iterator[None]:
-    """Give ``settings`` other values, and restore those before at the end."""
+    """Change ``settings`` temporarily."""
     with kept(settings, *values):
         for name, value in values.items():
             setattr(settings, name, value)
@@ -69,7 +69,7 @@ def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[
 def restored_accelerations(mbs: Any) -> Iterator[None]:
     """Make generalised-α repeat a rejected step from the algorithmic accelerations at its start.
 
-    Exudyn restores them if the user function after Newton's method reports a discontinuity. So this one reports one,
+    Exudyn restores them if the user function after Newton's method reports a discontinuity, as this one does
     once per repeated step.
     """
     last_start, spoilt = math.nan, False

@@ -1,4 +1,4 @@
-"""A single call of an Exudyn solver: quiet, without files, and checked for problems that Exudyn does not report."""
+"""One call of an Exudyn solver: quiet, without files, and checked for problems that Exudyn does not report."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 
 @dataclass(frozen=True)
 class Model:
-    """An assembled model of a system, with sensors for the state of one body.
+    """Assembled model of a system, with sensors for the state of one body.
 
-    ``container`` owns ``mbs`` and must live as long. The body's coordinates are the coordinates first, ..., first +
-    size − 1 of ``mbs``. ``sensors`` record them and their first and second time derivatives at every step.
+    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from
+    ``first`` on. ``sensors`` record them and their first and second time derivatives at every step.
     """
 
     container: Any
@@ -38,11 +38,11 @@ class Model:
 
 @dataclass(frozen=True)
 class Steps:
-    """The states at the start and after every step of a solver.
+    """States at the start and after every step of a solver.
 
-    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities (m/s,
-    rad/s); ``accelerations``, shape (n, d), in m/s², rad/s²; and the number of ``evaluations`` of the equations of
-    motion.
+    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities
+    (m/s, rad/s); ``accelerations``, shape (n, d), in m/s², rad/s²; and the number of ``evaluations`` of the
+    equations of motion.
     """
 
     times: FloatArray
@@ -66,8 +66,8 @@ NOT_FINITE = "the state is not finite any more"
 FIRST_STEP = 1e-6
 """First step of DOPRI5, in the model's unit of time; later steps are automatic.
 
-Runs with Exudyn's built-in contact fail if they start with the largest step. A factor of a thousand makes no
-difference.
+Runs with Exudyn's built-in contact fail if they start with the largest step. The results with a thousandth
+and a thousand times this step agree.
 """
 
 
@@ -97,7 +97,7 @@ class StepCount(trajectory.StepCount):
 
 
 Watch = Callable[[float, list[float]], bool]
-"""Called with time (s) and state after every step; returns False to end the run there."""
+"""Called with time (s) and state after every step; returns False to end the run."""
 
 
 def solve(
@@ -114,15 +114,14 @@ def solve(
     balanced: bool = False,
     count: StepCount | None = None,
 ) -> Steps:
-    """Run ``model`` from its initial values at ``start`` (s) to ``end`` or to where ``watch`` ends it.
+    """Run ``model`` from its initial values at ``start`` (s) to ``end``, or until ``watch`` ends it.
 
-    ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``, ``step`` in s, for DOPRI5 the largest one and
+    ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``. ``step``, in s, is the largest step of DOPRI5, and
     ``first_step`` its first. ``tolerance`` is the absolute local error of DOPRI5, or the residual force in N of the
-    implicit solvers. If the run is ``quasi_static``, generalised-α follows a motion without inertia. Forces then
-    balance at the end of each step, and accelerations are derivatives of the velocities, because the balance
-    determines them only to its residual. If it is ``balanced`` too, the forces give the first acceleration, otherwise
-    it is 0. ``count`` counts the steps of the whole motion and gives the unit of time of a model that is not in SI
-    units.
+    implicit solvers. A ``quasi_static`` run of generalised-α neglects inertia: forces balance at the end of each
+    step, and accelerations are derivatives of the velocities, because the balance determines them only to its
+    residual. If it is ``balanced`` too, the forces give the first acceleration, otherwise it is 0. ``count`` counts
+    the steps of the whole motion and gives the unit of time of a model that is not in SI units.
 
     Raises ``SimulationError`` if a state is not finite, Newton's method fails, the step falls below the resolution of
     time, or there are too many steps.
@@ -142,7 +141,6 @@ def solve(
 
 
 def _no_steps(model: Model, time: float) -> Steps:
-    """Return the initial values of ``model`` as a run that ends where it starts."""
     data, own = model.mbs.systemData, slice(model.first, model.first + model.size)
     initial = [
         values(configuration=exu.ConfigurationType.Initial)[own]
@@ -152,10 +150,7 @@ def _no_steps(model: Model, time: float) -> Steps:
 
 
 def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
-    """Return the solver after its run, and the initial acceleration, which explicit solvers do not record.
-
-    Raises ``SimulationError`` if the run fails.
-    """
+    """Return the solver after its run, and the initial acceleration if the solver does not record it."""
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
     first_acceleration = None
@@ -182,14 +177,14 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
 
 
 class _Look:
-    """Checks the state after every step of a run, and ends it where it fails or ``watch`` returns False."""
+    """Ends a run if the state after a step is invalid or ``watch`` returns False."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
         data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._start, self._end, self._watch, self.count = start, end, watch, count
         self._previous = start
-        #: Smallest step in s; a smaller one would not change the time.
+        #: Smallest step in s that still changes the time.
         self.smallest_step = 8.0 * float(np.spacing(max(abs(start), abs(end))))
         self.failure = self.too_many = ""
         self.stopped = False
@@ -213,7 +208,8 @@ def _recorded(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the times of all steps, shape (n,), states (n, 2d) and accelerations (n, d).
 
-    The sum of fixed steps may differ in the last digits from the ``end`` (s) of a completed run.
+    The last time is ``end`` (s) if the run is complete; a sum of fixed steps may differ from it in the last
+    digits.
     """
     stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
@@ -247,15 +243,15 @@ def _settings(
 ) -> Any:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 0.0  # at every step
+    settings.solution.sensors.writePeriod = 0.0
     options = settings.timeIntegration
     options.verboseMode = 0
     options.startTime, options.endTime = start, end
     options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
     options.solverType = getattr(exu.DynamicSolverType, integrator)
     if integrator in EXPLICIT:
-        # Exudyn 1.13 scales the error with absolute + relative·y for y of either sign: with equal tolerances the step
-        # would collapse wherever a coordinate passes −1.
+        # Exudyn 1.13 scales the error with absolute + relative·y, whatever the sign of y: with equal
+        # tolerances the step would collapse wherever a coordinate passes −1.
         options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.initialStepSize = min(first_step, end - start) if integrator == "DOPRI5" else 0.0
     else:
@@ -270,10 +266,7 @@ def _settings(
 
 
 def _initial_acceleration(model: Model, start: float) -> FloatArray:
-    """Return the initial accelerations in m/s², rad/s², shape (d,).
-
-    Exudyn's explicit solvers report zero there; the implicit ones compute them.
-    """
+    """Return the initial accelerations, shape (d,), by an implicit solver: the explicit ones report zero."""
     span = 1e-9 * max(1.0, abs(start))
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()
@@ -288,7 +281,7 @@ def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> Abstra
 
 
 def raise_interrupt(error: exu.ExudynError) -> None:
-    """Raise the ``KeyboardInterrupt`` that arrived while Exudyn was in a user function, if ``error`` is that."""
+    """Raise ``KeyboardInterrupt`` if ``error`` is one that arrived while Exudyn was in a user function."""
     if "KeyboardInterrupt" in str(error):
         raise KeyboardInterrupt from error
 

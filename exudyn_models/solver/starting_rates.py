@@ -1,8 +1,7 @@
 """Initial rates of first-order coordinates for implicit solvers.
 
-Exudyn's implicit solvers compute the initial accelerations from the forces. But they start all first-order rates,
-such as those of heat and work, with the stored initial values: zero, or at a break the rate before it. By the
-trapezoidal rule of the first step the error is half the step times the missing rate.
+Exudyn's implicit solvers start first-order rates, such as those of heat and work, with the stored values: zero, or at
+a break the rate before it. The trapezoidal rule turns this into an error of half a step times the missing rate.
 """
 
 from __future__ import annotations

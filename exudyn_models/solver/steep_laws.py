@@ -1,7 +1,7 @@
 """Detection of implicit steps that skip a peak of friction, such as that of ``static_ratio`` or a Stribeck curve.
 
-If friction falls within the slip change of a step, the equations of the step have several solutions: a contact that
-holds, and one that has passed its peak and runs away. Newton's method may find either.
+If friction falls within the slip change of a step, the equations of the step have several solutions: the
+contact holds, or it has passed its peak and runs away. Newton's method may find either.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.repeated_steps import user_function
 
 RESOLVED = 0.05
-"""Slip change of a step, over ε, that is small enough: tests hold 99 % of static friction with it.
+"""Largest slip change of a step divided by ε: a contact then still holds 99 % of static friction (tested).
 
 The trapezoidal rule oscillates by half of it about the state of a contact that starts to hold.
 """
@@ -29,7 +29,7 @@ LEAST_FALL = 1e-3
 
 
 def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
-    """Repeat the steps of an assembled model that skip a peak with a smaller size; warn if steps are fixed."""
+    """Repeat steps of an assembled model that skip a peak with a smaller size; warn if steps are fixed."""
     data, places = mbs.systemData, mbs.systemData.GetObjectLTGODE2
     contacts = [
         (np.array(places(item)), contact)

@@ -1,7 +1,7 @@
 """Calls from compiled code to Python functions and to functions that numba compiled separately.
 
-Compiled code calls a Python function like the interpreter does, which costs no more than the function itself.
-Addresses of functions and numbers are passed as floats, whose 53 bits exceed the 48 bits of an address.
+Compiled code calls a Python function at the interpreter's cost. Addresses are passed as floats, whose 53 bits exceed
+the 48 bits of an address.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def _as_it_is(kind: Any, argument: Any, context: Any) -> Any:
 def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
     """Return the result of a Python function called with those of four numbers whose bits are set in ``places``.
 
-    The result is NaN for anything but a number. An error that the function raises is passed on.
+    The result is NaN for anything but a number. Errors are passed on.
     """
     floats = [types.float64] * ARGUMENTS
 
@@ -112,6 +112,6 @@ def number_at(typing: Any, address: Any, place: Any) -> Any:
 
 
 def address_of(function: Any) -> float:
-    """Return the address of the machine code of a function of four floats that numba has compiled for these only."""
+    """Return the address of the machine code of a function that numba has compiled for four floats only."""
     (found,) = function.overloads.values()
     return float(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))

@@ -23,8 +23,8 @@ COLUMNS = 3
 def peak_over_sliding(share: float, static_ratio: float) -> float:
     """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
-    In between it falls like a square root of P/ε − 1. A law with a linear fall leaves its peak by exponential growth,
-    which takes the time ε·ln(1/ε); with a square root it takes the time ε.
+    In between it falls like a square root of P/ε − 1. After a linear fall a contact leaves the peak by exponential
+    growth, in the time ε·ln(1/ε); with a square root, in the time ε.
     """
     if share <= 1.0:
         return static_ratio
@@ -38,9 +38,7 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
     """Return the pieces of a coefficient curve, shape (n, ``COLUMNS``), from rows of slip speed and coefficient.
 
     The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
-    A single row is a constant. The pieces have the shape (n, ``COLUMNS``).
-
-    Raises ``ValueError`` if the table is invalid.
+    A single row is a constant. Raises ``ValueError`` if the table is invalid.
     """
     speeds, values = _checked_table(name, table)
     slopes = np.diff(values) / np.diff(speeds) if len(speeds) > 1 else np.zeros(1)
@@ -49,10 +47,7 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
 
 @compiled
 def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> float:
-    """Return the coefficient at a slip speed >= 0 (m/s).
-
-    ``pieces`` is the size of the ``curve_of_table`` at ``address``.
-    """
+    """Return the coefficient at a slip speed >= 0 (m/s); ``pieces`` is the number of pieces at ``address``."""
     first, last = 0, int(pieces) - 1
     while first < last:  # invariant: first <= piece <= last
         middle = (first + last + 1) // 2

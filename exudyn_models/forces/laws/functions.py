@@ -30,7 +30,7 @@ Checked = Callable[[float, float, float, float], float]
 class LawFunction:
     """A coefficient or load that is a function of ``arguments``, in the order of ``ARGUMENTS``, for compiled code.
 
-    ``positional`` takes just these arguments, ``checked`` takes all ``ARGUMENTS`` and raises an error for an invalid
+    ``positional`` takes just these arguments; ``checked`` takes all ``ARGUMENTS`` and raises an error for an invalid
     result. ``address`` is that of the machine code, 0 for a Python function.
     """
 
@@ -82,10 +82,7 @@ def _call_by_name(arguments: Sequence[str], function: Callable[..., float], *giv
 
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ...], bool]:
-    """Return which ``ARGUMENTS`` a function takes, in their order, and whether the function has the same order.
-
-    Raises ``ValueError`` if it needs others.
-    """
+    """Return which ``ARGUMENTS`` a function takes, and whether in that order; raise ``ValueError`` for others."""
     allowed = f"any of {', '.join(ARGUMENTS)} by these names, for example `lambda time: ...`"
     try:
         parameters = list(inspect.signature(function).parameters.values())

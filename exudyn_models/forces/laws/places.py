@@ -14,7 +14,7 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray, Place
 
 BEND = 4.0 / 3.0
-"""Smallest slip of the slowest point, over δ, without effect on the other points."""
+"""Smallest slip of the slowest point, divided by δ, without effect on the other points."""
 
 
 def ring_places(radius: float, points: int) -> tuple[Place, ...]:

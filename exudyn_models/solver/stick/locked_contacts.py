@@ -1,4 +1,4 @@
-"""Locked contacts in a model at one time: the slips they hold, velocities that obey them, and their forces."""
+"""Locked contacts of a model at one time: the slips they hold, velocities that obey them, and their forces."""
 
 from __future__ import annotations
 
@@ -72,8 +72,8 @@ class LockedContacts:
     def balance(self, t: float) -> bool:
         """Distribute the load at the time t (s) over the contacts in the plane that rest on the same bodies.
 
-        The largest share of its capacity that a contact holds becomes as small as possible, so the contacts cannot
-        hold the load if one is still overloaded. Return whether the bodies leave the distribution undetermined.
+        The largest share of its capacity that a contact holds becomes as small as possible. If it exceeds 1, the
+        contacts cannot hold the load. Return whether the distribution is statically undetermined.
         """
         mbs = self._mbs
         resting = [contact for contact in self._planar if contact.planar.rests and contact.holding(t) > 0.0]
@@ -88,7 +88,9 @@ class LockedContacts:
         slips = np.vstack([contact.slip_rows(mbs) for contact in resting])
         on_bodies = _null_space(self._held_rows(others)).T @ (slips.T * sizes)
         undetermined = sizes[:, None] * _null_space(on_bodies)
-        undetermined = undetermined[:, np.linalg.norm(undetermined, axis=0) > 0.0]  # not the moments of pins
+        undetermined = undetermined[
+            :, np.linalg.norm(undetermined, axis=0) > 0.0
+        ]  # a pin transmits no moment
         if not undetermined.size:
             return False
         present = np.concatenate([contact.planar.held_wrench(mbs) for contact in resting])
@@ -113,7 +115,7 @@ class LockedContacts:
         return True
 
     def _mobilities(self) -> FloatArray:
-        """Return the inverse square roots of the diagonal of the mass matrix, or the largest one without mass."""
+        """Return the inverse square roots of the masses; coordinates without mass get the largest one."""
         masses = np.diag(self._mass)
         light = np.min(masses, where=masses > 0.0, initial=np.inf)
         return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))

@@ -2,7 +2,7 @@
 
 While the contact is locked, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are
 the force and moment of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law
-without regularisation, so no step may pass its rest. ``stick.switching`` limits the steps for that reason.
+without regularisation, so ``stick.switching`` lets no step pass its rest.
 
 Joints may leave the contact only some directions of slip. With such a basis B, shape (3, k), the slip is B·v, and the
 k constraints are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share
@@ -40,13 +40,12 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 
 @dataclass(eq=False)
 class PlanarStick(AxialStick):
-    """Friction between any two bodies, which sticks exactly; the joints of the model may hold them on one axis.
+    """Friction between two bodies that sticks exactly; the joints of the model may hold them on one axis.
 
     ``sliding`` are the user functions for force and Jacobian of Coulomb friction. If ``on_axis`` it is an
     ``AxialStick``. ``basis``, shape (3, k), are the directions of slip (m/s, m/s, rad/s) that its locks hold, and
-    ``allowed`` those that the joints of the model leave free; other locked contacts may hold some of them.
-    ``direction``, shape (3,), is the slip into which the load has released the contact, scaled to P = 1 m/s and
-    normal to the limit surface.
+    ``allowed`` those that the joints leave free; other locked contacts may hold some of them. ``direction``, shape
+    (3,), is the slip into which the load has released the contact: normal to the limit surface, with P = 1 m/s.
     """
 
     sliding: tuple[Callable[..., Any], ...] = ()
@@ -64,7 +63,7 @@ class PlanarStick(AxialStick):
     predicts: bool = False
     """True during the first iteration of Newton's method: friction is linear about the start of the step.
 
-    Exudyn's first iterate has no acceleration at the end of the step, so it may slip in any direction.
+    Exudyn's first iterate has no acceleration at the end of the step, so its slip may have any direction.
     """
 
     def __post_init__(self) -> None:
@@ -78,7 +77,7 @@ class PlanarStick(AxialStick):
         return np.asarray(axes[:, :count] / np.array([1.0, 1.0, radius or 1.0])[:, None])
 
     def set_basis(self, basis: FloatArray) -> None:
-        """Lock the slip in the directions of ``basis``, shape (3, k), from now on."""
+        """Lock the slip in the directions of ``basis``, shape (3, k)."""
         self.basis, self._to_basis = basis, np.linalg.pinv(basis)
         self._evaluated: tuple[list[float], FloatArray] = [], np.empty((3, 0))
 
@@ -100,7 +99,7 @@ class PlanarStick(AxialStick):
         return SlipMotion(*slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
-        """Return the rates of the locked slips in such a ``state`` without accelerations, shape (k,)."""
+        """Return the rates of the locked slips without accelerations, shape (k,)."""
         return np.asarray(self._to_basis @ self.motion(*state).bias)
 
     def potential_of(self, slip: FloatArray) -> float:
@@ -137,7 +136,7 @@ class PlanarStick(AxialStick):
         return self.static_ratio * self.factors.friction_force(t, 0.0, 0.0, 0.0)
 
     def capacity_share(self, mbs: Any, t: float) -> float:
-        """Return the load over the largest one: 1 while the contact slides, 0 while it is open."""
+        """Return the load divided by the largest load: 1 while the contact slides, 0 while it is open."""
         if self.on_axis or not self.rests:
             return super().capacity_share(mbs, t)
         return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]
@@ -151,7 +150,7 @@ class PlanarStick(AxialStick):
         return self.sliding_wrench(t, slip, radius) if self.slides else np.zeros(3)
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
-        """Return the generalised forces on the nodes, as the user function of the connector."""
+        """Return the generalised forces on the nodes (user function of the connector)."""
         if self.on_axis or not self.running:
             return super().force(mbs, t, item, q, q_t)
         if not self.slides or self.idle:
@@ -161,7 +160,7 @@ class PlanarStick(AxialStick):
         return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
 
     def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
-        """Prepare the first iteration of a step that starts at these coordinates and velocities."""
+        """Prepare the first iteration of a step from these coordinates and velocities."""
         self.predicts = self.slides and not self.idle
         if self.predicts:
             self._start = self.motion(q, q_t, np.zeros(len(q)))
@@ -190,7 +189,7 @@ class PlanarStick(AxialStick):
         )
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
-        """Return the force and moment on the disc that slides at the time t (s), in the master's axes, shape (3,)."""
+        """Return force and moment on the sliding disc at the time t (s), in the master's axes, shape (3,)."""
         unit = np.array(unit_friction(slip, self.factors.geometry))
         return unit * self.factors.friction_force(t, radius, float(-unit @ slip), float(slip[2]))
 
@@ -204,7 +203,7 @@ class PlanarStick(AxialStick):
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        """Return the derivatives of minus the generalised forces, as the user function of the connector."""
+        """Return the derivatives of minus the generalised forces (user function of the connector)."""
         if self.on_axis:
             return super().jacobian(mbs, t, item, q, q_t, position_factor, velocity_factor)
         if self.idle or not self.slides:
@@ -218,7 +217,7 @@ class PlanarStick(AxialStick):
     def constraint(
         self, lock: int, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], level: bool
     ) -> list[float]:
-        """Return the slip that the constraint number ``lock`` keeps at zero, as its user function.
+        """Return the slip that the constraint ``lock`` keeps at zero (its user function).
 
         In contrast to a connector's, its coordinates ``q`` contain the reference values.
         """
@@ -227,7 +226,7 @@ class PlanarStick(AxialStick):
     def constraint_jacobian(
         self, lock: int, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], level: bool
     ) -> FloatArray:
-        """Return the slip's derivatives with respect to the velocities, (1, n): the constraint's user function."""
+        """Return the derivatives of the slip by the velocities, shape (1, n) (user function of the constraint)."""
         return self._row(lock, q)[None]
 
     def _row(self, lock: int, q: Sequence[float]) -> FloatArray:

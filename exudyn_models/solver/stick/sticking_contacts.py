@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 CURRENT = exu.ConfigurationType.Current
 
 SOON = 1e-9
-"""Short time in s, long enough for the slip of a contact at rest to take the sign of its acceleration."""
+"""Time in s that gives the slip of a contact at rest the sign of its acceleration."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class StickingContact:
     """Positions of its coordinates among those of the model."""
 
     rest_share: ClassVar[float] = 1e-9
-    """Time, as a share of the step, within which a contact stops that counts as resting."""
+    """A contact counts as resting if it stops within this share of a step."""
 
     @property
     def mode(self) -> Mode:
@@ -72,7 +72,7 @@ class StickingContact:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def omit_user_functions(self, mbs: Any) -> None:
-        """Let Exudyn evaluate constant moments without calls of Python in a run."""
+        """Let Exudyn evaluate constant moments without calls of Python."""
         if self.stick.constant_forces is not None:
             for name in ("forceUserFunction", "jacobianUserFunction"):
                 mbs.SetObjectParameter(self.item, name, 0)
@@ -89,7 +89,7 @@ class StickingContact:
         self.enter(mbs, Mode.OPEN if self.holding(t) == 0.0 else Mode(int(np.sign(slip))))
 
     def following(self, mbs: Any, t: float) -> Mode:
-        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
+        """Return the mode that follows one that has ended at the time t (s), if no other contact changes."""
         if self.holding(t) == 0.0:
             return Mode.OPEN
         if self.mode == Mode.OPEN:
@@ -125,13 +125,13 @@ class StickingContact:
         return self.stick.locks[:1]
 
     def bias(self, mbs: Any) -> FloatArray:
-        """Return the rates of change of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
+        """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
         if not isinstance(self.stick, PlanarStick):
             return np.zeros(1)
         return self.stick.bias(self._state(mbs))
 
     def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return coordinates without reference values and their derivatives."""
+        """Return coordinates without reference values, and their derivatives."""
         data, places = mbs.systemData, self.places
         return (
             data.GetODE2Coordinates(configuration)[places],
@@ -166,7 +166,7 @@ class StickingContact:
         return int(mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of its capacity that a locked contact holds, or 0 if the contact is not locked."""
+        """Return the share of its capacity that a contact holds, or 0 if it is not locked."""
         return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
 
     def reverses(self, mbs: Any, time: float) -> bool:
@@ -177,7 +177,7 @@ class StickingContact:
 
 
 class PlanarContact(StickingContact):
-    """Contact that sticks exactly between bodies that may slide sideways, in an assembled model."""
+    """Contact between bodies that may slide sideways and that sticks exactly, in an assembled model."""
 
     rest_share: ClassVar[float] = 1e-6
 
@@ -192,10 +192,7 @@ class PlanarContact(StickingContact):
         return self.stick.slides and not self.stick.idle
 
     def allow(self, mbs: Any, by_joints: FloatArray, velocities: FloatArray) -> None:
-        """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model.
-
-        The joints allow the velocities ``by_joints``.
-        """
+        """Let the contact lock the slips of ``velocities``, shape (n, m); joints allow those ``by_joints``."""
         slips = self.slip_rows(mbs)
         self.planar.allowed = self.planar.span(slips @ by_joints)
         self.planar.set_basis(self.planar.span(slips @ velocities))
@@ -205,7 +202,7 @@ class PlanarContact(StickingContact):
         return self._widened(mbs, self.planar.slip_map)
 
     def scaled(self, gradient: FloatArray) -> FloatArray:
-        """Return a gradient of P as pure numbers."""
+        """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
     def enter(self, mbs: Any, mode: Mode) -> None:
@@ -220,7 +217,7 @@ class PlanarContact(StickingContact):
         self.enter(mbs, self._free_mode(mbs, t, exu.ConfigurationType.Initial))
 
     def following(self, mbs: Any, t: float) -> Mode:
-        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
+        """Return the mode that follows one that has ended at the time t (s), if no other contact changes."""
         if self.planar.rests and self.holding(t) > 0.0:
             return self.driven(mbs)
         return self._free_mode(mbs, t, CURRENT)
@@ -230,7 +227,7 @@ class PlanarContact(StickingContact):
         return self.planar.holding_force(t)
 
     def driven(self, mbs: Any) -> Mode:
-        """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
+        """Return the mode into which the load drives a locked contact, and store the direction."""
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
         return _sliding_mode(self.planar.direction)
 
@@ -248,7 +245,7 @@ class PlanarContact(StickingContact):
         self.planar.start_step(q, q_t)
 
     def slid(self, mbs: Any) -> SlipMotion:
-        """Return the present motion of a sliding contact, and note its direction as the mode."""
+        """Return the present motion of a sliding contact, and store its direction as the mode."""
         motion = self.motion(mbs)
         self.stick.mode = _sliding_mode(motion.slip)
         return motion
@@ -256,8 +253,8 @@ class PlanarContact(StickingContact):
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        It is the unused share of the capacity of a locked contact, or ±1 if load or coefficient is zero. A sliding
-        contact has no margin, because ``sliding_steps`` finds its end.
+        It is the unused share of the capacity of a locked contact, or ±1 if load or coefficient is zero.
+        ``sliding_steps`` finds the end of sliding.
         """
         holding = self.holding(t)
         if self.opens_or_closes(holding):
@@ -265,7 +262,7 @@ class PlanarContact(StickingContact):
         return 1.0 - self.overload(mbs, t)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of its capacity that a contact at rest holds, or 0 if it does not rest."""
+        """Return the share of its capacity that a contact holds, or 0 if it does not rest."""
         return self.planar.capacity_share(mbs, t) if self.planar.rests else 0.0
 
     def reverses(self, mbs: Any, time: float) -> bool:
@@ -273,7 +270,7 @@ class PlanarContact(StickingContact):
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
-        """Return the mode of a contact that has not been locked; without a direction of slip it may stick."""
+        """Return the mode of a contact that is not locked yet; without a direction of slip it may stick."""
         if self.holding(t) == 0.0:
             return Mode.OPEN
         motion = self.motion(mbs, configuration)
@@ -285,7 +282,7 @@ def _sliding_mode(slip: FloatArray) -> Mode:
 
 
 def sticking_contacts(mbs: Any) -> list[StickingContact]:
-    """Return all contacts of an assembled model that stick exactly."""
+    """Return the contacts of an assembled model that stick exactly."""
     return [
         StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
@@ -295,10 +292,7 @@ def sticking_contacts(mbs: Any) -> list[StickingContact]:
 
 @contextmanager
 def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[list[StickingContact]]:
-    """Let contacts have modes, at first those of load and slip at the start t (s) of a run.
-
-    Yields the contacts as those on one axis or in the plane, which the joints of the model decide.
-    """
+    """Give contacts the modes of load and slip at the start t (s) of a run; yield them on one axis or in the plane."""
     try:
         for contact in contacts:
             contact.stick.running = True
@@ -317,7 +311,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
 
 
 def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
-    """Return the contact on its axis, or in the plane if ``joints`` allow it to slip sideways."""
+    """Return the contact in the plane if ``joints`` allow it to slip sideways, otherwise unchanged."""
     stick = contact.stick
     if not isinstance(stick, PlanarStick):
         return contact
@@ -332,8 +326,8 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
     """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
 
-    The gradients, shape (m, n), are derivatives with respect to the n velocities, up to factors, of an assembled
-    model at its initial values and the time t (s).
+    The gradients, shape (m, n), are derivatives by the n velocities, up to factors, at the initial values and the
+    time t (s).
     """
     data = mbs.systemData
     with initialised_solver(mbs, t) as solver:
@@ -346,6 +340,6 @@ def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> 
 
 
 def lock_places(mbs: Any, contacts: Sequence[StickingContact]) -> list[int]:
-    """Return the positions of the locks of ``contacts`` among the constraints of an assembled model."""
+    """Return the positions of the locks of ``contacts`` among the model's constraints."""
     locks = [lock for contact in contacts for lock in contact.stick.locks]
     return [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]
