@@ -4,8 +4,8 @@ The slip of the centre is zero. With the mean radius r of the contact P = r·|S|
 < ε. Points share this equally. Constant load and coefficient need no compiled code.
 
 A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
-the slip, so the equations of motion are smooth even across zero slip. While the contact is locked, a constraint holds
-both spins together, and its multiplier is the moment of friction. ``stick.switching`` finds the times of changes.
+the slip, so the equations stay smooth across zero slip. While the contact is locked, a constraint holds the spins
+together; its multiplier is the moment of friction. ``stick.switching`` finds the times of changes.
 """
 
 from __future__ import annotations
@@ -152,20 +152,11 @@ SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
 
-    Parameters
-    ----------
-    reference : array of shape (n,)
-        Reference coordinates of the nodes of master and disc.
-    static_ratio : float
-        Static over sliding friction, >= 1.
-    locks : tuple of int
-        Object numbers of the constraints that lock the contact, one for each direction of slip.
-    running : bool
-        Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
-    idle : bool
-        Whether the contact rests in a mode of sliding, because locked contacts and joints hold it. Its share of the load is
-        then undetermined; on one axis it takes all that it can hold.
-
+    ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static over
+    sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
+    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
+    mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
+    axis it is all that they can hold.
     """
 
     kinds: Kinds

@@ -47,8 +47,8 @@ For an annulus R is the outer radius, otherwise both radii are equal. The number
 ``CONTINUOUS`` or, under a nonuniform pressure, the negative result of ``density_of``. For points R is the largest
 distance from the centre, and the last number is the result of ``table_of``.
 
-The friction of the held point is viscous at any slip, which models a point that rests while the disc pivots about it.
-Without the kink of its law at δ it cannot disturb Newton's method.
+The held point is one that rests while the disc pivots about it. Its friction is viscous at any slip, because the kink
+of its law at δ would disturb Newton's method.
 """
 
 CONTACT_SIZE = 6
@@ -76,11 +76,11 @@ def mean_radius(contact: Contact) -> float:
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
 
-There F is of degree 1 in the slip, F = K·slip with the secant K. Newton's method starts from the slip that the disc
-would have without acceleration, thousands of times its creep. With the derivative alone it cycles for one load in ten
-on six points, and one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet
-with unequal shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13 of 100; the solver then
-takes a smaller step.
+There F is of degree 1 in the slip, F = K·slip with the secant K. Newton's method starts from the slip without
+acceleration, thousands of times the creep. With the derivative alone it cycles for one load in ten on six points, and
+one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet with unequal
+shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13 of 100; the solver then takes a
+smaller step.
 """
 
 
@@ -189,13 +189,13 @@ def _force_of_points(
 
 @compiled
 def _length(vector: complex) -> float:
-    """Return |v| without the overflow protection of abs(), which would nearly double the cost of a point."""
+    """Return |v| without abs(), whose overflow protection would nearly double the cost of a point."""
     return math.sqrt(vector.real * vector.real + vector.imag * vector.imag)
 
 
 @compiled
 def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
-    """Return the share of the slowest point's slip that the others lose, and whether its own friction is viscous."""
+    """Return the share of the slowest point's slip that the others lose, and whether its friction is viscous."""
     if held != NONE_HELD or speed <= delta:
         return 1.0, True
     return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
@@ -214,7 +214,7 @@ def ring_friction_derivatives(
 ) -> FloatArray:
     """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
 
-    Those of points that creep as a whole contain a ``SECANT`` share, with which Newton's method converges.
+    If points creep as a whole, these contain a ``SECANT`` share, so that Newton's method converges.
     """
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
@@ -334,7 +334,7 @@ def _slip_of_point(
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Like ``derivatives_by_slip``, for circles, where nothing depends on the angle."""
+    """Like ``derivatives_by_slip``, for circles; nothing depends on the angle."""
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)

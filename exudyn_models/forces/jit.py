@@ -80,7 +80,7 @@ class KeptOnDisk:
         self._compiled: list[Callable[..., Any]] = []
 
     def __call__(self, *arguments: Any) -> Any:
-        """Return the result; the first call with new types of arguments compiles the function or loads it."""
+        """Return the result of the function."""
         for compiled_function in self._compiled:
             with suppress(TypeError):
                 return compiled_function(*arguments)

@@ -36,8 +36,8 @@ class LoadAndCoefficient:
     """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
 
     ``friction_coefficient`` is a number >= 0, a table over P or a function of any of ``ARGUMENTS``; ``normal_load``,
-    in N, is a number >= 0 or such a function. ``static_ratio`` >= 1 is static over sliding friction, see
-    ``peak_over_sliding``. Each of the ``plates`` >= 1, equal contacts, carries N. The μN of ``contact`` is ignored.
+    in N, is a number >= 0 or such a function. ``static_ratio`` >= 1 is static over sliding friction. Each of the
+    ``plates`` >= 1, equal contacts, carries N. The μN of ``contact`` is ignored.
 
     Raises ``ValueError`` if a number is out of range or a function takes other arguments; in a run, if a function
     returns an invalid number.

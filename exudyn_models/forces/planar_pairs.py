@@ -118,7 +118,6 @@ Relative = tuple[float, float, float, float, float, float, float]
 def _friction(
     motion: Relative, parameters: Floats, law: Law | None, t: float
 ) -> tuple[float, float, float, float]:
-    """Return force and moment on the disc and moment on the master; ``law`` gives μN if it is not constant."""
     contact, _ = contact_of(parameters)
     if law is None:
         return ring_friction(*motion, contact)
@@ -152,10 +151,7 @@ def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
 
 @compiled
 def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_factor: float) -> FloatArray:
-    """Return minus the derivatives of the forces on two planar nodes by their coordinates, shape (6, 6).
-
-    ``derivatives`` are those of (F_x, F_y, M, M_master) by ``Relative``, shape (4, 7).
-    """
+    """Return minus the derivatives on two planar nodes from those of (F_x, F_y, M, M_master) by ``Relative``."""
     by_nodes = np.zeros((4, 6))
     for i in range(4):
         dx, dy, angle, dvx, dvy, master_spin, disc_spin = derivatives[i]

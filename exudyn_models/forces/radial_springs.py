@@ -51,7 +51,6 @@ def support_functions(
 
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    """Return the force for a base that only turns about the z-axis."""
     xb, yb, angle, x, y, *tilts = reference.tolist()
     parameters = [*law, *offset, x - xb, y - yb, angle]
     size = len(reference) - hidden
@@ -74,7 +73,6 @@ def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law:
 
 
 def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
-    """Return the Jacobian over all coordinates except the first ``hidden``."""
     zeros = np.zeros(len(reference))
 
     def jacobian(
@@ -159,8 +157,7 @@ def _in_the_plane(
 ) -> tuple[float, float, float]:
     """Return force on the disc (N) and moment on the base (N m), in global axes.
 
-    Position (m) and velocity (m/s) are those of the disc relative to the base; angle (rad) and spin (rad/s) are the
-    base's.
+    Position (m) and velocity (m/s) are relative to the base; angle (rad) and spin (rad/s) are the base's.
     """
     stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
     x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)

@@ -2,8 +2,7 @@
 
 The slip u of the disc's centre over the master, in the master body's axes, and the relative spin S about the master's
 axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so the generalised forces on both
-nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
-any orientation, and the derivatives of the forces follow from those of J.
+nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum.
 
 ``Mounts`` place a contact anywhere on its bodies; the lever from the disc's node to the contact then enters J.
 Without mounts the contact is at the nodes, which is cheaper.
@@ -85,8 +84,7 @@ def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple
 
     The angle, as cosine and sine, is that of the x axis of the contact on the disc, or of its y axis if its x axis
     lies along the master's z axis. The place is x and y (m) of the contact on the disc from that on the master.
-    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar body
-    turns about an axis parallel to the global z axis.
+    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad.
     """
     master, disc, mounts = kinds
     return _slip_and_place(master, disc, mounts, coordinates)
@@ -139,10 +137,7 @@ def _mounted(
     axes: Axes,
     turning: tuple[Vector, Vector, Vector, Vector],
 ) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
-
-    The numbers of the body's mount begin at ``mounts[mount]``; all other arguments come from ``frame``.
-    """
+    """Return positions of a node and of the contact, the contact's axes, and how ω depends on the rates."""
     if TRANSLATIONS[kind] == 0:  # a rotor or the ground
         fixed = _axes_at(mounts, mount + 3)
         place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])
@@ -165,7 +160,6 @@ def _axes_at(mounts: Mounts, at: int) -> Axes:
 
 @compiled
 def _turned(vector: Vector, axes: Axes) -> Vector:
-    """Return the global components of a vector from those in ``axes``."""
     a, b, c = vector
     x, y, z = axes
     return a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1], a * x[2] + b * y[2] + c * z[2]
@@ -226,9 +220,9 @@ def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
 def _rotated_by_euler_parameters(
     p: Any, x: Any, y: Any, z: Any
 ) -> tuple[Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return the axes and the contributions of each rate to ω = 2·(p·v̇ − ṗ·v + v×v̇), with v = (x, y, z).
+    """Return the axes and the contribution of each rate to ω = 2·(p·v̇ − ṗ·v + v×v̇), with v = (x, y, z).
 
-    Both are Exudyn's, quadratic and linear in parameters whose norm is 1 up to the error of Newton's method.
+    As in Exudyn, both are polynomials in the parameters, whose norm is 1 up to the error of Newton's method.
     """
     pp, xx, yy, zz = p * p, x * x, y * y, z * z
     axes = (

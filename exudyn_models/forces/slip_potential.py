@@ -2,14 +2,14 @@
 
 P is the mean slip speed over the contact; friction is −μN times its gradient, see ``friction_laws``.
 
-A circle of radius r whose centre slips with U and which turns with S relative to its counterpart has a rim speed W =
-r·|S|. Its P(U, W) is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
+A circle of radius r whose centre slips with U and whose relative spin is S has the rim speed W = r·|S|. Its P(U, W)
+is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
 
 For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
 P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
 r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. The error of n rings per side falls like n^(−12), and
-that of the curvatures, which contain ln|r − r₀|, like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the
-largest values. If r₀ is outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
+that of the curvatures like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the largest values. If r₀ is
+outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def _resting_radius(speed: float, spin: float, outer: float) -> float:
 
 @compiled
 def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return t at the start and the other end minus r₀ (0 if empty), for the parts inside and outside r₀."""
+    """Return t at the start, and the other end minus r₀ (0 if empty), inside and outside r₀."""
     below, above = inner - resting, outer - resting
     inside = (0.0, 0.0) if below >= 0.0 else (max(0.0, above / below) ** (1.0 / CLUSTERING), below)
     outside = (0.0, 0.0) if above <= 0.0 else (max(0.0, below / above) ** (1.0 / CLUSTERING), above)
@@ -109,7 +109,6 @@ def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, flo
 
 @compiled
 def _ring(i: int, resting: float, start: float, length: float) -> tuple[float, float]:
-    """Return radius and width in m of a ring of one of the ``_sides``."""
     t = start + (1.0 - start) * (0.5 + 0.5 * _POINTS[i])
     width = 0.5 * (1.0 - start) * _WEIGHTS[i] * CLUSTERING * t ** (CLUSTERING - 1)
     return resting + length * t**CLUSTERING, abs(length) * width
@@ -149,7 +148,6 @@ def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, f
 
 @compiled
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
-    """Return the derivatives of P by its larger and its smaller argument."""
     ratio = smaller / larger
     complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without cancellation
     if complement == 0.0:
@@ -161,7 +159,6 @@ def _slopes(larger: float, smaller: float) -> tuple[float, float]:
 
 @compiled
 def _mean(ratio: float, complement: float) -> tuple[float, float]:
-    """Return A and T of ``ring_potential_slopes`` for k and 1 − k² > 0."""
     m = ratio * ratio
     b = math.sqrt(complement)
     a = 0.5 * (1.0 + b)

@@ -1,10 +1,9 @@
 """Equivalent dampers of a sticking contact between its two bodies.
 
 With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
-with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, with
-equality if the disc only translates or only rotates. For points xᵀ·V·x is the mean of the squared slips. So friction
-resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D = (μN/ε)·Jᵀ·V·J
-between two bodies.
+with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact. They
+are equal if the disc only translates or only rotates. So friction resists slip at most like a damper (μN/ε)·V. With x
+= J·q̇ of ``slip_and_place`` it is the damper D = (μN/ε)·Jᵀ·V·J between two bodies.
 
 For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
 μN over the δ of ``friction_laws``.
@@ -67,7 +66,7 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
     x, y, loads = places_in(table).T
     arms = np.exp(1j * angle) * (x + 1j * y)
-    maps = np.zeros((points, 2, 3))  # maps from (u, S) to the slip of each point
+    maps = np.zeros((points, 2, 3))
     maps[:, 0, 0] = maps[:, 1, 1] = 1.0
     maps[:, 0, 2], maps[:, 1, 2] = -arms.imag, arms.real
     shares = maps.transpose(0, 2, 1) @ maps * loads[:, np.newaxis, np.newaxis]

@@ -74,7 +74,6 @@ def renew_friction(mbs: Any, item: Any, contact: Contact) -> None:
 
 
 def _resistance(force: ForceFunction, size: int) -> Callable[..., float]:
-    """Return the moment against the relative spin as a user function of the spring-damper."""
     others = [0.0] * (size - 1)
     return lambda mbs, t, item, twist, spin, *_: -force(mbs, t, item, [*others, twist], [*others, spin])[-1]
 

@@ -137,7 +137,6 @@ def add_energy_balance(
 
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
-    """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` for all of them."""
     powers = list(named.values())
 
     def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
@@ -149,7 +148,6 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
-    """Add a sensor of the kinetic energy of all bodies plus the ``stored`` energies."""
     bodies: list[int] = []
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
@@ -174,7 +172,7 @@ class _SpringEnergy:
 
 
 def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
-    """Raise ``ValueError`` if one of ``springs`` has no energy, unless the model is still incomplete."""
+    """Raise ``ValueError`` if a spring has no energy, unless the model is still incomplete."""
     for spring in springs:
         try:
             kind = mbs.GetObject(spring.connector)["objectType"]

@@ -110,7 +110,6 @@ def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
 
 
 def _share_an_axis(master: Side, disc: Side) -> bool:
-    """Return whether rotors, or a rotor and the ground, turn about the contact's axis in its direction."""
     if disc.kind != ROTOR or master.kind not in (ROTOR, GROUND):
         return False
     axis = (master.axes @ master.rotation)[:, 2]
@@ -142,7 +141,7 @@ def check_axes(mbs: Any, master: Side, disc: Side) -> None:
 
 
 def _axes_and_spin(mbs: Any, side: Side) -> tuple[FloatArray, FloatArray]:
-    """Return the initial axes of a body as columns, and its angular velocity (only its direction if the axis is fixed)."""
+    """Return the initial axes of a body as columns, and its angular velocity (of any length if the axis is fixed)."""
     if side.kind in FLAT:
         return side.axes, side.axes[:, 2]
     entry = mbs.GetNode(side.node)
@@ -158,7 +157,6 @@ def _shown(vector: FloatArray) -> list[float]:
 def _side(
     mbs: Any, name: str, given: Any, allowed: Sequence[int], rotation: Any, *, or_ground: bool = False
 ) -> Side:
-    """Return the side of a contact from a node, a body, a marker or, if allowed, None or a ground."""
     argument, place, turned = f"{name}_node", np.zeros(3), _checked_rotation(f"{name}_rotation", rotation)
     if type(given).__name__ == "MarkerIndex":
         given, place = _marked(argument, mbs, given)
@@ -207,7 +205,6 @@ def _marked(name: str, mbs: Any, index: Any) -> tuple[Any, FloatArray]:
 
 
 def _body(name: str, mbs: Any, index: Any, or_ground: bool) -> Any:
-    """Return Exudyn's dictionary of a body with a node or, if allowed, of a ground."""
     try:
         body = mbs.GetObject(index)
     except exu.ExudynIndexError:
@@ -226,10 +223,7 @@ def _frame_of(body: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def _frame_of_rotor(name: str, mbs: Any, node: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the fixed frame of the bodies of a ``Node1D``, or the global frame if it has none yet.
-
-    Raises ``ValueError`` if a body translates, or if they turn about several axes.
-    """
+    """Return the fixed frame of the bodies of a ``Node1D``, or the global frame if it has none yet."""
     frames = []
     for item in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(item)

@@ -51,12 +51,10 @@ def add_native_friction(
         The model, not yet assembled, with both nodes and their bodies.
     master_node, disc_node : NodeIndex or ObjectIndex
         Master: a rotor, a planar body, or None for the ground. Disc: a planar body.
-    contact_radius : float
-        R in m, >= 0; 0 for a pin.
+    contact_radius, regularisation : float
+        R >= 0 in m, 0 for a pin; ε > 0 in m/s.
     friction_coefficient, normal_load : float
         μ >= 0, and N >= 0 in N of all points together; only their product matters.
-    regularisation : float
-        ε in m/s, > 0.
     contact_points : int or sequence of (float, float, float)
         n >= 1 points on the circle, or places and shares of the load. The built-in contact has no whole circle.
     reach : float
@@ -101,7 +99,7 @@ def _checked_nodes(mbs: Any, master_node: Any, disc_node: Any) -> tuple[Any, Any
 
 
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
-    """Add the data node of a contact, whose first step uses the branch of the law at ``slip_speed`` (m/s)."""
+    """Add the data node of a contact; ``slip_speed`` (m/s) selects the first branch of the law."""
     return mbs.AddNode(
         items.NodeGenericData(
             initialCoordinates=[-penetration, slip_speed, 0.0, 0.0], numberOfDataCoordinates=4
@@ -112,7 +110,6 @@ def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
 def _add_sphere(
     mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, share: float
 ) -> Any:
-    """Add the contact of a sphere of radius ``size`` with its ``share`` of the load and of ``friction_force`` (N)."""
     penetration = size / 2.0
     height = penetration - size
     vectors: Any = exu.Vector3DList  # type hints as for items
@@ -145,7 +142,6 @@ def _marker(mbs: Any, node: Any, arm: complex) -> Any:
 
 
 def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex) -> float:
-    """Return the initial slip speed in m/s of the point at ``arm`` of the disc over the master."""
     master, _, master_velocity, master_spin = _initial_motion(mbs, master_node)
     disc, angle, disc_velocity, disc_spin = _initial_motion(mbs, disc_node)
     arm *= cmath.exp(1j * angle)
@@ -154,7 +150,7 @@ def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex
 
 
 def _initial_motion(mbs: Any, node: Any) -> tuple[complex, float, complex, float]:
-    """Return position (m), angle (rad), velocity (m/s) and spin (rad/s) of a node or of the ground."""
+    """Return position, angle, velocity and spin of a node or of the ground."""
     if node is None:
         return 0j, 0.0, 0j, 0.0
     reference, initial, rates = (

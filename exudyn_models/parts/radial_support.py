@@ -86,8 +86,8 @@ class RadialSupport:
         - ``"stored_energy"``: energy of springs and stop, in J.
         - ``"power"``: heating power of the damper, in W.
 
-        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file. Raises ``ValueError`` for any other quantity.
+        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
+        Raises ``ValueError`` for any other quantity.
         """
         quantities = get_args(Quantity)
         if quantity not in quantities:
@@ -148,8 +148,8 @@ def add_radial_support(
     stop_gap, stop_stiffness : float
         Clearance of the stop in m and C_s in N/m, >= 0; C_s = 0 for no stop.
     offset : two floats
-        Relaxed position in m, in the axes of the base and from its node or marker. For a ``Node1D`` and the ground, from
-        the reference position of the body, or else from the global origin.
+        Relaxed position in m, in the axes of the base and from its node or marker. For a ``Node1D`` and the ground,
+        from the reference position of the body, or else from the global origin.
 
     Raises
     ------
@@ -184,9 +184,9 @@ def _checked_law(
 
 
 def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
-    """Return the kinds for compiled code, and how many first coordinates of the base the model does not contain.
+    """Return the kinds for compiled code, and how many first coordinates of the base the model omits.
 
-    Without mounts, the ground and a rotor count as planar bodies with three or two zero coordinates.
+    If there are no mounts, the ground and a rotor count as planar bodies with fixed coordinates.
     """
     base, disc, mounts = kinds
     if mounts is not None or base not in (GROUND, ROTOR):

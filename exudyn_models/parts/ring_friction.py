@@ -157,7 +157,6 @@ def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None
 def _add_friction(
     mbs: Any, sides: tuple[Side, Side], factors: LoadAndCoefficient, sticks: bool, thermal: ThermalNode | None
 ) -> RingFriction:
-    """Add the connector between two bodies, with constraints if it ``sticks`` exactly, and the heat source."""
     if factors.contact_radius > 0.0:  # a pin exerts no moment
         check_axes(mbs, *sides)
     nodes, kinds = nodes_and_kinds(*sides)
@@ -196,7 +195,6 @@ def _sticking(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) 
 
 
 def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialStick) -> tuple[int, ...]:
-    """Add inactive constraints on the slip, one for each direction; return their object numbers."""
     if not isinstance(stick, PlanarStick):
         lock = items.ObjectConnectorCoordinate(
             name=contact.lock_name(0),
@@ -232,7 +230,6 @@ def _checked_geometry(
     held: int | None,
     pressure: Pressure,
 ) -> Geometry:
-    """Return the contact with 1 N in place of μN; raise ``ValueError`` if it is invalid."""
     regularisation = UNREGULARISED if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
@@ -245,7 +242,7 @@ def _checked_geometry(
         last, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
         points = density_of(pressure, last, radius)
         epsilon = positive_number("regularisation", regularisation, "m/s")
-    if held is not None and held not in range(1, 1 + points):  # a whole circle has none
+    if held is not None and held not in range(1, 1 + points):
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
@@ -268,7 +265,7 @@ def checked_contact(
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
     if radius == 0.0 and contact_points is None:
-        contact_points = 1  # a pin
+        contact_points = 1
     if contact_points is None:
         return radius, None, epsilon
     if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:

@@ -59,8 +59,7 @@ class ThermalNode:
     def add_sensor(self, **options: Any) -> Any:
         """Add a sensor of T and of the heat in J lost to the surroundings; return its ``SensorIndex``.
 
-        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file.
+        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
         """
         return node_sensor(self.mbs, self.node, exu.OutputVariableType.Coordinates, **options)
 
@@ -105,24 +104,10 @@ def add_thermal_node(
     surroundings: float = 20.0,
     start: float | None = None,
 ) -> ThermalNode:
-    """Add a temperature to ``mbs``; return its handle, the ``thermal_node`` of ``add_ring_friction``.
+    """Add a temperature to ``mbs``, not yet assembled; return a handle, the ``thermal_node`` of ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model, not yet assembled.
-    heat_capacity : float
-        C in J/K, > 0.
-    conductance : float
-        G in W/K, >= 0; 0 for no loss.
-    surroundings, start : float
-        T₀ and the initial temperature (default T₀), both in °C or both in K.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-
+    ``heat_capacity`` C > 0 is in J/K, ``conductance`` G >= 0 in W/K. ``surroundings`` T₀ and ``start``, by default
+    T₀, are both in °C or both in K. Raises ``ValueError`` if a number is out of range.
     """
     capacity = positive_number("heat_capacity", heat_capacity, "J/K")
     loss = checked_not_negative("conductance", conductance, " W/K")

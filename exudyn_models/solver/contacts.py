@@ -68,9 +68,9 @@ def contacts_of(mbs: Any) -> dict[int, Contact]:
 
 
 def present_item(mbs: Any, contact: Contact, item: Any) -> Any:
-    """Return the object number of a contact's connector, at first ``item``; raise ``ValueError`` if it was deleted."""
+    """Return the object number of a contact's connector, at first ``item``; raise ``ValueError`` if it is gone."""
     count = mbs.systemData.NumberOfObjects()
-    for number in (item, *range(count)):  # usually the first
+    for number in (item, *range(count)):
         if int(number) < count and mbs.GetObjectParameter(number, "name") == contact.name:
             return number
     raise ValueError(f"{contact.name!r} was deleted: it cannot be changed or measured")

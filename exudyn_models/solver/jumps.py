@@ -56,7 +56,6 @@ class JumpCheck:
             self._find()
 
     def _find(self) -> None:
-        """Search the recorded steps; the last ones start the next search."""
         times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
         del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
         self._largest = max(self._largest, float(np.abs(powers).max()))

@@ -43,8 +43,7 @@ def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray,
 
 @contextmanager
 def _mass_and_solver(mbs: Any, t: float) -> Iterator[tuple[FloatArray, Any]]:
-    """Yield the mass matrix, and a solver that evaluates the model at its initial values."""
-    solver: Any = exu.MainSolverStatic()  # its Jacobian contains no terms of time integration
+    solver: Any = exu.MainSolverStatic()  # without terms of time integration in its Jacobian
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
     settings.staticSolver.loadStepStart = t

@@ -17,7 +17,7 @@ import exudyn as exu
 
 WITHOUT_RESTART: dict[str, Any] = {
     "modifiedNewtonContractivity": 1e300,
-    "maxModifiedNewtonIterations": 1,  # a new Jacobian in each iteration, as in full Newton
+    "maxModifiedNewtonIterations": 1,
     "maxModifiedNewtonRestartIterations": 1_000_000,
     "modifiedNewtonJacUpdatePerStep": False,
 }

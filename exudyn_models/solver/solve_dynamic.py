@@ -97,15 +97,13 @@ def solve_dynamic(
 
 
 class _Look:
-    """Checks the state of an assembled model after every step of a run by a ``solver``."""
+    """Checks the state of a model after every step of a run."""
 
     def __init__(self, mbs: Any, solver: Any, options: Any) -> None:
         data, self._solver, self._start = mbs.systemData, solver, options.startTime
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._others, self._rates = data.GetODE1Coordinates, data.GetODE1Coordinates_t
-        automatic = (
-            solver not in IMPLICIT and solver.name not in INTERVALS
-        )  # steps as small as the solver likes
+        automatic = solver not in IMPLICIT and solver.name not in INTERVALS
         self._count = StepCount(options.endTime) if automatic else None
         if self._count is not None:
             self._count.look_from(self._start)
@@ -152,7 +150,7 @@ def _solve(
     contacts: list[StickingContact],
     modes: list[Mode],
 ) -> list[ModeChange]:
-    """Run an assembled model without a break; ``modes`` are those at the end of the previous part, if any."""
+    """Run an assembled model without a break, from ``modes`` if given."""
     options = simulationSettings.timeIntegration
     look = _Look(mbs, solver, options)
     changes: list[ModeChange] = []
@@ -183,7 +181,7 @@ def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) ->
 
 
 def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:
-    """Raise the cause of an error ``time`` (s) after the start of a run, unless it is Exudyn's own."""
+    """Raise the cause of an error in a run, unless it is Exudyn's own."""
     raise_interrupt(error)
     if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
         raise error.__cause__ from None
@@ -197,12 +195,11 @@ def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> 
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
-    """Return a message if a singular mass matrix ended the run, else ""."""
     if not at_start:
         return ""
     try:
         return singular_mass(mbs)
-    except exu.ExudynError:  # the run's own error is the one to report
+    except exu.ExudynError:  # the run's own error is more useful
         return ""
 
 

@@ -150,7 +150,6 @@ def _no_steps(model: Model, time: float) -> Steps:
 
 
 def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
-    """Return the solver after its run, and the initial acceleration if the solver does not record it."""
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
     first_acceleration = None
@@ -177,7 +176,7 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
 
 
 class _Look:
-    """Ends a run if the state after a step is invalid or ``watch`` returns False."""
+    """Ends a run if a state is invalid or ``watch`` returns False."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
         data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
@@ -190,7 +189,7 @@ class _Look:
         self.stopped = False
 
     def __call__(self, mbs: Any, t: float) -> bool:
-        own, watch = self._own, self._watch  # every call counts, because this runs after every step
+        own, watch = self._own, self._watch  # runs after every step, so every call counts
         state = self._positions().tolist()[own] + self._velocities().tolist()[own]
         if not math.isfinite(sum(state)):
             self.failure = NOT_FINITE
@@ -206,11 +205,7 @@ class _Look:
 def _recorded(
     model: Model, end: float | None, quasi_static: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the times of all steps, shape (n,), states (n, 2d) and accelerations (n, d).
-
-    The last time is ``end`` (s) if the run is complete; a sum of fixed steps may differ from it in the last
-    digits.
-    """
+    """Return times, shape (n,), states (n, 2d) and accelerations (n, d) of all steps; the last time is ``end``."""
     stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
     times = stored[0][:, 0]
@@ -266,7 +261,7 @@ def _settings(
 
 
 def _initial_acceleration(model: Model, start: float) -> FloatArray:
-    """Return the initial accelerations, shape (d,), by an implicit solver: the explicit ones report zero."""
+    """Return the initial accelerations by an implicit solver; the explicit ones report zero."""
     span = 1e-9 * max(1.0, abs(start))
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()

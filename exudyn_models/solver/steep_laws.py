@@ -66,7 +66,7 @@ def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
 
 
 def _right_share(contact: Any, t: float, start: Any, rates: Any, end: Any, end_rates: Any) -> float:
-    """Return the share, up to 1, of a step to the time t (s) that skips no peak of a contact's friction."""
+    """Return the share, up to 1, of a step that skips no peak of a contact's friction."""
     factors, reference = contact.factors, contact.reference
     before, after, change, spin, radius = change_of_slip(
         contact.kinds, factors.geometry, reference + start, rates, reference + end, end_rates

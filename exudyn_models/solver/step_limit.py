@@ -62,7 +62,7 @@ class ModelInStick:
             if not contact.built_in:
                 jacobian = contact.functions["jacobian"]
                 now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
-                damping[np.ix_(places, places)] -= now  # the damping of its initial slip
+                damping[np.ix_(places, places)] -= now
             contacts.append((places, contact.dampers))
         return cls(mass, damping, tuple(contacts))
 
@@ -94,18 +94,8 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     without contacts. A disc that creeps about a point on or near its own circle of contact chatters from a quarter of
     this step on; at half of it, by less than 7 % of its creep. The model is assembled if necessary.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    solver_type : exudyn DynamicSolverType
-        ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
-
-    Raises
-    ------
-    ValueError
-        For any other solver, or a model with constraints or a singular mass matrix.
-
+    ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
+    Raises ``ValueError`` for any other solver, or a model with constraints or a singular mass matrix.
     """
     if solver_type.name not in INTERVALS:
         raise ValueError(
@@ -148,7 +138,7 @@ class StepCheck:
         self.next_time = t + self._span / LOOKS if self._model.varies else math.inf
         try:
             decay = self._model.decay(t, coordinates)
-        except Exception:  # a massless body or an error in a load, which the run will report with its time
+        except Exception:  # the run itself will report the error, with its time
             return
         limit = INTERVALS[self._solver] / decay if decay > 0.0 else math.inf
         if self._step <= limit:
@@ -167,7 +157,7 @@ class StepCheck:
 def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
     try:
         return ModelInStick.of(mbs, t)
-    except Exception as error:  # an error in a function of the model, which the run will report with its time
+    except Exception as error:  # the run itself will report the error, with its time
         if isinstance(error, exu.ExudynError):
             raise_interrupt(error)
         return None
@@ -175,7 +165,6 @@ def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
 
 @contextmanager
 def _inactive(mbs: Any, items: Sequence[int]) -> Iterator[None]:
-    """Deactivate connectors temporarily."""
     for item in items:
         mbs.SetObjectParameter(item, "activeConnector", False)
     try:

@@ -49,7 +49,7 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
 def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> float:
     """Return the coefficient at a slip speed >= 0 (m/s); ``pieces`` is the number of pieces at ``address``."""
     first, last = 0, int(pieces) - 1
-    while first < last:  # invariant: first <= piece <= last
+    while first < last:  # first <= piece <= last
         middle = (first + last + 1) // 2
         if number_at(address, middle * COLUMNS) <= slip_speed:
             first = middle

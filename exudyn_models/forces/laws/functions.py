@@ -82,7 +82,7 @@ def _call_by_name(arguments: Sequence[str], function: Callable[..., float], *giv
 
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ...], bool]:
-    """Return which ``ARGUMENTS`` a function takes, and whether in that order; raise ``ValueError`` for others."""
+    """Return which ``ARGUMENTS`` a function takes, and whether in that order."""
     allowed = f"any of {', '.join(ARGUMENTS)} by these names, for example `lambda time: ...`"
     try:
         parameters = list(inspect.signature(function).parameters.values())
@@ -109,7 +109,6 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
 
 @cache  # machine code must persist while it may be called
 def _of_four(function: Any, arguments: tuple[str, ...]) -> Any:
-    """Return the function compiled by numba as one of four floats."""
     places = tuple(list(ARGUMENTS).index(argument) for argument in arguments)
     adapt = _OF_FOUR[len(places)]
 

@@ -115,7 +115,7 @@ class LockedContacts:
         return True
 
     def _mobilities(self) -> FloatArray:
-        """Return the inverse square roots of the masses; coordinates without mass get the largest one."""
+        """Return 1/√mass of each coordinate; those without mass get the largest."""
         masses = np.diag(self._mass)
         light = np.min(masses, where=masses > 0.0, initial=np.inf)
         return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
@@ -172,6 +172,5 @@ def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray
 
 
 def _null_space(rows: FloatArray) -> FloatArray:
-    """Return a basis of the vectors that ``rows``, shape (m, n), map to zero, shape (n, k)."""
     # SciPy 1.12 fails for a matrix without rows
     return np.asarray(scipy.linalg.null_space(rows) if rows.size else np.eye(rows.shape[1]))

@@ -52,7 +52,7 @@ class ModeChoice:
 
     def survey(self, t: float) -> None:
         """Find the directions of slip that joints and locks hold at the time t (s) and the initial values."""
-        if self._planar:  # the directions of slip on one axis are constant
+        if self._planar:  # slip on one axis has a constant direction
             forces = np.array(self._mbs.systemData.GetAECoordinates())
             self._locked = LockedContacts(self._mbs, t, self._contacts)
             self._mbs.systemData.SetAECoordinates(forces)
@@ -150,8 +150,7 @@ class ModeChoice:
     def _contradiction(self, t: float) -> tuple[StickingContact, Mode] | None:
         """Return a contact that violates Coulomb's law, and the mode that it enters.
 
-        Contacts that open or close come first, then the most overloaded locked contact, then sliding ones that
-        reverse.
+        Opening and closing come first, then the most overloaded locked contact, then contacts that reverse.
         """
         mbs = self._mbs
         for contact in self._contacts:
@@ -171,10 +170,7 @@ class ModeChoice:
         return max(self._contacts, key=lambda contact: contact.overload(self._mbs, t))
 
     def _start_with_forces(self, t: float) -> bool:
-        """Make accelerations and constraint forces initial values; return whether the loads agree with them.
-
-        A load may depend on constraint forces, such as the reaction of a joint.
-        """
+        """Make accelerations and constraint forces initial values; return whether loads that depend on them agree."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         forces = np.array(data.GetAECoordinates())
         loads = [contact.holding(t) for contact in self._contacts]

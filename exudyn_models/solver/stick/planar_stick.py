@@ -42,10 +42,10 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; the joints of the model may hold them on one axis.
 
-    ``sliding`` are the user functions for force and Jacobian of Coulomb friction. If ``on_axis`` it is an
-    ``AxialStick``. ``basis``, shape (3, k), are the directions of slip (m/s, m/s, rad/s) that its locks hold, and
-    ``allowed`` those that the joints leave free; other locked contacts may hold some of them. ``direction``, shape
-    (3,), is the slip into which the load has released the contact: normal to the limit surface, with P = 1 m/s.
+    ``sliding`` are the user functions for force and Jacobian of Coulomb friction. ``on_axis`` it is an
+    ``AxialStick``. Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``, shape (3, k); ``allowed``
+    are those that joints leave free, including directions that other locks hold. ``direction``, shape (3,), is the
+    slip into which the load has released the contact: normal to the limit surface, with P = 1 m/s.
     """
 
     sliding: tuple[Callable[..., Any], ...] = ()
@@ -230,7 +230,7 @@ class PlanarStick(AxialStick):
         return self._row(lock, q)[None]
 
     def _row(self, lock: int, q: Sequence[float]) -> FloatArray:
-        if q != self._evaluated[0]:  # Exudyn asks for one row after the other
+        if q != self._evaluated[0]:  # Exudyn asks for one row after another
             rows = np.zeros((3, len(q)))
             rows[: self.basis.shape[1]] = self.rows(np.array(q))
             self._evaluated = list(q), rows

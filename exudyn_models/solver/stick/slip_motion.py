@@ -113,10 +113,9 @@ def _linear_friction(
     position_factor: float,
     velocity_factor: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives, shape (n, n).
+    """Return the forces on the nodes, linear in the slip from ``start``, and a weighted sum of their derivatives.
 
-    The derivatives are weighted sums of those by coordinates and by velocities. ``slope`` is 1, or 0 for forces that
-    do not depend on the slip.
+    ``slope`` is 1, or 0 for forces that do not depend on the slip.
     """
     to_slip, _, turned, _ = slip_and_place(kinds, q)
     slip = slip_of_nodes(to_slip, q_t)
@@ -136,9 +135,9 @@ def _linear_friction(
 
 @compiled
 def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
-    """Return the derivatives of coordinates, which for a rotation vector v are not ω in the body's axes.
+    """Return the derivatives of coordinates; ω is not the derivative of a rotation vector v.
 
-    v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
+    v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with ω in the body's axes and θ = |v|.
     """
     rates = q_t.copy()
     start = 0
@@ -160,7 +159,6 @@ def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArra
 
 @compiled
 def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, float]:
-    """Return force and moment per newton of μN of a circle or an annulus."""
     return friction_of_slip(slip[0], slip[1], slip[2], 0.0, contact)
 
 
@@ -168,8 +166,8 @@ def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, fl
 def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
     """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
 
-    Because P is convex, there is one maximum between the directions without power. The Illinois method finds the zero
-    of the derivative (Dowell & Jarratt, BIT 11 (1971) 168).
+    P is convex, so there is one maximum between the directions without power. The Illinois method finds the zero of
+    the derivative (Dowell & Jarratt, BIT 11 (1971) 168).
     """
     first, second = columns[:, 0].copy(), columns[:, 1].copy()
     middle = math.atan2(load @ second, load @ first)

@@ -270,7 +270,7 @@ class PlanarContact(StickingContact):
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
-        """Return the mode of a contact that is not locked yet; without a direction of slip it may stick."""
+        """Return the mode of a contact that was not locked; without a direction of slip it may stick."""
         if self.holding(t) == 0.0:
             return Mode.OPEN
         motion = self.motion(mbs, configuration)
@@ -292,7 +292,7 @@ def sticking_contacts(mbs: Any) -> list[StickingContact]:
 
 @contextmanager
 def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[list[StickingContact]]:
-    """Give contacts the modes of load and slip at the start t (s) of a run; yield them on one axis or in the plane."""
+    """Give contacts the modes of load and slip at the start of a run; yield them on one axis or in the plane."""
     try:
         for contact in contacts:
             contact.stick.running = True
@@ -311,7 +311,6 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
 
 
 def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
-    """Return the contact in the plane if ``joints`` allow it to slip sideways, otherwise unchanged."""
     stick = contact.stick
     if not isinstance(stick, PlanarStick):
         return contact

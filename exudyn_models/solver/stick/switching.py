@@ -72,7 +72,7 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._accelerations = np.empty(0)  # at the start of the present step
+        self._accelerations = np.empty(0)
         self._slides = SlidingSteps(mbs, self._planar, self._step)
         self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step, self._at_start)
         self._look: Callable[[float], bool] = lambda t: True
@@ -151,9 +151,9 @@ class _Run:
         keep: bool,
         settles: bool = False,
     ) -> None:
-        """Run from the last time reached to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
+        """Run to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
 
-        With contacts in the plane, Exudyn computes the initial accelerations only for a part that ``settles``.
+        If contacts lie in the plane, Exudyn computes the initial accelerations only for a part that ``settles``.
         """
         options, solution = self._options, self._settings.solution
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
@@ -172,10 +172,10 @@ class _Run:
             solution.file.append = solution.sensors.append = True
 
     def _go_on(self) -> tuple[float, Sequence[FloatArray]] | None:
-        """Run to the end of the run, or to the next multiple of the step if the last part ended between two.
+        """Run to the end, or to the next multiple of the step if the last part ended between two.
 
-        Contacts in the plane may need shorter steps. Return None, or the end of a step that passed a change and was
-        taken back, with the margins at both of its ends.
+        Return None, or the end of a step that passed a change and was taken back, with the margins at both of its
+        ends.
         """
         data, start = self._mbs.systemData, self._reached
         whole = (start - self._start) / self._step
@@ -232,7 +232,6 @@ class _Run:
         return self._modes.margins(t)
 
     def _try(self, t: float) -> FloatArray:
-        """Return the margins after a trial step to the time t (s)."""
         found = np.empty(0)
 
         def look(time: float) -> bool:
@@ -267,9 +266,9 @@ class _Run:
 
         self._step_to(high)
         leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
-        following = [contact.following(self._mbs, high) for contact in leaving]  # with the loads of this step
+        following = [contact.following(self._mbs, high) for contact in leaving]
         self._modes.survey(high)
-        released = False  # ``settle`` decides about the others that share its load
+        released = False  # ``settle`` decides about others that share its load
         for contact, mode in zip(leaving, following, strict=True):
             shares = isinstance(contact, PlanarContact) and mode != Mode.OPEN
             if not (shares and released):
@@ -301,7 +300,7 @@ class _Run:
         self._part(t, 1, lambda time: True, write=False, keep=True)
 
     def _note(self, before: Sequence[Mode]) -> None:
-        """Record the changes at the time reached; raise ``SimulationError`` if they do not end."""
+        """Record the changes of mode; raise ``SimulationError`` if they do not end."""
         for contact, mode in zip(self._contacts, before, strict=bool(before)):
             after = contact.stick.visible_mode
             if after != mode:
