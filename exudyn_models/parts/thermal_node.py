@@ -104,7 +104,7 @@ def add_thermal_node(
     surroundings: float = 20.0,
     start: float | None = None,
 ) -> ThermalNode:
-    """Add a temperature to ``mbs``, not yet assembled; return a handle, the ``thermal_node`` of ``add_ring_friction``.
+    """Add a temperature to ``mbs`` before assembly; return a handle, the ``thermal_node`` of ``add_ring_friction``.
 
     ``heat_capacity`` C > 0 is in J/K, ``conductance`` G >= 0 in W/K. ``surroundings`` T₀ and ``start``, by default
     T₀, are both in °C or both in K. Raises ``ValueError`` if a number is out of range.
