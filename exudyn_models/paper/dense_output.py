@@ -12,10 +12,10 @@ from reference_model.systems import FloatArray
 
 
 def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
-    """Return the function of times (s) that gives the states of a creeping body, shape (len(times), 2d).
+    """Return a function that gives the states of a creeping body at times (s), shape (len(times), 2d).
 
-    Its velocities are cubic Hermite interpolants of the solver's velocities and accelerations. In a short step the
-    creep is so small that rounding of positions would spoil it.
+    Velocities are cubic Hermite interpolants, because rounding of positions would spoil the small creep in short
+    steps.
     """
     velocities = _velocities(steps)
 
@@ -47,8 +47,7 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     """Return the states at ``times`` (s), shape (len(times), 2d).
 
     Between two steps each coordinate is the quintic polynomial with the positions, velocities and accelerations of
-    both ends, and velocities are its derivative. Its error is h⁶/46080 times the sixth derivative, below the error of
-    the step. At a step the result is the solver's state.
+    both ends. Its error is h⁶/46080 times the sixth derivative, below the error of the step.
     """
     index = np.clip(np.searchsorted(steps.times, times, side="right") - 1, 0, max(len(steps.times) - 2, 0))
     after = np.minimum(index + 1, len(steps.times) - 1)

@@ -13,7 +13,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 MOST_KEPT = 50_000
-"""Largest number of stored steps; if there are more, those without information about phases are dropped."""
+"""Largest number of stored steps; beyond it, steps without information about phases are dropped."""
 
 
 class Recording:
