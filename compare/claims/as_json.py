@@ -1,7 +1,7 @@
 """Conversion to JSON and back for numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
 
-NaN and infinity become "nan", "inf" and "-inf", which ``float`` reads. All other numbers are restored exactly. Arrays
-and tuples become lists, dataclasses become mappings of their fields.
+NaN and infinity become "nan", "inf" and "-inf". All numbers are restored exactly. Arrays and tuples become lists,
+dataclasses become mappings of their fields.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from compare.claims.claim import Claim, ErrorBudget
 Kind = TypeVar("Kind")
 
 TYPE = "type"
-"""Key with the name of the dataclass, if a field allows several."""
+"""Key for the name of the dataclass, if a field allows several."""
 
 
 def as_json(value: Any) -> Any:
@@ -53,14 +53,12 @@ def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
 
 
 def _tag(kind: Any, value: Any) -> Any:
-    """Return the JSON value of a field of type ``kind``, with the name of its dataclass if several are allowed."""
     content = as_json(value)
     tagged = value is not None and _dataclasses(kind)
     return {TYPE: type(value).__name__} | content if tagged else content
 
 
 def _value(kind: Any, content: Any) -> Any:
-    """Return the value of type ``kind`` from JSON."""
     if possible := _dataclasses(kind):
         return from_json(
             possible[content[TYPE]], {name: item for name, item in content.items() if name != TYPE}
@@ -81,7 +79,7 @@ def _dataclasses(kind: Any) -> dict[str, type[Any]]:
 
 
 def claim_as_json(claim: Claim) -> dict[str, Any]:
-    """Return the claim as JSON values; ``claim_from_json`` restores it exactly."""
+    """Return a claim as JSON values."""
     return {
         "sentence": claim.sentence,
         "equation": claim.equation,
@@ -110,7 +108,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 
 
 def claim_from_json(content: dict[str, Any]) -> Claim:
-    """Return the claim from the output of ``claim_as_json``."""
+    """Return the claim from the output of ``claim_as_json``, exactly."""
     alike = {field.name: content[field.name] for field in fields(Claim) if field.name in content}
     budget = ErrorBudget(
         content["numerical_error"], model=content["model_error"], resolution=float(content["resolution"])

@@ -55,24 +55,13 @@ def measured_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues in 1/s of small deviations from a steady motion, and their error.
 
-    Central differences of the engine's flow over ``duration`` give the linearised flow, with two simulations for each
-    column; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
+    Central differences of the engine's flow over ``duration`` (s), with |Im λ|·duration < π, give the linearised
+    flow, whose eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
     change with 2h and 4h instead, plus the estimate of ``refined`` for the tolerance, plus the tolerance itself as an
     error of the states. The largest error counts for all eigenvalues, because a single one may be right by chance.
 
-    Parameters
-    ----------
-    engine : Engine
-        The engine.
-    system : PinOnDisc or DiscOnDisc
-        The parameters. A disc has a continuous ring, so its angle drops out and five eigenvalues remain.
-    state : array of shape (4,) or (6,)
-        State of the steady motion, which must slide.
-    duration : float
-        Duration in s, short enough for |Im λ|·duration < π.
-    frame_speed : float
-        Angular velocity in rad/s of the axes that make the motion steady.
-
+    The motion must slide from ``state``, shape (4,) or (6,), and is steady in axes that turn with ``frame_speed``
+    (rad/s). A disc has a continuous ring, so its angle drops out and five eigenvalues remain.
     """
     state = np.asarray(state, dtype=float)
     moving, size = _deviations(system, state)

@@ -38,19 +38,9 @@ SECTIONS = {
 class Prose:
     """The texts of a study.
 
-    Parameters
-    ----------
-    title : str
-        Title in one line.
-    paper : str
-        Statements of the paper.
-    section : str
-        Heading of the study's group in the overview.
-    finding : str
-        Answer to a question that the paper leaves open, for the first screen; shown while all claims agree.
-    figures : mapping
-        Captions by the names of figures and animations.
-
+    ``title`` is one line, ``paper`` the statements of the paper, ``section`` the heading of the study's group in the
+    overview. ``finding`` answers a question that the paper leaves open; it is shown on the first screen while all
+    claims agree. ``figures`` contains captions by the names of figures and animations.
     """
 
     title: str

@@ -90,7 +90,6 @@ def mixed(ends: Ends) -> BoolArray:
 
 
 def _corners(chosen: np.ndarray) -> np.ndarray:
-    """Return the number of chosen corners of each cell."""
     one = chosen.astype(np.uint8)
     result: np.ndarray = one[:-1, :-1] + one[1:, :-1] + one[:-1, 1:] + one[1:, 1:]
     return result

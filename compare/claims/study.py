@@ -38,17 +38,9 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """Results of one study for one engine.
+    """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    Parameters
-    ----------
-    claims : tuple of Claim
-        Measured claims.
-    data : dict
-        Arrays for the figures.
-    not_simulated : str
-        Reason why claims are missing, in a sentence, see ``Engine.lacking``; "" if none is missing.
-
+    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``; "" if none is missing.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -60,23 +52,14 @@ class Findings:
 class Recorded:
     """Recorded results for one setting of an engine, not measured in a run.
 
-    Parameters
-    ----------
-    engine, setting, version, date : str
-        Engine, its setting ("" if it has only one), its version and the date of the recording.
-    claims : tuple of Claim
-        Claims about that engine.
-    own : bool
-        True if the friction is the engine's own, False if it is a user-defined force.
-    cases : mapping
-        Name of the motion and "slip" or "stick", by the sentence of each claim.
-    law, says, adapter : str
-        Shape of the friction law, description of the setting, and file of the adapter; "" if unknown.
-    advice : str
-        Refinement for a small error, or the error of the finest run, as a clause; "" without advice.
-    whirl : float
-        Relative error of the radius of the whirl; NaN if not simulated.
-
+    - ``engine``, ``setting``, ``version``, ``date``: engine, its setting ("" if it has only one), its version and the
+      date of the recording.
+    - ``claims``: claims about that engine.
+    - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
+    - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
+    - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
+    - ``advice``: refinement for a small error, or the error of the finest run, as a clause; "" without advice.
+    - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
     """
 
     engine: str
@@ -101,30 +84,17 @@ PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validation
 class Study:
     """One figure or group of statements, with claims declared by the decorator ``claim``.
 
-    Parameters
-    ----------
-    name : str
-        Name on the command line, such as "fig03".
-    prose : Prose
-        Title, statements of the paper, finding and captions.
-    only : tuple of str
-        Names of the engines that the study is about; empty for all.
-    source : str
-        Origin of the parameters: a figure, or an assumption in words.
-    system : PinOnDisc or DiscOnDisc, optional
-        System whose parameters repeat the measurements.
-    seconds : float
-        Approximate time in s for one engine; the longest work starts first to keep all cores busy.
-    quick : bool
-        True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
-    contact : bool
-        True if the study tests an engine's contact code, see ``Engine.contact_only``. For engines with that flag,
-        its claims leave out cases that depend on other code.
-    declared : list of Declared
-        Claims in the order of the report.
-    provided : dict
-        Additional functions, see ``provides``.
-
+    - ``name``: name on the command line, such as "fig03".
+    - ``prose``: title, statements of the paper, finding and captions.
+    - ``only``: names of the engines that the study is about; empty for all.
+    - ``source``: origin of the parameters: a figure, or an assumption in words.
+    - ``system``: system whose parameters repeat the measurements.
+    - ``seconds``: approximate time in s for one engine; the longest work starts first to keep all cores busy.
+    - ``quick``: True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
+    - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
+      claims leave out cases that depend on other code.
+    - ``declared``: claims in the order of the report.
+    - ``provided``: additional functions, see ``provides``.
     """
 
     name: str
@@ -186,7 +156,7 @@ class Study:
         return self._provided("animations", {}, data)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the tables that the report shows in addition to claims and figures."""
+        """Return the report's additional tables."""
         return self._provided("tables", ())
 
     def recorded(self) -> tuple[Recorded, ...]:
@@ -264,15 +234,9 @@ class Study:
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims on ``engine``, or the claims of the theory if it is None.
 
-        Parameters
-        ----------
-        engine : Engine, optional
-            The engine. If it does not support a claim, that claim is missing and the findings contain the reason.
-        few : mapping, optional
-            Arguments of claims' functions by their names, to measure fewer cases.
-        only : collection of str
-            Names of the functions to call, or "function/case" for one member of a family; empty for all.
-
+        Findings leave out claims that the engine does not support, and say why. ``few`` contains arguments of claims'
+        functions by their names, to measure fewer cases. ``only`` selects functions by name, or a member of a family
+        by "function/case"; empty for all.
         """
         claims: list[Claim] = []
         data: Data = {}

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase, Trajectory
 
-PHASES = ("slip", "pivot", "stick")  # kinds of phases
+PHASES = ("slip", "pivot", "stick")
 
 TIME_ROUNDING = 1e-12
 """Largest relative difference between times of one grid that were summed in different order."""

@@ -1,9 +1,9 @@
 """Noise that makes the limited precision of an engine visible in the error estimates.
 
-The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision may not
-contribute, because it can cut off the same digits at both tolerances. Noise of that size, different at each
-tolerance, propagates through a claim as rounding does and so contributes to the change. This is the idea of
-stochastic arithmetic (Vignes, Mathematics and Computers in Simulation 35, 1993).
+The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision can cut
+off the same digits at both tolerances, so it may not contribute. Noise of that size, different at each tolerance,
+propagates as rounding does and contributes to the change (stochastic arithmetic: Vignes, Mathematics and Computers in
+Simulation 35, 1993).
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
     The two tolerances of an estimate have the same noise with opposite signs and different amplitudes. Independent
-    noise could cause nearly equal errors by chance, which the estimate would miss. Opposite signs reveal effects that
-    are odd in the noise, different amplitudes those that are even.
+    noise could cause nearly equal errors by chance. Opposite signs reveal effects that are odd in the noise,
+    different amplitudes those that are even.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision

@@ -96,8 +96,8 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
 
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. These names need no
     registration: "module:function", which may be in the current folder; "exec:COMMAND", see
-    ``compare.engines.outside``; and an entry point "friction_discs.engines" of an installed package.
-    Raises ``ValueError`` if a name is unknown or cannot be imported.
+    ``compare.engines.outside``; and an entry point "friction_discs.engines" of an installed package. Raises
+    ``ValueError`` if a name is unknown or cannot be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(
@@ -135,7 +135,7 @@ def shares_code(name: str, other: str) -> bool:
 
 
 def repeated_by(name: str) -> str:
-    """Return the name of the engine from which ``name`` differs only in its contact, "" if there is none."""
+    """Return the name of the engine from which ``name`` differs only in its contact, or ""."""
     engine = _REGISTRY.get(name)
     return engine.kin if engine is not None and engine.contact_only else ""
 
@@ -160,7 +160,6 @@ def known_name(name: str) -> str:
 
 
 def _scheme(name: str) -> Scheme | None:
-    """Return the scheme of ``name`` by its part before the colon, or None."""
     first, colon, _ = name.partition(":")
     scheme = _SCHEMES.get(first)
     return scheme if scheme and (colon or scheme.alone) and first not in packaged() else None

@@ -28,7 +28,7 @@ REST = 1e-2
 CREEP = 3e-4
 """Largest creep in stick, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-It is proportional to the tolerance, as the creep of a regularised law should be, up to ``REST``.
+It is proportional to the tolerance, as for a regularised law, up to ``REST``.
 """
 
 CLOSER = 64  # factor between the sample densities, and between the levels of slip, of successive refinements
@@ -37,8 +37,7 @@ LOOKS = 3
 LEAST = 1e-7
 """Least slip for extrapolation, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-It is proportional to the root of the tolerance. The error of extrapolation therefore changes with the tolerance and
-is part of the error estimate.
+It is proportional to the root of the tolerance, so that the error of extrapolation is part of the error estimate.
 """
 
 ABOVE_NOISE = 32.0  # least slip for extrapolation as a multiple of the engine's precision, if that is larger
@@ -110,7 +109,6 @@ class _Samples:
         self.largest = 0.0  # speed in m/s
 
     def phases(self, begin: float, end: float) -> tuple[Phase, ...]:
-        """Return the phases from ``begin`` to ``end`` in s."""
         self.look(np.linspace(begin, end, self._how_many(end - begin)))
         self.look(self._where_it_may_rest_between())
         self.largest = self._largest_speed()
@@ -151,7 +149,6 @@ class _Samples:
         return min(max(PER_PERIOD, math.ceil(PER_PERIOD * turns)), MOST) + 1
 
     def look(self, times: FloatArray) -> None:
-        """Request the states at further ``times``."""
         times = np.setdiff1d(times, self.times)
         if times.size == 0:
             return
@@ -177,7 +174,7 @@ class _Samples:
         )
 
     def _spans(self, level: float, start: int = 0, stop: int | None = None) -> list[_Span]:
-        """Return the spans of at least two samples, from ``start`` to ``stop``, with slip up to ``level`` in m/s."""
+        """Return the spans of at least two samples with slip up to ``level``."""
         slow = self.slip[start:stop] <= level
         edges = start + np.flatnonzero(np.diff(np.concatenate(([0], slow, [0]))))
         return [
@@ -213,15 +210,12 @@ class _Samples:
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
-        """Return the quantile ``share``, over time, of the slip in m/s from ``begin`` to ``end`` in s."""
+        """Return the quantile ``share``, over time, of the slip from ``begin`` to ``end``."""
         evenly = np.linspace(begin, end, 4 * CLOSER + 1)
         return float(np.quantile(np.interp(evenly, self.times, self.slip), share))
 
     def _is_stick(self, begin: float, end: float, span: _Span) -> bool:
-        """Return whether a body that is slow from ``begin`` to ``end``, in s, sticks and not only slips slowly.
-
-        It sticks if it only creeps, for most of the slow span, and friction can hold it.
-        """
+        """Return whether a slow body sticks: it only creeps, for most of the slow span, and friction can hold it."""
         if end - begin <= (span.last - span.first) / 2.0:
             return False
         slow, creep, fast = (self._quantile(begin, end, share) for share in (0.25, 0.5, 0.75))
@@ -238,7 +232,7 @@ class _Samples:
         return _joined(np.linspace(self.times[i], self.times[j], CLOSER + 1) for i, j in flanks)
 
     def _begin(self, span: _Span) -> float:
-        """Return the time in s of zero slip before the span; slip falls in proportion to the time left."""
+        """Return the time of zero slip before the span; slip falls in proportion to the time left."""
         first, _ = self._places(span)
         if first == 0:
             return float(self.times[0])
@@ -246,7 +240,7 @@ class _Samples:
         return min(max(time, nearest), span.last)
 
     def _end(self, span: _Span) -> float:
-        """Return the time in s of zero slip after the span; slip grows as the square of the time elapsed."""
+        """Return the time of zero slip after the span; slip grows as the square of the time elapsed."""
         _, last = self._places(span)
         if last == len(self.times) - 1:
             return float(self.times[-1])

@@ -1,8 +1,8 @@
 """Motions in other units: equal to the requested ones in dimensionless form, with other parameters.
 
-The studies' masses are mostly 1 kg and their speeds below 2 m/s. An engine may be wrong at all others. If mass,
-length and time are measured in other units, the same claims test it there, at the same cost. The units are powers of
-two, so an engine without absolute constants returns the same digits.
+The studies' masses are mostly 1 kg and their speeds below 2 m/s; an engine may be wrong at all others. In other units
+of mass, length and time the same claims test it there, at the same cost. The units are powers of two, so an engine
+without absolute constants returns the same digits.
 """
 
 from __future__ import annotations
@@ -94,7 +94,6 @@ class InOtherUnits:
 
 
 def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
-    """Return the factors of the components of a state, shape (4,) or (6,)."""
     _, length, time = units
     places = [2.0**length, 2.0**length] + [1.0] * (system.state_size // 2 - 2)
     return np.array(places + [place / 2.0**time for place in places])

@@ -65,19 +65,11 @@ WORST_FIRST = (
 class Cell:
     """One engine's answer to one claim.
 
-    Parameters
-    ----------
-    state : State
-        Worst state of the claims.
-    claims : tuple of Claim
-        Usually one; several if the study makes the same claim for several parameters.
-    reason : str
-        Reason for a missing verdict.
-    evidence : str
-        Kind of evidence, see ``compare.claims.claim.EVIDENCE``; "" without a verdict.
-    implied_by : str
-        Claim that implies this verdict, or engine whose verdict on the same claim implies it.
-
+    - ``state``: worst state of the claims.
+    - ``claims``: usually one; several if the study makes the same claim for several parameters.
+    - ``reason``: reason for a missing verdict.
+    - ``evidence``: kind of evidence, see ``compare.claims.claim.EVIDENCE``; "" without a verdict.
+    - ``implied_by``: claim that implies this verdict, or engine whose verdict on the same claim implies it.
     """
 
     state: State

@@ -32,15 +32,9 @@ OFF_BY = 1e-4
 class Planned:
     """The motions that a study requests.
 
-    Parameters
-    ----------
-    motions : tuple of bytes
-        The questions, as lines for a program.
-    claims : int
-        Number of claims that need no other motions.
-    adaptive : int
-        Number of omitted claims, whose motions depend on the answers.
-
+    - ``motions``: the questions, as lines for a program.
+    - ``claims``: number of claims that need no other motions.
+    - ``adaptive``: number of omitted claims, whose motions depend on the answers.
     """
 
     motions: tuple[bytes, ...]

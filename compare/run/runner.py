@@ -34,31 +34,17 @@ Progress = Callable[[int, int, str, float], None]
 class Run:
     """The requested measurements and their results so far.
 
-    Parameters
-    ----------
-    studies, engines : tuple
-        Requested studies, and names of the requested engines without "theory".
-    contact_only : tuple of str
-        Names of the engines that take part only in studies of the contact (``Study.contact``).
-    about : tuple of str
-        Descriptions of the engines.
-    errata : tuple of Erratum
-        Errata whose evidence was requested.
-    outcomes : dict
-        Findings or failure for each finished (study, engine or "theory").
-    seconds : dict
-        Duration of each measurement in s.
-    drawings : dict
-        Drawing or failure for each study.
-    evidence : dict
-        Evidence or failure for each erratum, by its index in ``errata``.
-    versions : dict
-        Versions of the engines by name; "" if unknown.
-    seed : int, optional
-        Seed of the units of the motions, see ``Engine.seed``.
-    interrupted : bool
-        True if Ctrl-C ended the run early.
-
+    - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
+    - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
+    - ``about``: descriptions of the engines.
+    - ``errata``: errata whose evidence was requested.
+    - ``outcomes``: findings or failure for each finished (study, engine or "theory").
+    - ``seconds``: duration of each measurement in s.
+    - ``drawings``: drawing or failure for each study.
+    - ``evidence``: evidence or failure for each erratum, by its index in ``errata``.
+    - ``versions``: versions of the engines by name; "" if unknown.
+    - ``seed``: seed of the units of the motions, see ``Engine.seed``.
+    - ``interrupted``: True if Ctrl-C ended the run early.
     """
 
     studies: tuple[Study, ...]

@@ -5,17 +5,14 @@ Needs ``pip install drake`` (wheels for Linux and newer Pythons on macOS, none f
 The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a plate that turns at ω.
 Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any motion.
 
-Settings and their reasons:
-
-- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, contact is a force, and
-  friction grows smoothly up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
+- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, friction grows smoothly
+  up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
 - ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
 - The convex solvers stop when the residual of Newton's iteration is 1e-6 of the total momentum, and ignore a force F
   if F·h is smaller. A heavy master would hide all friction, so theirs is light and driven: by the gain of its motor
   or, because cenic ignores that, by a torque through a stiff damper. Below h = 2e-3/rate errors grow.
 - With a half-space, Drake crashes from about twenty spheres on, so the plate is a box.
-- Drake's springs between bodies act along a line, so a bushing is used, which has no direction. The dampers are those
-  of the joint.
+- Drake's springs between bodies act along a line, so a bushing is used, which has no direction.
 """
 
 from __future__ import annotations

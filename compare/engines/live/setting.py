@@ -50,7 +50,7 @@ class Model:
         raise NotImplementedError
 
     def work(self, steps: int) -> tuple[int, int]:
-        """Return the numbers of evaluations and steps, if this number of ``steps`` was requested."""
+        """Return the numbers of evaluations and steps for a requested number of ``steps``."""
         return steps, steps
 
     def close(self) -> None:
@@ -63,16 +63,16 @@ class Setting:
 
     Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
     order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``. ``step`` and ``precision`` are as in ``compare.engines.Engine``; the step is
-    short enough for accuracy but faster than real time, and None for an integrator that controls its error.
+    fills each interval of ``times``. ``step``, as in ``compare.engines.Engine``, is short enough for accuracy but
+    faster than real time, and None for an integrator that controls its error.
     """
 
     name: str
-    says: str  # description
+    says: str
     model: type[Model]
     options: Mapping[str, Any] = field(default_factory=dict)  # of the model
     finest: float = 0.0  # least step in units of 1/max(k, ω)
-    linear: bool = True  # True if the engine has linear springs only
+    linear: bool = True
     step: float | None = 2e-3
     precision: float = 0.0
 
@@ -140,7 +140,7 @@ def mobility(system: System) -> float:
 
 
 def inertia_of(system: System) -> float:
-    """Return J; for a pin, which does not turn, return its mass as a stand-in."""
+    """Return J, or the mass of a pin, which does not turn."""
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
 
 
@@ -171,12 +171,11 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
     return (force.real, force.imag, moment)[:half]
 
 
-# --- Common code of planar engines, with contact as a joint.
-#
-# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint between
-# two bodies that removes their relative velocity up to a force limit, here μN/n at each contact point. The second
-# body at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
-# forces, so any support is possible. All of these are set in each step. Steps are semi-implicit, of order 1.
+# --- Common code of planar engines, with contact as a joint.  A planar engine has no third axis for a normal load.
+# For top-down scenes, these engines recommend a joint that removes the relative velocity of two bodies up to a force
+# limit, here μN/n at each contact point. The second body at each point is kinematic and has the velocity of the
+# master disc there. Springs, dampers and the shaft are forces, set in each step. Steps are semi-implicit, of order
+# 1.
 
 
 class TopDown(Model):

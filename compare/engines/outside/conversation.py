@@ -214,7 +214,6 @@ class Conversation:
         raise ProgramError(self.sentence(why))
 
     def _cause(self) -> str:
-        """Return how a program that has closed its output ended."""
         try:
             code = self._process.wait(FAREWELL)
         except subprocess.TimeoutExpired:
@@ -262,7 +261,7 @@ def _read(stream: IO[bytes], most: int) -> bytes:
 
 
 class _Watch:
-    """A thread that calls ``expire`` when a time limit has passed; setting a limit costs next to nothing."""
+    """Thread that calls ``expire`` when a time limit has passed; setting a limit costs next to nothing."""
 
     def __init__(self, expire: Callable[[], None]) -> None:
         self._expire = expire
@@ -295,7 +294,7 @@ class _Watch:
 
 
 class _LastWords:
-    """A thread that reads a program's standard error, so the program never blocks on it, and keeps the end."""
+    """Thread that reads a program's standard error, so the program never blocks on it, and keeps the end."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream

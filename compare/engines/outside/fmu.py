@@ -1,9 +1,8 @@
 """``fmu:FILE``: a model for co-simulation (FMI 2 or 3) as an engine, by FMPy.
 
-The parameters have the names of the systems' parameters, and the outputs those of the states: x, y, vx, vy, and for
-a disc angle and spin. The initial x is set by ``x_start`` if the model has this variable, otherwise by x, and
-likewise for the other states. Models with the outputs of ``stick_events`` report phases; for others, stick is found
-from states.
+The parameters have the names of the systems' parameters, and the outputs those of the states: x, y, vx, vy, and for a
+disc angle and spin. The initial x is set by ``x_start`` if the model has this variable, otherwise by x; the other
+states likewise. Models with the outputs of ``stick_events`` report phases; for others, stick is found from states.
 """
 
 from __future__ import annotations
@@ -38,8 +37,8 @@ OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
 """Parameter for the regularisation speed of points, and the ratio of this speed to tolerance times speed.
 
-The speed is that of the motion. Even a model that reports stick, for pins and rings, may regularise friction at
-points. The error of the resulting creep must fall with the tolerance.
+Even a model that reports stick, for pins and rings, may regularise friction at points. The error of the resulting
+creep must fall with the tolerance.
 """
 
 LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without any speed
@@ -110,7 +109,7 @@ class _Model:
         return StickEvents
 
     def instance(self) -> Any:
-        """Return a new instance; the caller must free it."""
+        """Return a new instance, which the caller must free."""
         return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
 
 
@@ -147,7 +146,6 @@ def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
 
 
 def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> dict[str, float]:
-    """Return the values to set, by variable name: parameters of the system and initial state."""
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
     if lacking:
@@ -170,7 +168,6 @@ def _motion(
     tolerance: float | None = None,
     step: float = math.inf,
 ) -> Trajectory:
-    """Return the motion at ``times`` (n,), computed by a new instance."""
     if model.tells_stick and isinstance(system, DiscOnDisc) and system.contact_points is not None:
         values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():

@@ -27,7 +27,7 @@ _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 
 class BadLineError(RuntimeError):
-    """A program wrote an invalid line; the message says why and continues a sentence that begins with its name."""
+    """A program wrote an invalid line; the message continues a sentence that begins with its name."""
 
 
 class RefusedError(RuntimeError):

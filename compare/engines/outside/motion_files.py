@@ -2,7 +2,7 @@
 
 ``plan.json`` lists the motions. For each there is a file such as ``0f3a.json`` with a question in the form of
 ``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
-header. The file names are hashes of the questions, so an answer cannot be confused with one to another plan.
+header. File names are hashes of the questions, so an answer cannot be confused with one to another plan.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ class Program:
     """The ``simulate`` of a program; each calling process has its own process of the program."""
 
     command: tuple[str, ...]
-    folder: str  # working directory
+    folder: str
 
     @property
     def files(self) -> set[Path]:

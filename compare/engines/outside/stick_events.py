@@ -40,7 +40,7 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
 
 
 class Events:
-    """The phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
+    """Phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
 
     counts: ClassVar[tuple[str, ...]]
     """Outputs that count events."""
@@ -93,7 +93,6 @@ class Events:
         return [self._variables[name].valueReference for name in names]
 
     def _first(self) -> Kind:
-        """Return the kind of the first phase."""
         raise NotImplementedError
 
     def _note(self, counts: list[int]) -> None:
@@ -143,7 +142,6 @@ class StickEvents(Events):
                 self._begun.append((kind, time, state(time)))
 
     def _released(self, time: float) -> FloatArray:
-        """Return the state at release, carried by the master disc since the contact stuck."""
         _, stuck, state = self._begun[-1]
         return self._carried(state[: len(self._placed)], time - stuck)
 
