@@ -88,7 +88,7 @@ def say(sentence: str, result: int) -> int:
 # --- Progress: a bar on a terminal; elsewhere, measurements print a line from time to time.
 
 LINE_INTERVAL = 10.0
-"""Time between two lines of progress without a terminal, in s."""
+"""Time in s between two lines of progress without a terminal."""
 
 
 @contextmanager

@@ -129,7 +129,7 @@ def with_options(
 ) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
     """Add the fields of the dataclass ``group`` to a command as options.
 
-    The command takes a ``group`` as its first argument. In the signature that typer reads, the fields replace it.
+    The command takes a ``group`` as its first argument; in the signature that typer reads, the fields replace it.
     ``defaults`` override defaults of the fields.
     """
 

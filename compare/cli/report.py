@@ -210,7 +210,7 @@ def _requested_studies(
 
 
 def _folder(context: typer.Context, output: Path, part: bool) -> Path:
-    """Return the folder; "report-part" is the default of a partial report, so the full one is kept."""
+    """Return the folder; a partial report goes to "report-part" by default, so the full one is kept."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
@@ -243,7 +243,6 @@ def _print_numbers(matrix: Matrix) -> None:
 
 
 def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
-    """Print the short diagnosis of each engine that differs or failed."""
     from compare.diagnosis.run import in_short
     from compare.report.matrix import State
 
@@ -254,7 +253,7 @@ def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status; print what is missing. ``named`` are the engines from ``--engine``."""
+    """Return the exit status and print what is missing; ``named`` are the engines from ``--engine``."""
     from compare.report.matrix import State
 
     if result.interrupted:

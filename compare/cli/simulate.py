@@ -35,7 +35,6 @@ MOST_SAMPLES = 10_000_000
 """Limit of ``--samples``; more would exhaust the memory."""
 
 PICTURES = (".png", ".pdf", ".svg")
-"""Suffixes of the pictures that ``--plot`` draws."""
 
 PATIENCE = 2.0
 """Time in s before a terminal shows that the engine is still at work."""
@@ -227,7 +226,7 @@ def _elapsed_time(what: str) -> Iterator[None]:
 def _simulated(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
-    """Return the motion as arrays; include its phases on request, because they may need another simulation."""
+    """Return the motion as arrays; its phases may need another simulation, so they are optional."""
     from reference_model.trajectory import Trajectory
 
     found = engine.simulate(system, state, times, tolerance=tolerance)

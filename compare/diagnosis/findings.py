@@ -74,10 +74,9 @@ class History:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces over the exact ones, and their errors.
+    """Forces over the exact ones, and their errors; NaN where there is none.
 
-    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2); NaN where there is
-    none.
+    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
     """
 
     shares: FloatArray
@@ -213,7 +212,7 @@ def history(engine: Engine) -> History:
 
 
 def _held(engine: Engine, pulls: Sequence[float]) -> float:
-    """Return the largest load over μN that a block at rest withstands, at most ``MOST_HELD``, by bisection."""
+    """Return the largest load over μN that a block at rest withstands, at most ``MOST_HELD``."""
     least, most = pulls[0], MOST_HELD
     for number in range(BISECTIONS):
         middle = (

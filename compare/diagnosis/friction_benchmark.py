@@ -22,8 +22,8 @@ class Case:
 
     The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``
     (the coefficient times the normal force). ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A
-    ring lies on the plate with the same pressure everywhere. It has the ``radius`` R and the moment of inertia m·R²,
-    and turns with ``spin`` at the start.
+    ring lies on the plate under uniform pressure. It has the ``radius`` R and the moment of inertia m·R², and turns
+    with ``spin`` at the start.
     """
 
     name: str

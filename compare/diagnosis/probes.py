@@ -1,8 +1,8 @@
 """Short motions that reveal the friction force, its history, the support and the moment of a disc.
 
-The change of momentum gives the friction force without a friction law or an exact solution. A block that slides
-straight on a plane at rest is decelerated by a constant force. Steps then have no error, so any step distinguishes
-cone, box and pyramid.
+The change of momentum gives the friction force without a friction law or an exact solution. A constant force
+decelerates a block that slides straight on a plane at rest. Steps then have no error, so any step distinguishes cone,
+box and pyramid.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ HEADINGS = np.radians(np.arange(4.0, 364.0, 15.0))
 FRICTION = 0.2  # μN in N for a mass of 1 kg
 
 WEAK = 1e-5
-"""Stiffness in N/m for a mass of 1 kg: its force is small, and the momentum balance accounts for it.
+"""Stiffness in N/m for a mass of 1 kg; the momentum balance includes its small force.
 
 It is not smaller because engines may derive a characteristic speed from μN and the natural frequency.
 """
@@ -48,7 +48,7 @@ CHECKED_FOR = 1.0  # duration in s of the first check
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how far a block slides and how far a block moves that should rest: each found and exact, in m."""
+    """Return how far a block slides, and how far one moves that should rest: each found and exact, in m."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     slid = engine.simulate(SLIDE, sliding, times).states[-1]
@@ -200,9 +200,9 @@ LOOKS = 16
 
 
 def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
-    """Return mean speed, largest deviation from it, and mean acceleration of pulled blocks, shape (n, 4).
+    """Return mean speed, largest deviation, mean acceleration and middle velocity of pulled blocks, shape (n, 4).
 
-    The fourth column is the velocity at the middle of the time. All refer to the second half, in m/s and m/s².
+    All refer to the second half of the time, in m/s and m/s².
     """
     # an offset so large that a displacement of 1 m hardly changes the load
     blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in pulls]
@@ -259,7 +259,7 @@ TURNS_FOR = 1.0
 def lag(engine: Engine, tolerance: float) -> float:
     """Return the delay in s of the friction direction behind the slip; 0 for Coulomb friction.
 
-    It is the missing momentum over the change of momentum due to a shift in time, along the direction of the latter.
+    It is the missing momentum over the change of momentum due to a shift in time, along the latter.
     """
     times = SETTLES_FOR + np.linspace(0.0, TURNS_FOR, PANELS + 1)
     run = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), np.concatenate(([0.0], times)), tolerance=tolerance)

@@ -142,13 +142,11 @@ class Row:
         return self.verdict == WRONG
 
 
-# --- The figure of the matrix: error of each engine in each motion against the rung.
-#
-# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to
-# another friction law.
+# --- The figure of the matrix: error of each engine in each motion against the rung. Each rung halves a fixed step
+# and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to another friction law.
 
 MARKERS = "os^Dvx+*"
-LEAST = 1e-16  # smallest plotted error in m; smaller errors are drawn there
+LEAST = 1e-16  # smallest plotted error in m
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
@@ -180,7 +178,7 @@ def drawn_forces(rows: Sequence[Row]) -> Figure:
     wide = max(float(np.ptp(np.log10(np.hypot(*row.scales.forces.T)))) for row in rows if row.scales) > 1.0
     for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
         scales = row.scales
-        assert scales is not None  # by the caller
+        assert scales is not None
         sizes = np.hypot(*scales.forces.T)
         for panel, values in zip(panels, np.abs(scales.conditions).T, strict=True):
             moves = values > 0.0

@@ -56,8 +56,8 @@ def diagnosed(
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
     """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
 
-    If the engine has no result, measuring it is useless, and its row takes the place of the sentence. The sentence
-    is "" for an engine that does not simulate blocks.
+    The row of an engine without a result takes the place of the sentence, because measuring it is useless. The
+    sentence is "" for an engine that does not simulate blocks.
     """
     for engine in engines:
         found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
@@ -171,7 +171,7 @@ def row_of(recording: Recording) -> Row:
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:
-    """Return the last rungs of a recorded ladder, with the same error estimate as in the report."""
+    """Return the last rungs of a recorded ladder, with the error estimate of the report."""
     ratio = float(runs[-2, TOLERANCE] / runs[-1, TOLERANCE]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),

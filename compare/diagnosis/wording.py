@@ -25,8 +25,8 @@ STEPS = (0.2, 3.0)  # range of lags, in steps, that are reported in steps
 LEAST_SHARE = 1e-6  # smallest reported relative deviation of a distance, or of force and moment on a disc
 
 ALIKE = 0.1
-"""Largest spread of the forces of the support that a wrong mass explains, and deviation of a force that another
-explains, relative to the larger deviation."""
+"""Largest spread of the forces of the support that a wrong mass explains, and relative size of deviations that other
+deviations explain."""
 
 SAME_DELAY = 0.2  # largest relative difference of the delays of two late releases
 CHATTERS = 3.0  # least ratio of the velocity of a block that chatters to its creep
@@ -94,7 +94,6 @@ def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: s
 
 
 def _cause(law: Friction) -> str:
-    """Return the sentence on how a law differs from Coulomb's, or ""."""
     deviations = _deviations(law)
     if law.shape == ELLIPSE:
         return (

@@ -154,15 +154,14 @@ FOLDER = Path(__file__).parent
 COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
 """Columns of a recorded run.
 
-"error" is the largest error over time in m, against the exact motion. "change" is the change in m against the
-previous run, whose tolerance is larger by ``compare.claims.error_estimates.COARSENING``; NaN for the first run.
-"seconds" is processor time and "wall" is wall-clock time; for an engine in another process both are wall-clock time.
+"error" is the largest error over time in m. "change" is the change in m against the previous run, whose tolerance is
+larger by ``compare.claims.error_estimates.COARSENING``; NaN for the first run. "seconds" is processor time and "wall"
+is wall-clock time; for an engine in another process both are wall-clock time.
 """
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
-"""Indices of ``COLUMNS`` in a recorded run."""
 
-DIGITS = 4  # number of digits in the files
+DIGITS = 4  # digits in the files
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,10 +173,10 @@ class Recording:
 
     engine: str
     version: str
-    recorded: str  # date
+    recorded: str
     platform: str
     setting: str  # name; "" for one of our own engines
-    says: str  # description of the setting
+    says: str
     runs: Mapping[str, FloatArray]
     probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
 
@@ -188,7 +187,7 @@ class Recording:
 
 
 def recordings() -> tuple[Recording, ...]:
-    """Return all recordings, our own engines first, and the reference before the others.
+    """Return all recordings: the reference, then our other engines, then foreign ones.
 
     Raises ``ValueError`` if the columns of a file differ from ``COLUMNS``.
     """
@@ -208,7 +207,7 @@ def recordings() -> tuple[Recording, ...]:
 def estimate(runs: FloatArray) -> float:
     """Return the error estimate in m of the finest of ``runs``: the sum of the last two changes.
 
-    With an error ~ step^p and two halvings the estimate is (4^p − 1) times the error: three times the error at order
-    1, and it covers the error for p ≥ 1/2. The estimate of a single run is zero.
+    With an error ~ step^p and two halvings it is (4^p − 1) times the error: three times at order 1, and enough for p
+    ≥ 1/2. The estimate of a single run is zero.
     """
     return float(np.nansum(runs[-2:, CHANGE]))

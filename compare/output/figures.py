@@ -15,9 +15,8 @@ Example of a study's ``draw``::
         return {"fig03-radius": figure}
 
 Formulas are thin black lines on top of the engines' curves. Engines are broad lines (``curve``) or hollow marks
-(``points``), so coinciding results remain visible. ``draw`` is called, and its figures are saved, within
-``paper_style()``; pyplot's global state is not used. Import matplotlib only inside functions, because the command
-line must start without it.
+(``points``), so coinciding results remain visible. ``draw`` runs within ``paper_style()``, without pyplot's global
+state. Import matplotlib only inside functions, because the command line must start without it.
 """
 
 from __future__ import annotations
@@ -123,7 +122,7 @@ def new_figure(
     """Return a figure and its axes, row by row in a flat tuple.
 
     ``width`` and ``height`` are in inches; the defaults fit the number of panels. ``subplots`` are arguments of
-    ``Figure.subplots`` (``sharex=True``, ``width_ratios=...``, ``subplot_kw=...``).
+    ``Figure.subplots``.
     """
     import matplotlib.figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -136,7 +135,7 @@ def new_figure(
 
 
 def engine_style(engine: str) -> EngineStyle:
-    """Return the fixed style of an engine or of "theory"; the style of other engines depends on their name."""
+    """Return the fixed style of an engine or of "theory"; other engines have a style by their name."""
     return _STYLES.get(engine) or _OTHERS[zlib.crc32(engine.encode()) % len(_OTHERS)]
 
 
@@ -201,7 +200,7 @@ def as_svg(figure: Figure) -> bytes:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     svg = io.BytesIO()
-    canvas: Any = FigureCanvasSVG(figure)  # untyped
+    canvas: Any = FigureCanvasSVG(figure)
     with paper_style():  # faster than ``savefig``, which draws the figure once more for its layout
         figure.set_dpi(PAPER["savefig.dpi"])  # for rasterised parts
         canvas.print_svg(svg, metadata={"Date": None})

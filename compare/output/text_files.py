@@ -32,7 +32,7 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
         with suppress(FileNotFoundError):
             shutil.copymode(path, part)
         os.replace(part, path)
-    except BaseException:  # Ctrl-C too
+    except BaseException:
         part.unlink(missing_ok=True)
         raise
 
@@ -57,5 +57,5 @@ def check_writable(path: Path) -> None:
 
 
 def _target(path: Path) -> Path:
-    """Return the target of a link, so the link stays and its target is replaced."""
+    """Return the target of a link, so that it is replaced and not the link."""
     return Path(os.path.realpath(path))

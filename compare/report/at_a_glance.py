@@ -66,7 +66,7 @@ def _case(setting: Recorded, claim: Claim) -> str:
 
 
 def contrast(found: Sequence[Glance]) -> str:
-    """Return an example of a small error that differs and a larger one that agrees; "" if there is none."""
+    """Return an example of a small error that differs and a larger one that agrees, or ""."""
     errors = {
         state: [
             (float(cell.claims[0].difference.max()), one.engine)
@@ -127,7 +127,6 @@ def _best(settings: Sequence[Recorded]) -> Recorded:
 
 
 def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
-    """Return the summary of a recorded engine: its best setting, and the settings to avoid."""
     cells = recorded.cells(best)
     sentences = [f"{best.setting}: {_judged(best)}" if best.setting else _judged(best)]
     sentences += [best.advice] if best.advice else []
@@ -151,7 +150,7 @@ def _listed(settings: Sequence[str]) -> str:
 
 
 SHIPPED = "as shipped"
-"""Name of the settings that an engine has without any change."""
+"""Name of the settings of an unchanged engine."""
 
 
 def _judged(setting: Recorded) -> str:
@@ -199,7 +198,6 @@ def _share(setting: Recorded) -> float:
 
 
 def _grade(setting: Recorded) -> str:
-    """Return the grade of a setting: its error relative to the change due to another friction law."""
     verdicts = {claim.verdict for claim in setting.claims}
     if Verdict.DIFFERS in verdicts:
         return DIFFERS

@@ -52,7 +52,6 @@ class Change:
         return self.kind in BAD and not self.known
 
     def __str__(self) -> str:
-        """Return the line that ``diff`` prints."""
         return f"{self.kind.value}{' (known)' * self.known}: {self.claim} {self.engine}: {self.words}"
 
 
@@ -89,7 +88,6 @@ def _claims(results: Results) -> Iterator[dict[str, Any]]:
 
 
 def _of_runs(old: Results, new: Results) -> Iterator[Change]:
-    """Yield the changes of whole studies of an engine."""
     before, after = _units(old), _units(new)
     for (study, engine), unit in after.items():
         state = unit["state"]
@@ -141,7 +139,7 @@ def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int],
 
 
 def _moved(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    """Describe the number that moved farthest beyond the sum of both error bars; "" if none did."""
+    """Describe the number that moved farthest beyond the sum of both error bars, or return ""."""
     if old["shape"] != new["shape"] or old["places"] != new["places"]:
         return "the claim consists of different numbers, so they cannot be compared"
     allowed = _errors(old) + _errors(new)
@@ -171,11 +169,8 @@ def _numbers(claim: Mapping[str, Any], name: str) -> FloatArray:
     return np.array(claim[name], dtype=float).ravel()
 
 
-# --- A baseline: claims that are known to fail, so a server reports only new failures.
-#
-# A file for people to read and edit::
-#
-# {"format": "friction-discs baseline", "version": 1, "known": [{"claim": "fig05/slides", "engine": "mine",
+# --- A baseline: claims that are known to fail, so a server reports only new failures. A file for people to read and
+# edit:: {"format": "friction-discs baseline", "version": 1, "known": [{"claim": "fig05/slides", "engine": "mine",
 # "state": "differs", "why": "issue 12"}]}
 
 FORMAT, VERSION = "friction-discs baseline", 1

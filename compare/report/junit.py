@@ -60,7 +60,6 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
 
 
 def _numbers(claim: Claim) -> dict[str, str]:
-    """Return the numbers of the deciding element in full precision, and its unit."""
     element = worst(claim)
     numbers = {
         "predicted": element.predicted,

@@ -171,7 +171,7 @@ class RecordedMatrix:
 class Matrix:
     """The rows of some studies; ``columns`` are the engines, after "theory" if it has claims.
 
-    ``recorded`` is separate because it contains earlier results of foreign engines, not verdicts on this run.
+    ``recorded`` is separate because it contains earlier results, not verdicts on this run.
     """
 
     columns: tuple[str, ...]
@@ -283,7 +283,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
 
 
 def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
-    """Return the identity of a claim, or a name derived from its sentence that is not used in ``rows``."""
+    """Return the identity of a claim, or a new name derived from its sentence."""
     if claim.identity:
         return claim.identity
     name = f"{study.name}/{slug(claim.sentence)}"
@@ -292,7 +292,7 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
 
 
 def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
-    """Return a cell of ``row`` with its kind of evidence; another of ``rows`` may imply its verdict."""
+    """Return a cell with its kind of evidence; another of ``rows`` may imply its verdict."""
     cell = row.cells[column]
     if not cell.claims:
         return cell

@@ -46,7 +46,7 @@ def value_text(value: float, uncertainty: float, most: int = MOST_DIGITS) -> str
 
 
 def error_text(value: float, digits: int = 2) -> str:
-    """Return an error or a difference, usually with two digits."""
+    """Return an error or a difference as text."""
     return with_digits(value, digits)
 
 

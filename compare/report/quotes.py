@@ -84,7 +84,7 @@ class _Reference:
 
 
 def quote(claims: Iterable[Claim], words: str) -> Quote | None:
-    """Return the number that ``words`` name from the first of ``claims`` that has it; None if none has it."""
+    """Return the number that ``words`` name from the first of ``claims`` that has it, or None."""
     asked = _Reference.of(words)
     for claim in claims:
         if asked.name in claim.named and asked.engine in ("", claim.engine):

@@ -1,7 +1,7 @@
 """``results.json``: the report for programs, described by ``results.schema.json``.
 
-The file contains the verdict of each claim and engine with the numbers of the deciding element. All numbers are in
-separate tables, which ``read_results`` adds.
+It contains the verdict of each claim and engine with the numbers of the deciding element. All numbers are in separate
+tables, which ``read_results`` adds.
 """
 
 from __future__ import annotations
@@ -37,7 +37,6 @@ from compare.run.workers import Failure
 from reference_model.systems import FloatArray
 
 # --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
-#
 # ``measurement`` counts repeated claims of an engine from 1. Numbers are written in full precision, and as "nan" or
 # "inf". Large tables are compressed (xz); pandas and R read them directly.
 
@@ -61,12 +60,12 @@ LARGE = 32_768
 
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
-    """Return the path in the report and the content of each claim's table, by identity."""
+    """Return path and content of each claim's table, by identity."""
     return {row.identity: table(row) for row in matrix.rows if row.claims}
 
 
 def table(row: Row) -> tuple[str, bytes]:
-    """Return the path in the report and the content of a claim's table."""
+    """Return path and content of a claim's table."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -79,7 +78,6 @@ def table(row: Row) -> tuple[str, bytes]:
 
 
 def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
-    """Yield the columns of each element, starting with ``element``."""
     shape = claim.predicted.shape
     numbers = [
         repeat("")
@@ -119,7 +117,6 @@ def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str
 
 
 def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
-    """Return the rows of a table by engine and measurement."""
     raw = path.read_bytes()
     text = (lzma.decompress(raw) if path.suffix == ".xz" else raw).decode()
     found: dict[tuple[str, str], list[dict[str, str]]] = {}
@@ -168,11 +165,7 @@ def schema() -> dict[str, Any]:
 def read_results(path: Path) -> dict[str, Any]:
     """Return a report's results with the arrays of each claim, from ``results.json`` or its folder.
 
-    Raises
-    ------
-    ValueError
-        If the file is missing, is not a report or has another version.
-
+    Raises ``ValueError`` if the file is missing, is not a report or has another version.
     """
     file = path / FILE if path.is_dir() else path
     try:
@@ -297,7 +290,6 @@ def _without_arrays(claim: Claim) -> dict[str, Any]:
 
 
 def _deciding(claim: Claim) -> dict[str, Any]:
-    """Return the numbers of the deciding element, and the largest difference in each unit."""
     element = worst(claim)
     return {
         "decided_by": as_json(
@@ -320,7 +312,6 @@ def _deciding(claim: Claim) -> dict[str, Any]:
 
 
 def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
-    """Return state, reason for missing claims and duration of one measurement."""
     gap = gap_of(run, study, column)
     return {
         "state": "finished" if gap is None else gap.state.value,

@@ -48,7 +48,6 @@ def _pictures(drawing: Drawing) -> dict[str, bytes]:
 
 
 def _lines(content: Any, depth: int) -> str:
-    """Return JSON with one line per value down to ``depth``."""
     if depth == 0 or not content or not isinstance(content, dict | list):
         return json.dumps(content, ensure_ascii=False, allow_nan=False)
     if isinstance(content, list):

@@ -1,7 +1,7 @@
 """The motions that a study requests, if they do not depend on the answers.
 
-Each claim is measured twice with an engine that records its questions: once with answers of the reference, and once
-with slightly wrong answers. If the questions are equal, every engine would receive them.
+Each claim is measured with exact and with slightly wrong answers by an engine that records its questions. If these
+are equal, every engine would receive them.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def planned(study: Study, kinds: tuple[str, ...], seed: int | None = None) -> Pl
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
-    for part in study.sentences().values():  # claims can be measured separately
+    for part in study.sentences().values():  # measured separately
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
         found = _measured(study, Engine("plan", exact, kinds, phases=False, seed=seed), part)
         with suppress(Exception):  # a study may raise anything for wrong answers

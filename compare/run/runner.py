@@ -107,28 +107,11 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Parameters
-    ----------
-    studies, engines, errata
-        Studies to measure, engines to measure them with, and errata to check.
-    folder : Path
-        Folder for findings and drawings, written as they arrive. Drawings of equal data are reused from it.
-    jobs : int
-        Number of processes.
-    limit : float, optional
-        Longest duration of a piece of work in s; exceeding it is a failure.
-    resume : bool
-        Reuse findings in ``folder`` with the same digest of code and libraries, see ``compare.run.provenance``.
-    expected : mapping, optional
-        Duration of each measurement in s in an earlier run, see ``Run.seconds``.
-    progress : Progress
-        Called whenever a piece of work begins or ends.
-
-    Returns
-    -------
-    Run
-        The results; after Ctrl-C incomplete, with ``interrupted`` set.
-
+    Findings and drawings are written as they arrive; drawings of equal data are reused. ``jobs`` is the number of
+    processes. A piece of work that takes longer than ``limit`` (s) fails. ``resume`` reuses findings with the same
+    digest of code and libraries, see ``compare.run.provenance``. ``expected`` are the durations of an earlier run,
+    see ``Run.seconds``. ``progress`` is called whenever a piece of work begins or ends. After Ctrl-C the results are
+    incomplete, with ``interrupted`` set.
     """
     result = Run(
         studies,
@@ -187,7 +170,7 @@ class _Runner:
         self.show([])
 
     def show(self, running: Collection[Hashable]) -> None:
-        """Report the names of the running work, and the remaining time by the durations of an earlier run."""
+        """Report the running work, and the remaining time by the durations of an earlier run."""
         result, now = self.result, time.monotonic()
         self.began = {key: self.began.get(key, now) for key in running}
         left: dict[Hashable, float] = {}
@@ -202,7 +185,6 @@ class _Runner:
         self.progress(result.done, total, names, seconds)
 
     def _take(self, done: Done) -> None:
-        """Store a finished piece of work."""
         kind: Any
         name: Any
         kind, name = done.key  # type: ignore[misc]
@@ -253,7 +235,7 @@ def measured(
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
     An engine given by name is imported here, in a process that may hang or crash; ``seed`` is for its units. ``only``
-    selects claims as in ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
+    selects claims as in ``Study.measure``. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
@@ -276,7 +258,7 @@ PACE_STEPS = 500
 
 
 def pace(name: str) -> float:
-    """Return the wall-clock time for a second of motion in the engine ``name``; 0 if it has no fixed step."""
+    """Return the wall-clock time for a second of motion in the engine ``name``; 0 without a fixed step."""
     (engine,) = engines([name])
     if engine.step is None:
         return 0.0

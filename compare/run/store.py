@@ -21,9 +21,8 @@ from compare.output.outside_text import all_printable
 from compare.output.text_files import replacing
 from compare.run.provenance import stamp
 
-# --- Archives: contents by path, each with a checksum, valid for the version of the code that made them.
-#
-# joblib and diskcache would pickle results, which is neither readable nor safe to share.
+# --- Archives: contents by path, each with a checksum, valid for the version of the code that made them. joblib and
+# diskcache would pickle results, which is neither readable nor safe to share.
 
 LONGEST = 100
 """Largest number of readable characters of a file name; a program's name may exceed the limit of the file system."""
@@ -38,7 +37,7 @@ class _Archives:
     folder: Path
 
     def _keep(self, key: tuple[str, ...], stamp: str | None, contents: Mapping[str, bytes]) -> None:
-        """Write an archive; an existing one is always complete. Without a stamp it is never found again."""
+        """Write an archive; without a stamp it is never found again."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(self._path(key), "wb") as stream, ZipFile(stream, "w", ZIP_DEFLATED) as archive:
             archive.comment = _comment(stamp, len(contents))
@@ -55,7 +54,7 @@ class _Archives:
                 if stamp is None or archive.comment != _comment(stamp, len(paths)):
                     return None
                 return restored({path: archive.read(path) for path in paths})
-        except Exception:  # any error of the libraries in a damaged file: compute the contents again
+        except Exception:  # any error of the libraries in a damaged file
             return None
 
     def _path(self, key: tuple[str, ...]) -> Path:

@@ -29,22 +29,21 @@ from compare.output.outside_text import cause_of_end, printable
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
-"""Environment that disables threads of linear algebra, because each core already runs a process."""
+"""Environment without threads of linear algebra, because each core already runs a process."""
 
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
 """Environment that keeps a new process from importing from the current folder before it receives this one's path."""
 
 STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
-"""File descriptors of the standard streams."""
 
 MOST_ERRORS = 100_000
-"""Largest number of characters of a process's standard error that are forwarded at once."""
+"""Largest number of characters of standard error that are forwarded at once."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
 """Messages of the loader of shared libraries when memory is short."""
 
 FAREWELL = 1.0
-"""Longest wait, in s, for the exit code of a process whose connection has closed."""
+"""Longest wait in s for the exit code of a process whose connection has closed."""
 
 TICK = 0.005
 """Interval, in s, between checks of the exit code."""
@@ -62,12 +61,10 @@ class Failure:
     unfinished: bool = False
 
     def __post_init__(self) -> None:
-        """Make the texts printable, because most of them come from an engine."""
         object.__setattr__(self, "reason", printable(self.reason))
         object.__setattr__(self, "where", tuple(map(printable, self.where)))
 
     def __str__(self) -> str:
-        """Return the reason, followed by the innermost location in brackets."""
         return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
 
 
@@ -91,9 +88,9 @@ class _Work:
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager.
 
-    A piece of work that takes longer than ``limit`` (in s) fails. The limit may change while no work is pending.
-    ``watch`` is called with the keys of the running work whenever they may have changed.
-    Leaving the context kills all processes.
+    A piece of work that takes longer than ``limit`` (s) fails. The limit may change while no work is pending.
+    ``watch`` is called with the keys of the running work whenever they may have changed. Leaving the context kills
+    all processes.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -156,7 +153,7 @@ class Workers:
             self._queue.remove(work)
             try:
                 message = pickle.dumps((work.function, work.arguments))
-            except Exception as error:  # whatever an object's own pickling raises
+            except Exception as error:  # an object's own pickling may raise anything
                 reason = f"cannot be sent to another process ({error}); use functions of a module"
                 yield Done(work.key, Failure(reason), 0.0)
                 continue
@@ -194,8 +191,8 @@ class Workers:
 class _Worker:
     """A process and the connection to it; ``key`` identifies its current work and is None while it is idle.
 
-    ``started`` is the time, in s of the monotonic clock, at which it received the work. The process writes its
-    temporary files to the folder ``temporary``.
+    ``started`` is the time, in s of the monotonic clock, at which it received the work. The process writes temporary
+    files to the folder ``temporary``.
     """
 
     def __init__(self, temporary: str) -> None:
@@ -254,7 +251,7 @@ class _Worker:
 
 
 class _Errors:
-    """The standard error of a process, which may hold the only reason why it ended, even during start-up."""
+    """The standard error of a process, which may hold the only reason why it ended."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115
@@ -283,7 +280,6 @@ class _Errors:
         self._file.close()
 
     def forward(self) -> str:
-        """Write new text to the standard error of this process, and return it."""
         size = os.fstat(self._file.fileno()).st_size
         if size == self._forwarded:
             return ""

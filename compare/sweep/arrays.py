@@ -35,16 +35,13 @@ CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
 """Data types and chains of codecs that sweeps write."""
 
 MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
-"""Fill values by type.
-
-No result has such a value: Zarr may omit a piece that contains nothing else, and an omitted piece counts as missing.
-"""
+"""Fill values by type. No result has such a value, because Zarr may omit a piece that contains nothing else."""
 
 CHECKSUM = "checksum"
 
 
 class Large(NamedTuple):
-    """An array that is written region by region: dimensions, shape, shape of its pieces, type and attributes."""
+    """An array that is written region by region."""
 
     dimensions: tuple[str, ...]
     shape: tuple[int, ...]
@@ -123,10 +120,9 @@ class Group:
         self.files.write({f"{self.name}/{DESCRIPTION}": _seal(self._described())})
 
     def is_intact(self, names: Sequence[str] = ()) -> bool | None:
-        """Return whether the group matches its seal, and all pieces of the arrays ``names`` (default: of all) exist.
+        """Return whether the group matches its seal, and the arrays ``names`` (default: all) are readable.
 
-        Pieces must be readable. The result is None for a group without a seal, which is unfinished; a corrupted
-        description counts as damage.
+        The result is None for a group without a seal, which is unfinished; a corrupted description counts as damage.
         """
         seal = self.files.read(f"{self.name}/{DESCRIPTION}")
         with suppress(ValueError, KeyError, TypeError):
@@ -187,7 +183,7 @@ def is_ours(description: bytes) -> bool:
 
 
 def group_content(attributes: Mapping[str, Any]) -> bytes:
-    """Return the description of a group as the contents of its file."""
+    """Return the contents of the file that describes a group."""
     content = {"zarr_format": 3, "node_type": "group", "attributes": attributes}
     return json.dumps(content, sort_keys=True).encode()
 
@@ -207,9 +203,7 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-# --- Trajectories of a round in the store
-#
-# Two workers that write the same chunk write the same bits.
+# --- Trajectories of a round in the store Two workers that write the same chunk write the same bits.
 
 
 @dataclass(frozen=True)

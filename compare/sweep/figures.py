@@ -270,7 +270,6 @@ def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -
 
 
 def _image(axes: Axes, plan: Basin | Map, values: Any, **look: Any) -> Any:
-    """Draw values on the grid of ``plan`` as pixels around its points."""
     every = tuple(slice(None, None, -(-points // MOST_PIXELS)) for points in values.shape)
     x, y = plan.x.values[every[1]], plan.y.values[every[0]]
     half_x, half_y = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])

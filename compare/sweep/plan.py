@@ -1,7 +1,7 @@
 """Plans of sweeps: initial state and parameters of each trajectory by its number.
 
-A plan is data that can be sent to other processes and written as JSON. A refined basin has a round of trajectories
-for each step of the refinement; other plans have one round.
+A plan can be sent to other processes and written as JSON. A refined basin has a round of trajectories for each step
+of the refinement; other plans have one round.
 """
 
 from __future__ import annotations

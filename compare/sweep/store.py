@@ -4,8 +4,7 @@
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
 A group is valid once it is sealed. The attributes of the store contain the plan, the digest of the code and their
-checksum. Damaged groups and chunks are recomputed. A finished store of few trajectories in a local folder becomes one
-file.
+checksum. Damaged groups and chunks are recomputed. A small finished store in a local folder becomes one file.
 """
 
 from __future__ import annotations

@@ -42,7 +42,6 @@ class InProcess:
     """The cores of this machine; the next task fills cores that a task leaves idle."""
 
     threads = None
-    """Number of threads per task, here all cores."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
         """Yield keys and results in order; ``tasks`` is consumed on demand."""

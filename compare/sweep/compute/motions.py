@@ -62,9 +62,9 @@ One = TypeVar("One", Motion, TheoryMotion)
 def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> list[dict[int, One]]:
     """Return branches of motions; each maps indices of values to motions.
 
-    A branch continues with the motion of its kind that is nearest to a linear extrapolation of its last two; nearest
-    pairs are matched first. A motion farther than ``JUMP`` from all branches begins a new one. A branch ends at the
-    first value without a matching motion.
+    A branch continues with the motion of its kind nearest to a linear extrapolation; nearest pairs are matched first.
+    A motion farther than ``JUMP`` from all branches begins a new one. A branch ends at the first value without a
+    match.
     """
     branches: list[dict[int, One]] = []
     for i, here in enumerate(found):

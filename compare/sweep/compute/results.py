@@ -60,8 +60,8 @@ class Part(NamedTuple):
 class Labelled(NamedTuple):
     """Summary of a block.
 
-    ``counts`` are the trajectories of each ``EndState``, shape (rows, ends), with a row for each value of a
-    continuation, else a single row. ``moments`` contribute to sensitivities; ``motions`` are listed for each value.
+    ``counts``, shape (rows, ends), are the trajectories of each ``EndState``, with a row for each value of a
+    continuation, else one row. ``moments`` contribute to sensitivities; ``motions`` are listed for each value.
     """
 
     counts: NDArray[np.int64]
@@ -135,7 +135,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
     """Return the parts of a block in the rounds."""
     parts = []
     for one in rounds:
-        if isinstance(one.numbers, range):  # the only round
+        if isinstance(one.numbers, range):
             where = slice(block.first, block.last)
             parts.append(Part(one.chunks, where, slice(None)))
         else:
@@ -254,7 +254,6 @@ def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables
 def _along(
     plan: Continuation, name: str, branches: Sequence[Mapping[int, Any]], fields: Sequence[str]
 ) -> Variables:
-    """Return fields of motions along the axis, shape (branches, values)."""
     variables: Variables = {}
     for field in fields:
         values = np.full((len(branches), plan.x.points), np.nan)

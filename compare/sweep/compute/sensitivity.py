@@ -13,15 +13,15 @@ from compare.claims.shares import CONFIDENCE
 from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
-GROUPS = 16  # number of groups of rows; the scatter of the indices between groups gives their error
+GROUPS = 16  # groups of rows; the scatter of the indices between groups gives their error
 LEAST_SAMPLES = 16 * GROUPS  # least number of rows
 
 
 class Indices(NamedTuple):
     """Sobol indices of shape (results, quantities), and half the widths of their confidence intervals.
 
-    The first-order index is the share of the variance that vanishes if the quantity is known. The total index is the
-    share that remains if all other quantities are known. Both are NaN if the result does not vary.
+    The first-order index is the share of the variance that vanishes if the quantity is known, the total index the
+    share that remains if all others are known. Both are NaN if the result does not vary.
     """
 
     first: FloatArray

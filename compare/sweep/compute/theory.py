@@ -29,10 +29,7 @@ def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
 
 
 def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
-    """Yield the motions at each value.
-
-    The search for a whirl with an offset starts from the whirl of the previous value.
-    """
+    """Yield the motions at each value; a whirl with an offset continues that of the previous value."""
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
@@ -64,11 +61,10 @@ def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
     return TheoryMotion(meaning, radius, radius, stable)
 
 
-# --- Boundaries between motions according to formulas, as curves in the plane of a map
-#
-# All except (5) hold without offset; a disc is treated as a continuous ring.
+# --- Boundaries between motions according to formulas, as curves in the plane of a map. All except (5) hold without
+# offset; a disc is treated as a continuous ring.
 
-NODES = 101  # number of values of each parameter; the zeros of a margin are interpolated between them
+NODES = 101  # values of each parameter; the zeros of a margin are interpolated between them
 
 
 class Curve(NamedTuple):

@@ -70,8 +70,8 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
     The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
-    duration is doubled up to ``DOUBLINGS`` times, because the motion alone shows its end later than the kernel, which
-    uses known attractors. An undecided trajectory is simulated up to ``time`` only.
+    duration is doubled up to ``DOUBLINGS`` times, because the kernel uses known attractors and sees the end earlier.
+    An undecided trajectory is simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -152,7 +152,6 @@ def _samples(system: System, first: float, last: float, per_turn: int) -> FloatA
 
 
 def _turn(system: System, duration: float) -> float:
-    """Return the time of a turn in s, at most 2π·``duration``."""
     return 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
 
 
@@ -193,7 +192,6 @@ def end_of(trajectory: Trajectory) -> EndState:
 
 
 def _at_rest(trajectory: Trajectory, since: float) -> bool:
-    """Return whether the centre hardly moves after ``since`` (s) compared with its whole motion."""
     x, y = trajectory.states.T[:2]
     distance = np.hypot(x - x[-1], y - y[-1])
     last = trajectory.times >= since
@@ -201,7 +199,7 @@ def _at_rest(trajectory: Trajectory, since: float) -> bool:
 
 
 def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
-    """Return whether the slip after ``middle`` (s) is below ``DYING`` times the slip before, or below its error."""
+    """Return whether the slip after ``middle`` is below ``DYING`` times the slip before, or below its error."""
     slip, times = trajectory.slip_speed, trajectory.times
     before, after = np.max(slip[(times >= since) & (times < middle)]), np.max(slip[times >= middle])
     error = trajectory.solution.tolerance * abs(trajectory.system.disc_speed) * np.max(trajectory.radius)
