@@ -1,7 +1,7 @@
 """The friction contacts of a model.
 
-They are stored in ``mbs.sys`` under the names of their connectors. Object numbers would be ambiguous: ``mbs.sys``
-survives ``mbs.Reset``, and objects can be deleted.
+They are stored in ``mbs.sys`` by the names of their connectors, because objects can be deleted and ``mbs.Reset``
+starts their numbers again.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ _CONTACTS = "friction contacts"
 class Contact:
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
-    ``functions`` contains its "force" and "jacobian" as user functions for Exudyn. ``stick`` is None if the contact
-    is regularised. ``built_in`` contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
+    ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
+    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
     """
 
     kinds: Kinds
@@ -54,8 +54,8 @@ def register(mbs: Any, contact: Contact) -> None:
 def contacts_of(mbs: Any) -> dict[int, Contact]:
     """Return the contacts of a model by the present object numbers of their connectors.
 
-    Updates the numbers of the locks, and deactivates those of deleted contacts. Raises ``ValueError`` if a contact
-    has lost its locks.
+    Updates the locks, and deactivates those of deleted contacts. Raises ``ValueError`` if a contact has lost its
+    locks.
     """
     known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
     if not known:

@@ -2,7 +2,6 @@
 
 Coulomb friction causes no jump of a power, because the slip is zero where stick begins or ends. A power that jumps in
 one step, but hardly changes in the neighbouring steps, indicates a load jump or motion that the steps do not resolve.
-Either way, the error of that step is proportional to the jump.
 """
 
 from __future__ import annotations
@@ -21,14 +20,14 @@ NEIGHBOURS = 2
 """Number of steps on each side that a jump is compared with."""
 
 STEEPER = 5.0
-"""Smallest ratio of a jump to the neighbouring changes, and of their slopes; a smooth curve reaches about 2."""
+"""Smallest ratio of a jump to neighbouring changes, and of their slopes; a smooth curve reaches about 2."""
 
 LEAST = 0.02
-"""Smallest jump that is reported, as a share of the largest power of the run."""
+"""Smallest reported jump, as a share of the largest power of the run."""
 
 
 def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
-    """Register the results of ``rates``, a first-order user function, as powers in ``unit`` W to be checked."""
+    """Register the results of ``rates`` as powers in ``unit`` W to be checked."""
     setattr(rates, _NAMES, tuple((name, unit) for name in names))
 
 
@@ -37,7 +36,7 @@ TOGETHER = 4096
 
 
 class JumpCheck:
-    """Checks the powers of a model during an implicit run, and warns at its end."""
+    """Checks the powers of a model in an implicit run."""
 
     def __init__(self, mbs: Any) -> None:
         self._names, self._units, self._places = _powers(mbs)
@@ -97,7 +96,7 @@ class JumpCheck:
 
 
 def _powers(mbs: Any) -> tuple[list[str], FloatArray, list[int]]:
-    """Return names and units (W) of the registered powers, and their indices among the rates."""
+    """Return names, units (W) and indices of the registered powers."""
     found: list[tuple[str, float]] = []
     places: list[int] = []
     objects = mbs.systemData.NumberOfObjects() if mbs.systemData.ODE1Size() else 0

@@ -16,8 +16,7 @@ from reference_model.systems import FloatArray
 def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
     """Return A of d(x, ẋ)/dt = A·(x, ẋ) for small motions about the initial values of an assembled model.
 
-    x are its second-order coordinates, or those in ``own``. Loads whose user functions read the motion
-    themselves count as constant.
+    x are its second-order coordinates, or those in ``own``. Loads that read the motion themselves count as constant.
     """
     mass, stiffness, damping = (part[own, own] for part in matrices_of_model(mbs))
     lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
@@ -28,7 +27,7 @@ def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
 def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return M, K and D of M·ẍ + D·ẋ + K·x = 0 for small motions about the initial values at the time t in s.
 
-    They cover all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
+    x are all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
     """
     size = mbs.systemData.ODE2Size()
     with _mass_and_solver(mbs, t) as (mass, solver):

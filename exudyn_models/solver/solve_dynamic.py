@@ -1,13 +1,13 @@
 """``mbs.SolveDynamic`` for any model, with checks for problems that Exudyn does not report.
 
 - *Load jumps.* A step across a load jump has an error of at least the jump times the part of the step before it. With
-  ``breaks`` the run stops just before these times and continues just after. At the end a ``RuntimeWarning`` reports
-  jumps that ``jumps`` finds in the powers of ``add_energy_balance`` and of heat sensors.
+  ``breaks`` the run stops just before these times and continues just after. A ``RuntimeWarning`` reports jumps that
+  ``jumps`` finds in the powers of ``add_energy_balance`` and of heat sensors.
 - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
   success with a state that is not finite. A check after every step (about 1.5 μs) ends such a run.
-- *Fixed explicit steps.* A ``RuntimeWarning`` reports a step beyond the stability limit of sticking contacts, because
-  the run looks normal; see ``largest_stable_step``. The check assumes that all contacts stick, takes dampers at the
-  initial values, and evaluates functions for loads and coefficients at the start and at a hundred times of the run.
+- *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the stability limit of sticking contacts
+  (``largest_stable_step``). The check assumes that all contacts stick, takes dampers at the initial values, and
+  evaluates loads and coefficients at the start and at a hundred times of the run.
 - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero. Repeated
   steps start from their complete first state, see ``repeated_steps``; for this, modified Newton renews its Jacobian
   instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of friction are repeated with a
@@ -114,7 +114,7 @@ class _Look:
 
     @property
     def duration(self) -> float:
-        """Time in s from the start of the run to its last step."""
+        """Time in s since the start of the run."""
         return float(self._reached - self._start)
 
     def start(self) -> None:
@@ -150,7 +150,6 @@ def _solve(
     contacts: list[StickingContact],
     modes: list[Mode],
 ) -> list[ModeChange]:
-    """Run an assembled model without a break, from ``modes`` if given."""
     options = simulationSettings.timeIntegration
     look = _Look(mbs, solver, options)
     changes: list[ModeChange] = []

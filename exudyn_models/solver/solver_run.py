@@ -1,4 +1,4 @@
-"""One call of an Exudyn solver: quiet, without files, and checked for problems that Exudyn does not report."""
+"""One call of an Exudyn solver: quiet, without files, and checked."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 class Model:
     """Assembled model of a system, with sensors for the state of one body.
 
-    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from
-    ``first`` on. ``sensors`` record them and their first and second time derivatives at every step.
+    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from ``first`` on,
+    which ``sensors`` record with their first and second time derivatives.
     """
 
     container: Any
@@ -40,9 +40,8 @@ class Model:
 class Steps:
     """States at the start and after every step of a solver.
 
-    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities
-    (m/s, rad/s); ``accelerations``, shape (n, d), in m/s², rad/s²; and the number of ``evaluations`` of the
-    equations of motion.
+    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities; and
+    their ``accelerations``, shape (n, d). ``evaluations`` counts those of the equations of motion.
     """
 
     times: FloatArray
@@ -61,13 +60,13 @@ class Steps:
 
 
 NOT_FINITE = "the state is not finite any more"
-"""Message for a state that is not finite; Exudyn would continue and report success."""
+"""Message for a state that is not finite; Exudyn would report success."""
 
 FIRST_STEP = 1e-6
 """First step of DOPRI5, in the model's unit of time; later steps are automatic.
 
-Runs with Exudyn's built-in contact fail if they start with the largest step. The results with a thousandth
-and a thousand times this step agree.
+Runs with Exudyn's built-in contact fail if they start with the largest step. A thousandth and a thousand times this
+step give the same results.
 """
 
 
@@ -78,7 +77,7 @@ class StepCount(trajectory.StepCount):
     seconds: float = 1.0
 
     def expect(self, start: float, steps: float) -> None:
-        """Raise ``SimulationError`` if the expected ``steps`` from the time ``start`` on are too many."""
+        """Raise ``SimulationError`` if the ``steps`` expected from the time ``start`` on are too many."""
         if steps > trajectory.MOST_AHEAD:
             raise SimulationError(
                 self._sentence(f"more than {trajectory.MOST_AHEAD:,} further steps are needed", start)
@@ -119,9 +118,8 @@ def solve(
     ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``. ``step``, in s, is the largest step of DOPRI5, and
     ``first_step`` its first. ``tolerance`` is the absolute local error of DOPRI5, or the residual force in N of the
     implicit solvers. A ``quasi_static`` run of generalised-α neglects inertia: forces balance at the end of each
-    step, and accelerations are derivatives of the velocities, because the balance determines them only to its
-    residual. If it is ``balanced`` too, the forces give the first acceleration, otherwise it is 0. ``count`` counts
-    the steps of the whole motion and gives the unit of time of a model that is not in SI units.
+    step, and accelerations are derivatives of the velocities. If it is ``balanced`` too, the forces give the first
+    acceleration, otherwise it is 0. ``count`` counts the steps of the whole motion and gives the unit of time.
 
     Raises ``SimulationError`` if a state is not finite, Newton's method fails, the step falls below the resolution of
     time, or there are too many steps.
@@ -245,8 +243,8 @@ def _settings(
     options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
     options.solverType = getattr(exu.DynamicSolverType, integrator)
     if integrator in EXPLICIT:
-        # Exudyn 1.13 scales the error with absolute + relative·y, whatever the sign of y: with equal
-        # tolerances the step would collapse wherever a coordinate passes −1.
+        # Exudyn 1.13 scales the error with absolute + relative·y of either sign: with equal tolerances the step
+        # would collapse wherever a coordinate passes −1.
         options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.initialStepSize = min(first_step, end - start) if integrator == "DOPRI5" else 0.0
     else:
@@ -261,7 +259,7 @@ def _settings(
 
 
 def _initial_acceleration(model: Model, start: float) -> FloatArray:
-    """Return the initial accelerations by an implicit solver; the explicit ones report zero."""
+    """Return the initial accelerations by an implicit solver; explicit ones report zero."""
     span = 1e-9 * max(1.0, abs(start))
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()
@@ -271,23 +269,23 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
 
 
 def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
-    """Call ``function`` after every step, in addition to the model's own function; False ends the run."""
+    """Call ``function`` after every step and the model's own function; False ends the run."""
     return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 
 def raise_interrupt(error: exu.ExudynError) -> None:
-    """Raise ``KeyboardInterrupt`` if ``error`` is one that arrived while Exudyn was in a user function."""
+    """Raise ``KeyboardInterrupt`` if ``error`` is one that arrived in a user function."""
     if "KeyboardInterrupt" in str(error):
         raise KeyboardInterrupt from error
 
 
 def quiet() -> AbstractContextManager[None]:
-    """Suppress Exudyn's output, and its warnings that Python functions allocate memory."""
+    """Suppress Exudyn's output, and its warnings about memory that Python functions allocate."""
     return changed(exu.config, printToConsole=False, suppressWarnings=True)
 
 
 def advice(integrator: str, time: float, what: str) -> str:
-    """Return a message about a run that failed at ``time`` (s after its start)."""
+    """Return a message about a run that failed at ``time`` (s)."""
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
         "use a smaller step, a larger tolerance or a larger regularisation, or the other solver"

@@ -38,8 +38,8 @@ INTERVALS = {
 class ModelInStick:
     """Model with all contacts in stick, linearised about its initial values.
 
-    ``mass`` and ``damping``, shape (n, n), are the matrices of its n second-order coordinates; ``damping``
-    excludes the ``contacts``, which list the coordinates and dampers of each contact.
+    ``mass`` and ``damping``, shape (n, n), are its matrices; ``damping`` excludes the ``contacts``, which list the
+    coordinates and dampers of each contact.
     """
 
     mass: FloatArray
@@ -90,9 +90,9 @@ class ModelInStick:
 def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
-    It refers to the initial values, with functions for loads and coefficients evaluated at time 0, and is infinite
-    without contacts. A disc that creeps about a point on or near its own circle of contact chatters from a quarter of
-    this step on; at half of it, by less than 7 % of its creep. The model is assembled if necessary.
+    It refers to the initial values and time 0, and is infinite without contacts. A disc that creeps about a point on
+    or near its own circle of contact chatters from a quarter of this step on; at half of it, by less than 7 % of its
+    creep. The model is assembled if necessary.
 
     ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
     Raises ``ValueError`` for any other solver, or a model with constraints or a singular mass matrix.

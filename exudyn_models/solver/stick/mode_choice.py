@@ -1,7 +1,7 @@
 """Modes that let all contacts of a model obey Coulomb's law at one time of a run.
 
-A locked contact transmits no more than it can hold, and a sliding one does not reverse. A contact in the plane begins
-to slide normal to the limit surface, with the slip that its load reaches within a millionth of a step.
+A contact in the plane begins to slide normal to the limit surface, with the slip that its load reaches within a
+millionth of a step.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ROUNDING = 1e-12
 """Relative rounding error of the load of a locked contact."""
 
 SETTLED = 1e-10
-"""Largest relative change of a load that counts as settled."""
+"""Largest relative change of a settled load."""
 
 MOST_CHANGES = 100
 """Largest number of changes of mode at one time."""
@@ -32,8 +32,8 @@ MOST_CHANGES = 100
 class ModeChoice:
     """Choice of the modes of contacts in an assembled model at its initial values.
 
-    The contacts have their first modes. ``at_start`` computes the initial accelerations, and calls a function with
-    the time (s) before the first step, which has the length ``step`` (s).
+    ``at_start`` computes the initial accelerations, and calls a function with the time (s) before the first step of
+    the length ``step`` (s).
     """
 
     def __init__(
@@ -51,27 +51,27 @@ class ModeChoice:
         self._locked = LockedContacts(mbs, t, contacts)
 
     def survey(self, t: float) -> None:
-        """Find the directions of slip that joints and locks hold at the time t (s) and the initial values."""
+        """Find the directions of slip that joints and locks hold."""
         if self._planar:  # slip on one axis has a constant direction
             forces = np.array(self._mbs.systemData.GetAECoordinates())
             self._locked = LockedContacts(self._mbs, t, self._contacts)
             self._mbs.systemData.SetAECoordinates(forces)
 
     def begin(self) -> None:
-        """Remove the slip of contacts that are locked at the start."""
+        """Remove the slip of contacts that start locked."""
         for contact in self._planar:
             if contact.mode == Mode.LOCKED:
                 self._locked.set_slip(contact, np.zeros(3))
 
     def margins(self, t: float) -> list[float]:
-        """Return the margins of all contacts at the time t (s), after redistributing loads that would end a rest."""
+        """Return the margins of all contacts, after redistributing loads that would end a rest."""
         margins = [contact.margin(self._mbs, t) for contact in self._contacts]
         if min(margins) < 0.0 and self._locked.balance(t):
             margins = [contact.margin(self._mbs, t) for contact in self._contacts]
         return margins
 
     def leave(self, t: float, contact: StickingContact, mode: Mode) -> None:
-        """Let a contact enter the mode that follows at t (s); if several share a load, take the most loaded one."""
+        """Let a contact enter its next mode; if several share a load, the most loaded one."""
         if isinstance(contact, PlanarContact) and contact.planar.rests and mode != Mode.OPEN:
             locked = [one for one in self._planar if one.mode == Mode.LOCKED]
             contact = max(locked, key=lambda one: one.overload(self._mbs, t), default=contact)
@@ -79,7 +79,7 @@ class ModeChoice:
         self.enter(contact, mode)
 
     def settle(self, t: float) -> None:
-        """Choose modes that let all contacts obey Coulomb's law from the time t (s) on."""
+        """Choose modes that let all contacts obey Coulomb's law."""
         self._locked.share_directions()
         for contact in self._contacts:
             contact.stick.idle = False
@@ -102,7 +102,7 @@ class ModeChoice:
         )
 
     def enter(self, contact: StickingContact, mode: Mode) -> None:
-        """Switch the mode of a contact; in the plane, set the slip of one that is locked or released."""
+        """Switch the mode of a contact; in the plane, also set its slip."""
         released = contact.mode == Mode.LOCKED and mode != Mode.OPEN
         if not isinstance(contact, PlanarContact) or not (released or mode == Mode.LOCKED):
             contact.enter(self._mbs, mode)
@@ -133,7 +133,7 @@ class ModeChoice:
         return found
 
     def _examined(self) -> tuple[bool, tuple[StickingContact, Mode] | None]:
-        """Compute the initial forces; return whether loads have settled, and the change of mode they require."""
+        """Return whether loads have settled, and the change of mode that the initial forces require."""
         settled, found = False, None
 
         def look(t: float) -> None:
@@ -148,7 +148,7 @@ class ModeChoice:
         return settled, found
 
     def _contradiction(self, t: float) -> tuple[StickingContact, Mode] | None:
-        """Return a contact that violates Coulomb's law, and the mode that it enters.
+        """Return a contact that violates Coulomb's law, and its next mode.
 
         Opening and closing come first, then the most overloaded locked contact, then contacts that reverse.
         """

@@ -6,14 +6,11 @@ import math
 from typing import Any
 
 ON_GRID = 1e-9
-"""Tolerance, as a share of a step, for the end of a step at a multiple of the step."""
+"""Tolerance of multiples of a step, as a share of it."""
 
 
 class SensorRows:
-    """Rows of sensors, switched on for the steps whose ends are due.
-
-    Exudyn would restart their period with each part of a run.
-    """
+    """Rows of sensors, switched on for steps whose ends are due, because each part would restart the period."""
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step

@@ -1,8 +1,7 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
-Between two changes the equations of motion are smooth. A step that passes a change is taken back and repeated to end
-at the change. There ``mode_choice`` chooses modes that let all contacts obey Coulomb's law. ``sliding_steps`` chooses
-the steps of contacts that slide in the plane.
+Between two changes the equations of motion are smooth. A step that passes a change is repeated to end at the change.
+There ``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
 from __future__ import annotations
@@ -26,12 +25,12 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 LOCATED = 1e-12
-"""Share of a step within which the time of a change is found."""
+"""Accuracy of the time of a change, as a share of a step."""
 
 FORCES = 1e-12
 """Relative residual of Newton's method for contacts in the plane.
 
-Constraint forces contain errors of velocities divided by the step, and decide when a contact is released.
+Constraint forces, which decide about releases, contain errors of velocities divided by the step.
 """
 
 ITERATIONS = 200
@@ -46,10 +45,9 @@ def run_switching(
     update_initial_values: bool,
     before: Sequence[Mode] = (),
 ) -> list[ModeChange]:
-    """Run an implicit ``solver`` over an assembled model; return the changes of modes of its ``contacts``.
+    """Run an implicit ``solver``; return the changes of modes of the ``contacts``, which had the modes ``before``.
 
-    ``before`` are the modes at the end of the preceding run, if any. Raises ``SimulationError`` if the modes change
-    without end at one time.
+    Raises ``SimulationError`` if the modes change without end at one time.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     state = data.GetSystemState(initial)
@@ -79,7 +77,7 @@ class _Run:
         self.changes: list[ModeChange] = []
 
     def run(self, before: Sequence[Mode]) -> None:
-        """Run to the end of the settings and leave it as the initial values; ``before`` are earlier modes, if any."""
+        """Run to the end of the settings and leave it as the initial values."""
         mbs = self._mbs
         with (
             self._kept_settings(),
@@ -174,8 +172,7 @@ class _Run:
     def _go_on(self) -> tuple[float, Sequence[FloatArray]] | None:
         """Run to the end, or to the next multiple of the step if the last part ended between two.
 
-        Return None, or the end of a step that passed a change and was taken back, with the margins at both of its
-        ends.
+        Return None, or the end of a step that passed a change, with the margins at both of its ends.
         """
         data, start = self._mbs.systemData, self._reached
         whole = (start - self._start) / self._step
@@ -220,8 +217,6 @@ class _Run:
         self._sensors.switch(False)
 
     def _at_start(self, look: Callable[[float], None]) -> None:
-        """Compute the initial accelerations and call ``look`` with the time (s) before the first step."""
-
         def end(t: float) -> bool:
             look(t)
             return False
@@ -247,8 +242,7 @@ class _Run:
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
-        The Illinois method finds it: a secant that halves the margin at an end which stays (Dowell & Jarratt, BIT 11
-        (1971) 168).
+        The Illinois method finds it (Dowell & Jarratt, BIT 11 (1971) 168).
         """
         low, (above, below) = self._reached, margins
         tolerance = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
