@@ -28,7 +28,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from reference_model.systems import FloatArray
 
-to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than the given length
+to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe for a shorter array
 
 
 @compiled
@@ -42,8 +42,8 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces on
-    both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
+    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces,
+    shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
     to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
@@ -84,9 +84,8 @@ def derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` come from
-    ``slip_and_place``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
-    gradient of P is ``slope`` times the force.
+    The first results are those of ``friction_derivatives_on_nodes``. ``force`` (F_x, F_y, M) has the derivatives
+    ``by_slip``, shape (3, 4), by slip and angle; the gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
     ux, uy, _ = slip_of_nodes(to_slip, velocities)
@@ -128,10 +127,10 @@ def derivatives_on_nodes(
 def force_on_any(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on both nodes; Exudyn's signature follows two arguments of our own.
+    """Return the generalised forces on both nodes.
 
-    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. A friction
-    force that is not constant is given by ``law``, and the contact then contains 1 N.
+    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. ``law``
+    gives a friction force that is not constant; the contact then contains 1 N. The other arguments are Exudyn's.
     """
     result: Floats = to_tuple(_forces(parameters, None, law, t, q, q_t), len(q))
     return result
@@ -235,7 +234,7 @@ def slip_in_step(
     end: FloatArray,
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
-    """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
+    """Return P (m/s) at both ends of a step and of the change in between, and S and radius at the end."""
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = slip_of_nodes(to_slip, end_rates)

@@ -32,7 +32,7 @@ FREE = 1e-12
 """Least capacity in one direction, relative to the other, so that rounding does not release a one-way clutch."""
 
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
-"""``Kinds`` of bodies that turn about one axis in one direction."""
+"""``Kinds`` of bodies that turn about one axis."""
 
 
 def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
@@ -70,7 +70,7 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
 def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
     """Return the sliding moment μN·r in N m, and the relative spin ε/r in rad/s below which it is proportional.
 
-    None if the bodies are not on one axis, if load or coefficient is a function, or if r is zero.
+    None unless load and coefficient are numbers, r > 0, and the bodies are on one axis.
     """
     if factors.contact is None or not on_one_axis(kinds, factors):
         return None
@@ -99,7 +99,7 @@ def _constant(grounded: bool, contact: Contact) -> Any:
 def force_on_ground(
     parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the moment on a rotor as a user function for Exudyn; ``parameters`` are mean radius (m) and ε (m/s)."""
+    """Return the moment on a rotor; ``parameters`` are mean radius (m) and ε (m/s)."""
     return (_moment(parameters, law, t, q_t[0]),)
 
 
@@ -107,7 +107,7 @@ def force_on_ground(
 def force_on_rotor(
     parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the moments on both rotors, as ``force_on_ground``."""
+    """Return the moments on both rotors."""
     of_disc = _moment(parameters, law, t, q_t[1] - q_t[0])
     return -of_disc, of_disc
 
@@ -121,7 +121,6 @@ def _moment(parameters: Floats, law: Law, t: float, spin: float) -> float:
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:
-    """Return ∂M/∂S in N m s."""
     contact = factors.geometry
     radius, epsilon = mean_radius(contact), contact[3]
     speed = radius * abs(spin)
@@ -137,12 +136,10 @@ class Mode(IntEnum):
     """Mode of a contact, numbered as in Modelica's clutches."""
 
     BACKWARD = -1
-    """Slides with the disc slower than the master."""
     LOCKED = 0
     FORWARD = 1
-    """Slides with the disc faster than the master."""
     OPEN = 2
-    """Transmits nothing because load or coefficient is zero."""
+    """Transmits nothing, because load or coefficient is zero."""
 
 
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
@@ -203,13 +200,13 @@ class AxialStick:
         return mean_radius(self.factors.geometry)
 
     def sliding_moment(self, t: float, spin: float) -> float:
-        """Return the magnitude of the moment in N m at the time t (s) and the relative spin (rad/s)."""
+        """Return the magnitude of the moment in N m."""
         return self.mean_radius * self.factors.friction_force(t, 0.0, self.mean_radius * abs(spin), spin)
 
     def limits(self, t: float) -> tuple[float, float]:
-        """Return the largest moments in N m of a locked contact against sliding forward and backward, at t (s).
+        """Return the largest moments in N m of a locked contact against sliding forward and backward.
 
-        They differ if the coefficient does, as in a one-way clutch.
+        They differ in a one-way clutch.
         """
         if self.factors.contact is not None:  # constant; every step needs it
             limit = self.static_ratio * self.mean_radius * self.factors.contact[2]
@@ -221,7 +218,7 @@ class AxialStick:
 
     @property
     def constant_forces(self) -> FloatArray | None:
-        """Moments on the nodes in N m in the present mode, or None if they vary with time or motion."""
+        """Moments on the nodes in N m in the present mode, or None if they vary."""
         if self.factors.contact is None or self._rotors is None:
             return None
         return self.moment(0.0, 0.0) * np.array(self._rotors)
@@ -239,22 +236,22 @@ class AxialStick:
         return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
 
     def held_moment(self, mbs: Any) -> float:
-        """Return the moment in N m that the constraint exerts on the disc in the current motion."""
+        """Return the moment in N m of the constraint on the disc."""
         return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
         return np.array([0.0, 0.0, moment])
 
     def capacity_share(self, mbs: Any, t: float) -> float:
-        """Return the moment divided by the largest one: 1 while the contact slides, 0 while it is open."""
+        """Return moment over capacity: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
             return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
         return 1.0 if self.slides else 0.0
 
     def unused(self, limits: tuple[float, float], held: float) -> float:
-        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) on the disc leaves."""
+        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) leaves."""
         return 1.0 - abs(held) / max(limits[held > 0.0], FREE * max(limits))
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
@@ -280,7 +277,7 @@ class AxialStick:
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        """Return the derivatives of minus the moments on the nodes (user function of the connector)."""
+        """Return the derivatives of minus the moments (user function of the connector)."""
         gradient = np.array(self.gradient(q))
         slope = 0.0
         if self.factors.depends_on_motion and self.slides:

@@ -1,7 +1,7 @@
 """Compiled functions, kept on disk, that Exudyn calls with little overhead.
 
-Exudyn passes coordinates to a user function as lists of floats. For 14 numbers, numba spends 180 ns on finding their
-types, and Python 60 ns on unpacking and packing. ``taking_lists`` avoids both.
+For a list of 14 coordinates, numba spends 180 ns on finding types, and Python 60 ns on unpacking and packing.
+``taking_lists`` avoids both.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ from reference_model.numerics.compiled_once import compiled_for, digest_of
 extending: Any = numba.extending  # not fully typed
 
 SOURCES = Path(__file__).parents[1]
-"""Folder of all sources of a compiled function."""
 
 digest_of(SOURCES)
 
@@ -28,7 +27,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def compiled(function: Function) -> Function:
-    """Compile ``function`` for calls from compiled code; ``taking_lists`` compiles it for Python."""
+    """Compile ``function`` for calls from compiled code."""
     return cast(Function, numba.njit(error_model="numpy")(function))
 
 
@@ -57,8 +56,8 @@ extending.unbox(Floats)(_tuple_of_list)
 def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any]:
     """Return a compiled function of tuples as a function of lists of floats, without numba's dispatch by type.
 
-    ``sizes`` contains for each argument the length of its list, ``float``, a numba type, or None for an unused
-    argument. The returned function raises ``TypeError`` if an argument is not a list of numbers or is too short.
+    ``sizes`` contains for each argument the length of its list, ``float``, a numba type, or None if it is unused. The
+    function raises ``TypeError`` for an argument that is not a list of numbers or is too short.
     """
     floats: Any = Floats
     kinds = {None: numba.none, float: numba.float64}
@@ -72,7 +71,7 @@ def taking_lists(function: Callable[..., Any], *sizes: Any) -> Callable[..., Any
 class KeptOnDisk:
     """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types.
 
-    It tries its compiled versions in turn, because numba would spend 20 to 50 μs on the types of nested tuples.
+    It tries its versions in turn, because numba would spend 20 to 50 μs on the types of nested tuples.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:

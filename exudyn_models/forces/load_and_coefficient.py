@@ -1,4 +1,4 @@
-"""Normal load and friction coefficient of a contact, numbers or functions, whose product is the friction force."""
+"""Normal load and friction coefficient of a contact, whose product is the friction force."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from exudyn_models.forces.laws.product import LAW, Law, friction_force_under, la
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
-"""A load or coefficient; a function takes any of ``ARGUMENTS``, by name."""
+"""A load or coefficient; a function takes any of ``ARGUMENTS``."""
 
 Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
 """A coefficient, which may also be a table for ``curve_of_table``."""
@@ -33,14 +33,11 @@ AT_REST = 1e-200
 
 
 class LoadAndCoefficient:
-    """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
+    """Friction coefficient μ and normal load N (in N) of a contact, which may be changed between runs.
 
-    ``friction_coefficient`` is a number >= 0, a table over P or a function of any of ``ARGUMENTS``; ``normal_load``,
-    in N, is a number >= 0 or such a function. ``static_ratio`` >= 1 is static over sliding friction. Each of the
-    ``plates`` >= 1, equal contacts, carries N. The μN of ``contact`` is ignored.
-
-    Raises ``ValueError`` if a number is out of range or a function takes other arguments; in a run, if a function
-    returns an invalid number.
+    They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static over sliding
+    friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a function takes
+    other arguments; in a run, if a function returns an invalid number.
     """
 
     def __init__(
@@ -93,7 +90,7 @@ class LoadAndCoefficient:
         return _with(self.geometry, self.friction_force(t, math.nan, math.nan, math.nan))
 
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
-        """Return the friction force μN in N of all plates, at a time in s and for a motion as in ``ARGUMENTS``."""
+        """Return the friction force μN in N of all plates for a motion as in ``ARGUMENTS``."""
         if self.contact is not None:
             return self.contact[2]
         motion = t, radius, slip_speed, relative_spin

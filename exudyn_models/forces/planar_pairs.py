@@ -36,7 +36,7 @@ def force_on_ground(
 def force_on_rotor(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on a rotor and a planar disc."""
+    """Return the forces on a rotor and a planar disc."""
     fx, fy, moment, master_moment = _friction(_on_rotor(parameters, q, q_t), parameters, law, t)
     return master_moment, fx, fy, moment
 
@@ -45,7 +45,7 @@ def force_on_rotor(
 def force_on_planar(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on a planar master and a planar disc."""
+    """Return the forces on a planar master and a planar disc."""
     fx, fy, moment, master_moment = _friction(_on_planar(parameters, q, q_t), parameters, law, t)
     return -fx, -fy, master_moment, fx, fy, moment
 
@@ -108,7 +108,6 @@ LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
     (ROTOR, PLANAR, None): (force_on_rotor, jacobian_on_rotor),
     (PLANAR, PLANAR, None): (force_on_planar, jacobian_on_planar),
 }
-"""Force and Jacobian of these pairs."""
 
 Relative = tuple[float, float, float, float, float, float, float]
 """Relative motion: dx, dy, angle, dvx, dvy and both spins."""

@@ -1,8 +1,8 @@
 """Springs that may harden, a stop and a damper between a base and a disc, as user functions for Exudyn.
 
 The force at the deflection w is −K·w − β·ẇ with the secant stiffness K = C + C₃·d² + C_s·(1 − gap/d), d = |w|, the
-last term only beyond the gap. w and ẇ are relative to the base: ẇ is the slip J(q)·q̇ of ``slip_kinematics``, and Jᵀ
-applies the full reaction to the base. Closed forms for a base that only turns about the z-axis cost less.
+last term only beyond the gap. ẇ is the slip J(q)·q̇ of ``slip_kinematics``, and Jᵀ applies the full reaction to the
+base. Closed forms for a base that only turns about the z-axis cost less.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ Offset = tuple[float, float]
 """Position in m of the relaxed springs, in the axes of the base and from its node."""
 
 ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
-"""Numbers of fixed coordinates of a planar base, which the model does not contain: a rotor has fixed x and y."""
+"""Numbers of fixed coordinates of a planar base that stands for the ground or a rotor."""
 
 
 def support_functions(
@@ -41,7 +41,7 @@ def support_functions(
     """Return force and Jacobian of a support on the nodes of base and disc.
 
     ``reference`` contains the reference coordinates of both, shape (n,). The model omits the first ``hidden``, which
-    are zero: ``ON_GROUND``, ``ON_ROTOR`` or 0.
+    are zero.
     """
     if kinds[0] == PLANAR and kinds[2] is None:
         force = _force_on_flat_base(hidden, reference, offset, law)
@@ -115,14 +115,14 @@ def secant_slope(square: float, law: Law) -> float:
 
 @compiled
 def elastic_energy(square: float, law: Law) -> float:
-    """Return the energy in J of springs and stop at the deflection d, from d²."""
+    """Return the energy in J of springs and stop from d²."""
     stiffness, hardening, gap, stop, _ = law
     beyond = max(0.0, math.sqrt(square) - gap)
     return (stiffness * square + hardening * square * square / 2.0 + stop * beyond * beyond) / 2.0
 
 
 Parameters = Sequence[float]
-"""A ``Law``, an ``Offset``, and the reference values of the disc's relative position and of the base's angle."""
+"""A ``Law``, an ``Offset``, and reference values of the disc's relative position and the base's angle."""
 
 
 @compiled

@@ -37,7 +37,7 @@ KINDS = {
 SPATIAL = (ROTATION_VECTOR, TAIT_BRYAN, EULER_PARAMETERS)
 
 TRANSLATIONS = (0, 2, 3, 3, 0, 3)
-"""Number of position coordinates of each kind, which precede those of the rotation."""
+"""Number of position coordinates of each kind, which precede the rotation."""
 
 SIZES = (1, 3, 6, 6, 0, 7)
 """Number of coordinates of each kind; the ground has none."""
@@ -45,10 +45,9 @@ SIZES = (1, 3, 6, 6, 0, 7)
 IMAGINARY_STEP = 1e-30
 
 ROUNDING = 1e-12
-"""Largest lever in m that counts as a rounding error of mounts on one axis."""
+"""Largest lever in m that counts as a rounding error."""
 
 MOUNT_SIZE = 24
-"""Number of components of the mount on one body."""
 
 MOUNTS_SIZE = 2 * MOUNT_SIZE
 
@@ -83,8 +82,8 @@ def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple
     """Return J, shape (3, n), the axes of the contact on the master, and angle and place of the disc in these axes.
 
     The angle, as cosine and sine, is that of the x axis of the contact on the disc, or of its y axis if its x axis
-    lies along the master's z axis. The place is x and y (m) of the contact on the disc from that on the master.
-    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad.
+    lies along the master's z axis. The place is x and y (m) of the contact. ``coordinates``, in m and rad, are those
+    of master and disc including reference values, n in all.
     """
     master, disc, mounts = kinds
     return _slip_and_place(master, disc, mounts, coordinates)

@@ -1,9 +1,7 @@
 """The slip potential P of circular contacts: a ring in closed form, and an annulus as an average of rings.
 
-P is the mean slip speed over the contact; friction is −μN times its gradient, see ``friction_laws``.
-
-A circle of radius r whose centre slips with U and whose relative spin is S has the rim speed W = r·|S|. Its P(U, W)
-is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
+A circle of radius r whose centre slips with U and whose relative spin is S has the rim speed W = r·|S|. Its mean slip
+speed P(U, W) is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
 
 For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
 P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
@@ -25,15 +23,13 @@ from reference_model.systems import FloatArray
 NEAREST = 1e-15
 """Relative distance from U = W below which the slope of the ring's friction stays constant.
 
-At U = W the slope is infinite, like a logarithm. At this distance it is a secant over an interval that a step cannot
-resolve.
+The slope is infinite at U = W, like a logarithm, so it becomes a secant over an interval that no step resolves.
 """
 
 RINGS = 12
 """Number of rings of an annulus on either side of r₀."""
 
 CLUSTERING = 3
-"""Exponent of the substitution that clusters the rings at r₀."""
 
 FARTHEST = 4.0
 """Largest r₀ over the outer radius; beyond it the position of r₀ makes no difference."""
@@ -166,10 +162,10 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
     share = 0.25 / a
     c = m * share  # (1 − b₀)/2 without cancellation
     t = c * share
-    if c > 1e-5:  # the next c is at most the square of this one, and enters as a square
+    if c > 1e-5:  # the next c is at most this c²
         weight, total = 1.0, 0.0
         while c > 1e-5:
-            c = 0.5 * (a - b)  # its rounding error is small compared with the earlier terms
+            c = 0.5 * (a - b)  # small rounding error compared with the earlier terms
             a, b = 0.5 * (a + b), math.sqrt(a * b)
             weight *= 2.0
             total += weight * c * c

@@ -1,9 +1,9 @@
 """Equivalent dampers of a sticking contact between its two bodies.
 
 With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
-with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact. They
-are equal if the disc only translates or only rotates. So friction resists slip at most like a damper (μN/ε)·V. With x
-= J·q̇ of ``slip_and_place`` it is the damper D = (μN/ε)·Jᵀ·V·J between two bodies.
+with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact. So
+friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D =
+(μN/ε)·Jᵀ·V·J between two bodies.
 
 For P > ε one of several points can stick alone while the disc pivots about it. It is then a damper with its share of
 μN over the δ of ``friction_laws``.
@@ -58,7 +58,7 @@ class StickDampers:
 def slip_dampers(contact: Contact, angle: float) -> FloatArray:
     """Return V/ε in s/m and s m, and the same for each point that sticks alone, shape (1 + points, 3, 3).
 
-    ``angle`` (rad) is that of the disc's first point relative to the master.
+    ``angle`` (rad) is that of the disc's first point.
     """
     _, points, _, epsilon, held, table = contact
     if points <= CONTINUOUS:

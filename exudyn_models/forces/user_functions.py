@@ -1,7 +1,7 @@
 """Force and Jacobian of a friction contact as user functions for Exudyn.
 
-Compiled code also evaluates functions for load and coefficient. Python assembles the Jacobian of a friction force
-that depends on the motion. Rotors on one axis with a constant friction force need no compiled code.
+Python assembles the Jacobian of a friction force that depends on the motion; the rest is compiled. Rotors on one axis
+with a constant friction force need no compiled code.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def force_and_jacobian(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return both functions, for the present load and coefficient and the nodes' ``reference`` coordinates."""
+    """Return both functions for the nodes' ``reference`` coordinates."""
     if on_one_axis(kinds, factors):
         return functions_on_axis(kinds, factors)
     return _compiled_functions(kinds, reference, factors)

@@ -1,8 +1,8 @@
 """Connectors over the nodes of *both* bodies, which apply the full reaction to both.
 
-In general this is a massless ``ObjectGenericODE2``, whose forces act on all coordinates of its nodes. A force F on
-the disc comes with −F and the moment −d×F on a master at the distance d. Exudyn's marker connectors omit that moment,
-so they violate conservation of angular momentum for two free bodies.
+In general this is a massless ``ObjectGenericODE2``. A force F on the disc comes with −F and the moment −d×F on a
+master at the distance d. Exudyn's marker connectors omit that moment, so they violate conservation of angular
+momentum.
 
 Rotors on one axis have no such moment. Under a constant load they use ``ObjectConnectorCoordinateSpringDamperExt``
 with the law of ``axial_pairs``, which takes a fraction of the time of a Python function.
@@ -26,8 +26,8 @@ def add_connector(
 ) -> Any:
     """Add a connector over ``nodes``; return its ``ObjectIndex``.
 
-    ``force`` returns the forces on all coordinates of the nodes. ``jacobian`` returns the sum of the derivatives of
-    the *negative* forces by coordinates and by velocities, each multiplied by the factor passed to it.
+    ``force`` returns the forces on all coordinates. ``jacobian`` returns the sum of the derivatives of the *negative*
+    forces by coordinates and by velocities, each multiplied by the factor passed to it.
     """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(

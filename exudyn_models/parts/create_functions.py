@@ -38,8 +38,7 @@ def MainSystemCreateRingFriction(
     """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
     Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or None, is a master at
-    rest. All other arguments are those of ``add_ring_friction``: radii in m, N in N, ε in m/s. Raises ``ValueError``
-    as that function, or if there are not two bodies.
+    rest. All other arguments and errors are those of ``add_ring_friction``.
     """
     master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
@@ -77,8 +76,7 @@ def MainSystemCreateRadialSupport(
     """Add springs, a stop and a damper from a base to a disc; return the handle with the connector's ``item``.
 
     Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an Exudyn ground, or
-    None. All other arguments are those of ``add_radial_support``: N/m, N s/m, N/m³, m. Raises ``ValueError`` as that
-    function, or if there are not two bodies.
+    None. All other arguments and errors are those of ``add_radial_support``.
     """
     base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(

@@ -1,7 +1,7 @@
 """The energy balance of a model, which checks any run without a reference solution.
 
-For any bodies and force laws, the energy gains equal the losses plus the change of the stored energy. The solver
-integrates powers to works along with all other coordinates, so works are as accurate as the motion.
+For any bodies and force laws, gains equal losses plus the change of the stored energy. The solver integrates powers
+to works along with all other coordinates, so works are as accurate as the motion.
 """
 
 from __future__ import annotations
@@ -37,15 +37,8 @@ ROUNDING = 1e-14
 class EnergyBalance:
     """Energies of a model at the output times of its sensors, in J and of shape (n,).
 
-    Parameters
-    ----------
-    times : array
-        Times in s.
-    gains, losses : dict of arrays
-        Energy supplied by each source and removed by each sink since the start.
-    stored : array
-        Kinetic energy plus energy of the springs, as absolute values.
-
+    ``gains`` and ``losses`` are the energies supplied by each source and removed by each sink since the start.
+    ``stored`` is the kinetic energy plus the energy of the springs.
     """
 
     times: FloatArray
@@ -63,7 +56,7 @@ class EnergyBalance:
 
     @property
     def turnover(self) -> float:
-        """Energy turned over: the largest of all works and changes of stored energy."""
+        """Largest of all works and changes of stored energy."""
         parts = [*self.gains.values(), *self.losses.values(), self.stored - self.stored[0]]
         return float(max(np.max(np.abs(part)) for part in parts))
 
@@ -109,7 +102,7 @@ def add_energy_balance(
     ------
     ValueError
         If ``unit`` is not > 0, a name is both a gain and a loss, or a ``spring_energy`` refers to an object without
-        potential energy. A model that cannot be assembled yet reports the latter in the run.
+        potential energy.
 
     """
     unit = positive_number("unit", unit, "J")

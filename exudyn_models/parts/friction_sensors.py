@@ -48,15 +48,8 @@ BAND = 0.01
 class RingFriction:
     """Handle of a friction contact added by ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    item : ObjectIndex
-        Index of the connector.
-    nodes : tuple of NodeIndex
-        Nodes of the master, unless it is the ground, and of the disc.
-
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the master, unless it is the
+    ground, and of the disc.
     """
 
     mbs: Any

@@ -1,8 +1,8 @@
 """Nodes of the two bodies of a contact, and its place and axes on them.
 
-A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. Here
-they become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so the
-closed forms for planar bodies and for rotors on one axis apply.
+A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. They
+become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so that closed
+forms apply.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ SAME = 1e-12
 """Largest difference in m, or of unit vectors, between lines that count as one axis."""
 
 PARALLEL = 1e-9
-"""Largest sine of the angle between fixed axes that count as parallel, and error of a rotation matrix."""
+"""Largest sine of the angle between axes that count as parallel, and error of a rotation matrix."""
 
 
 @dataclass(frozen=True, eq=False)

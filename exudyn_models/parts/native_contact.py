@@ -1,8 +1,8 @@
 """Friction by Exudyn's own sphere-triangle contact instead of a user function, as an independent check.
 
-Spheres on the disc press on one triangle that turns with the master disc. Planar bodies keep their height, so
-penetration and normal force are constant. Exudyn's friction −μN·v/max(|v|, ε) of the touching points, with its
-reaction on both bodies, is the law of ``add_ring_friction`` for points.
+Spheres on the disc press on one triangle that turns with the master disc. Planar bodies keep their height, so the
+normal force is constant. Exudyn's friction −μN·v/max(|v|, ε) of the touching points is the law of
+``add_ring_friction`` for points.
 """
 
 from __future__ import annotations
@@ -54,9 +54,9 @@ def add_native_friction(
     contact_radius, regularisation : float
         R >= 0 in m, 0 for a pin; ε > 0 in m/s.
     friction_coefficient, normal_load : float
-        μ >= 0, and N >= 0 in N of all points together; only their product matters.
+        μ >= 0, and N >= 0 in N of all points together.
     contact_points : int or sequence of (float, float, float)
-        n >= 1 points on the circle, or places and shares of the load. The built-in contact has no whole circle.
+        n >= 1 points on the circle, or places and shares of the load; a whole circle is not supported.
     reach : float
         Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 

@@ -1,8 +1,8 @@
 """The elastic support of a disc, on the ground or on a body: a spring that may harden, a stop and a damper.
 
 At the deflection w, d = |w|, it pulls the disc back with C·d + C₃·d³ + C_s·max(0, d − gap), and damps with β·ẇ. On a
-body, w and ẇ are relative to the turning body. So a rigid motion of both causes no force, and the damper only
-dissipates. The full reaction acts on the body, including the moment −d×F.
+body, w and ẇ are relative to the turning body, so a rigid motion of both causes no force. The full reaction acts on
+the body, including the moment −d×F.
 
 A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which takes a tenth of the time of a Python
 function. Any other is a massless ``ObjectGenericODE2``.
@@ -47,15 +47,8 @@ Quantity = Literal["deflection", "force", "stored_energy", "power"]
 class RadialSupport:
     """Handle of a support added by ``add_radial_support``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    item : ObjectIndex
-        Index of the connector.
-    nodes : tuple of NodeIndex
-        Nodes of the base, unless it is the ground, and of the disc.
-
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the base, unless it is the
+    ground, and of the disc.
     """
 
     mbs: Any

@@ -26,15 +26,8 @@ ARGUMENT = "temperature"
 class ThermalNode:
     """Handle of a heat capacity added by ``add_thermal_node``, for ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    node : NodeIndex
-        Node with two first-order coordinates: T, and the heat in J lost to the surroundings.
-    heat_capacity, conductance, surroundings : float
-        C in J/K, G in W/K and T₀, in the unit of the temperature.
-
+    ``node`` has two first-order coordinates: T, and the heat in J lost to the surroundings. ``heat_capacity`` C is in
+    J/K, ``conductance`` G in W/K, and T₀ of the ``surroundings`` in the unit of the temperature.
     """
 
     mbs: Any

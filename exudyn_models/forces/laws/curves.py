@@ -23,8 +23,8 @@ COLUMNS = 3
 def peak_over_sliding(share: float, static_ratio: float) -> float:
     """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
-    In between it falls like a square root of P/ε − 1. After a linear fall a contact leaves the peak by exponential
-    growth, in the time ε·ln(1/ε); with a square root, in the time ε.
+    In between it falls like a square root of P/ε − 1, so that a contact leaves the peak in the time ε; after a linear
+    fall it would take ε·ln(1/ε).
     """
     if share <= 1.0:
         return static_ratio
@@ -38,7 +38,7 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
     """Return the pieces of a coefficient curve, shape (n, ``COLUMNS``), from rows of slip speed and coefficient.
 
     The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
-    A single row is a constant. Raises ``ValueError`` if the table is invalid.
+    Raises ``ValueError`` if the table is invalid.
     """
     speeds, values = _checked_table(name, table)
     slopes = np.diff(values) / np.diff(speeds) if len(speeds) > 1 else np.zeros(1)

@@ -18,7 +18,7 @@ BEND = 4.0 / 3.0
 
 
 def ring_places(radius: float, points: int) -> tuple[Place, ...]:
-    """Return points on a circle of ``radius`` (m), the first one on the x-axis, with equal shares of the load."""
+    """Return points on a circle of ``radius`` (m), the first on the x-axis, with equal shares of the load."""
     arms = [cmath.rect(radius, 2.0 * math.pi * i / points) for i in range(points)]
     return tuple((arm.real, arm.imag, 1.0 / points) for arm in arms)
 
@@ -51,7 +51,7 @@ _KNOWN: dict[float, FloatArray] = {}
 
 
 def places_in(table: float) -> FloatArray:
-    """Return x, y (m) and share of all points in a table, shape (n, 3)."""
+    """Return x, y (m) and share of all points, shape (n, 3)."""
     return _KNOWN[table][1:].reshape(-1, 3)
 
 

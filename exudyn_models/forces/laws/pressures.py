@@ -30,7 +30,7 @@ DEVIATION = 1e-6
 def density_of(pressure: Pressure, inner: float, outer: float) -> int:
     """Return the code of ``pressure`` in a ``Contact``: 0 if uniform, else minus an address.
 
-    Raises ``ValueError`` if it is not a valid, smooth pressure.
+    Raises ``ValueError`` if it is not a smooth pressure.
     """
     if isinstance(pressure, str) and pressure == "uniform":
         return 0
