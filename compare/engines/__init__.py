@@ -1,6 +1,6 @@
 """Engines of the comparison, each with the kinds of systems that it simulates.
 
-A study of a single system calls ``engine.simulate``. If the engine does not simulate the system, the report says "not
+A study of a single system calls ``engine.simulate``. If the engine does not simulate it, the report says "not
 simulated", which is neither a pass nor a failure. A study of several systems measures some and reports the others::
 
     mine = [disc for disc in discs if engine.simulates(disc)]
@@ -9,8 +9,8 @@ simulated", which is neither a pass nor a failure. A study of several systems me
 
 import os
 
-# A user's ~/.exudyn/config.json would change the results. Exudyn reads it on import, which always follows this line.
-# Child processes inherit the setting.
+# A user's ~/.exudyn/config.json, which Exudyn reads on import, would change the results. Child processes inherit the
+# setting.
 os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError

@@ -27,10 +27,7 @@ KINDS = {
     "points": "a disc on single points",
     "ring": "a disc on a continuous ring",
 }
-"""Kinds of systems that an engine may simulate, with their descriptions.
-
-A block is a pin on a disc at rest, so every engine that simulates pins simulates blocks.
-"""
+"""Kinds of systems that an engine may simulate. A block is a pin on a disc at rest."""
 
 EVERY_KIND = tuple(KINDS)
 
@@ -133,9 +130,9 @@ class Engine:
     ) -> Trajectory:
         """Call ``function``, check the trajectory and return it.
 
-        Raises ``UnsupportedSystemError`` if the engine does not simulate the system or the motion, ``TypeError`` if
-        ``function`` does not return a ``Trajectory``, and ``BadTrajectoryError`` if that has other times or shapes
-        than requested, or numbers that are not finite.
+        Raises ``UnsupportedSystemError`` if the engine does not simulate the motion, ``TypeError`` if ``function``
+        does not return a ``Trajectory``, and ``BadTrajectoryError`` if that has other times or shapes than requested,
+        or numbers that are not finite.
         """
         self._refuse(system, initial_state, times)
         answer = self._asked(
@@ -150,7 +147,7 @@ class Engine:
 
         If ``function`` has an attribute ``simulate_many``, one call computes all motions. It takes equally long lists
         of systems, initial states and times, and ``tolerance`` or ``step``, and returns a sequence of trajectories.
-        Raises errors as ``simulate`` does, also if the number of trajectories is wrong.
+        Errors are those of ``simulate``.
         """
         motions = list(motions)
         at_once = getattr(self._asked, "simulate_many", None)
@@ -195,7 +192,7 @@ class Engine:
     def _seen(
         self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the checked ``answer``, with noise of the engine's precision and with its stick phases."""
+        """Return the checked ``answer``, with noise of the engine's precision and with stick phases."""
 
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
@@ -219,8 +216,7 @@ class Engine:
     def root(self) -> float:
         """Exponent p of the fixed step h ∝ tolerance^(1/p): the order, so errors are proportional to the tolerance.
 
-        It is at least 2, because steps of first order would become too many. At an eighth of the tolerance, used for
-        error estimates, an error of first order then falls to a third.
+        It is at least 2, because steps of first order would become too many.
         """
         return max(self.order, 2.0)
 
@@ -236,7 +232,7 @@ class Engine:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
     def lacking(self, systems: Iterable[System]) -> str:
-        """Return a sentence that names the kinds of ``systems`` the engine does not simulate, or ""."""
+        """Return a sentence with the kinds of ``systems`` that the engine does not simulate, or ""."""
         words = dict.fromkeys(
             KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
             for system in systems
@@ -246,17 +242,17 @@ class Engine:
 
 
 def kind_of(system: System) -> str:
-    """Return the kind of a system, one of ``KINDS``."""
+    """Return one of ``KINDS``."""
     if isinstance(system, PinOnDisc):
         return "block" if system.disc_speed == 0.0 else "pin"
     return "ring" if system.contact_points is None else "points"
 
 
-@functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances in succession
+@functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances
 def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
-    """Return whether the reference finds that the contact slips all the time from ``start`` to ``end``."""
+    """Return whether the contact of the reference always slips."""
     import reference_model
 
     run = reference_model.simulate(system, initial_state, [start, end], tolerance=1e-6)
-    # at zero slip, the direction of friction is defined only by a model of stick
+    # zero slip has no direction without a model of stick
     return slip_of(run)[0] > 0.0 and all(phase.kind == "slip" for phase in run.phases)

@@ -85,7 +85,7 @@ class _World(Model):
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
 
     def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
-        """Return an undamped multibody without motors on a fixed base; ``links`` are pairs of mass and inertia."""
+        """Return an undamped multibody without motors; ``links`` are pairs of mass and inertia."""
         none, unit = [[0.0, 0.0, 0.0]] * len(links), [[0.0, 0.0, 0.0, 1.0]] * len(links)
         vectors = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1], "turn": [0, 0, 1]}
         body: int = pybullet.createMultiBody(
@@ -104,7 +104,7 @@ class _World(Model):
             linkJointAxis=[vectors[axis] for axis in axes],
             physicsClientId=self.client,
         )
-        # Settings of the whole body go to its base: in a call for a link, they would discard the link's own
+        # Settings of the whole body go to its base; in a call for a link, they would discard the link's own
         # settings.
         if not self.shipped:
             whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}

@@ -66,7 +66,6 @@ class _Model(Model):
 
 
 def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
-    """Return the world and the joint of the pin or disc, with coordinates x, y and angle."""
     dynamics, world = dartpy.dynamics, dartpy.simulation.World()
     if solver != SHIPPED:
         asleep = dartpy.simulation.DeactivationOptions()
@@ -132,7 +131,7 @@ def _shift(x: float, y: float, z: float) -> Any:
 
 
 def _touching(body: Any, shape: Any, height: float) -> None:
-    """Add ``shape`` to ``body`` at this ``height`` in m, with μ = 1 and without restitution."""
+    """Add ``shape`` to ``body`` at a ``height`` in m, with μ = 1 and without restitution."""
     node = body.createShapeNode(shape)
     node.setRelativeTransform(_shift(0.0, 0.0, height))
     node.createCollisionAspect()

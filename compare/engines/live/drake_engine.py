@@ -118,7 +118,6 @@ class _Plant:
             forces.FixValue(self.context, steady)
 
     def _touch(self, body: Any, master: Any) -> None:
-        """Add the contact points below ``body`` and a plate on ``master``."""
         material, arms = ProximityProperties(), contact_arms("Drake", self.system)
         in_series = 2.0 * self.system.friction_force / len(arms) / DEPTH
         AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
@@ -130,7 +129,7 @@ class _Plant:
             self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
 
     def start(self, state: FloatArray) -> None:
-        """Set the initial state of the next ``advance``."""
+        """Set the initial state."""
         self.steps, self.time, half = 0, 0.0, len(state) // 2
         self.joint.set_translation(self.context, state[:2])
         self.joint.set_translational_velocity(self.context, state[half : half + 2])
@@ -142,9 +141,9 @@ class _Plant:
         self.simulator.Initialize()
 
     def advance(self, duration: float, steps: int) -> FloatArray:
-        """Return the state ``duration`` seconds later, after this number of ``steps`` of a discrete solver."""
+        """Return the state ``duration`` seconds later, after ``steps`` of a discrete solver."""
         self.steps, self.time = self.steps + steps, self.time + duration
-        # Step i is taken at time i·h. Ending half a step early completes all steps, whatever the rounding.
+        # Ending half a step early completes all steps, whatever the rounding.
         self.simulator.AdvanceTo((self.steps - 0.5) * self.step if self.step else self.time)
         joint, context, half = self.joint, self.context, self.system.state_size // 2
         place = [*joint.get_translation(context), joint.get_rotation(context)]
@@ -153,7 +152,7 @@ class _Plant:
 
 
 class _OurFriction(LeafSystem):  # type: ignore[misc]
-    """Friction −μN·v/max(|v|, ε) at each point, plus ``steady`` forces on the joints, as functions of the state."""
+    """Friction −μN·v/max(|v|, ε) at each point, plus ``steady`` forces on the joints."""
 
     def __init__(self, model: _Plant, steady: FloatArray) -> None:
         super().__init__()

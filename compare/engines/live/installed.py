@@ -17,7 +17,7 @@ KINDS = ("pin", "points")  # as in ``compare.engines.KINDS``
 class Installed(NamedTuple):
     """An engine provided by a Python package, with its official name and the platforms that have wheels.
 
-    The first of the ``settings`` is the default. The adapter's function has its name, with "_" for "-".
+    The first of the ``settings`` is the default.
     """
 
     title: str

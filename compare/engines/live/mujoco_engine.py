@@ -41,10 +41,7 @@ LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 @dataclass(frozen=True)
 class _Contact:
-    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping.
-
-    μ follows from ``gravity`` in m/s², but is at least ``LEAST_COEFFICIENT``.
-    """
+    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping."""
 
     option: str = ""
     friction_rate: float = 0.0
@@ -55,7 +52,7 @@ class _Contact:
 
     @classmethod
     def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
-        """Return contact that converges to Coulomb's law with the smallest μ that MuJoCo accepts.
+        """Return contact that converges to Coulomb's law.
 
         A foot sinks and rises by less than the size of feet and plate, so this has no effect in the plane.
         """
