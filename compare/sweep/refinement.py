@@ -53,7 +53,7 @@ class Grid:
         return self.numbers(lines, corner & ~self.simulated[np.ix_(*lines)])
 
     def halved(self, lines: Lines, finer: Lines) -> IntArray:
-        """Return the new points of mixed cells; give the new points of other cells the ends of their corners."""
+        """Return the new points of mixed cells; give other new points the ends of their corners."""
         coarse = self.ends[np.ix_(*lines)]
         cells = mixed(coarse)
         # A point on a line belongs to the cells on both sides of it.
@@ -71,8 +71,8 @@ class Grid:
 def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Grid]:
     """Yield the points to simulate in each round, numbered y·(points of x) + x; receive their ends.
 
-    The finest grid has the ``shape`` (y, x), the first at least ``coarse`` points along each axis. Returns the
-    finished grid.
+    The finest grid has the ``shape`` (y, x), the first at least ``coarse`` points along each axis. Returns the finest
+    grid.
     """
     grid = Grid(shape)
     stride = first_stride(shape, coarse)
@@ -99,7 +99,7 @@ def first_stride(shape: tuple[int, int], coarse: int) -> int:
 
 
 def _cells(lines: IntArray, finer: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the cells between ``lines`` before and behind each finer line."""
+    """Return the cells before and behind each finer line."""
     last = len(lines) - 2
     before = np.clip(np.searchsorted(lines, finer, side="left") - 1, 0, last)
     behind = np.clip(np.searchsorted(lines, finer, side="right") - 1, 0, last)

@@ -14,11 +14,11 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
 
-JUMP = 0.3  # largest relative difference between the radii of a motion and those extrapolated from its branch
+JUMP = 0.3  # largest relative difference between the radii of a motion and those of its extrapolated branch
 
 
 class Motion(NamedTuple):
-    """A motion that some of the starts end in: its kind, their number, medians of least and largest radius in m."""
+    """A motion in which starts end: its kind, their number, medians of least and largest radius in m."""
 
     end: int
     starts: int
@@ -63,8 +63,7 @@ def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> 
     """Return branches of motions; each maps indices of values to motions.
 
     A branch continues with the motion of its kind nearest to a linear extrapolation; nearest pairs are matched first.
-    A motion farther than ``JUMP`` from all branches begins a new one. A branch ends at the first value without a
-    match.
+    A motion farther than ``JUMP`` from all branches begins a new one.
     """
     branches: list[dict[int, One]] = []
     for i, here in enumerate(found):
