@@ -1,7 +1,6 @@
 """Conversion to JSON and back for numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
 
-NaN and infinity become "nan", "inf" and "-inf". All numbers are restored exactly. Arrays and tuples become lists,
-dataclasses become mappings of their fields.
+NaN and infinity become "nan", "inf" and "-inf". All numbers are restored exactly.
 """
 
 from __future__ import annotations
@@ -45,8 +44,7 @@ def as_json(value: Any) -> Any:
 def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
     """Return an instance of the dataclass ``kind`` from the output of ``as_json``.
 
-    Fields may be numbers, strings, arrays, tuples of one type, and dataclasses. Raises ``KeyError``, ``TypeError`` or
-    ``ValueError`` if ``content`` does not fit.
+    Raises ``KeyError``, ``TypeError`` or ``ValueError`` if ``content`` does not fit.
     """
     kinds = get_type_hints(kind)
     return kind(**{name: _value(kinds[name], item) for name, item in content.items()})
@@ -73,7 +71,7 @@ def _value(kind: Any, content: Any) -> Any:
 
 
 def _dataclasses(kind: Any) -> dict[str, type[Any]]:
-    """Return the dataclasses in the union ``kind`` by name; empty if it is not a union."""
+    """Return the dataclasses in the union ``kind`` by name."""
     several = get_args(kind) if get_origin(kind) is UnionType else ()
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
 
@@ -108,7 +106,7 @@ def claim_as_json(claim: Claim) -> dict[str, Any]:
 
 
 def claim_from_json(content: dict[str, Any]) -> Claim:
-    """Return the claim from the output of ``claim_as_json``, exactly."""
+    """Return the claim from the output of ``claim_as_json``."""
     alike = {field.name: content[field.name] for field in fields(Claim) if field.name in content}
     budget = ErrorBudget(
         content["numerical_error"], model=content["model_error"], resolution=float(content["resolution"])

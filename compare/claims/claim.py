@@ -36,13 +36,13 @@ EVIDENCE: dict[Evidence, str] = {
     "algebra": "formulas of the theory against each other, without an engine",
     "implied": "consequence of another verdict that agrees; not counted as additional evidence",
 }
-"""Descriptions of the kinds of evidence, the strongest first."""
+"""Kinds of evidence, the strongest first."""
 
 Basis = Literal["independent", "reference", "self-check", "algebra"]
 """Kind of evidence before the engine is known.
 
-"reference": the prediction comes from the reference or its friction law. It is a self-check for engines that share
-its code, and independent for all others.
+"reference": the prediction comes from the reference or its friction law, so it is a self-check for engines that share
+its code.
 """
 
 BASES: tuple[Basis, ...] = get_args(Basis)
@@ -73,7 +73,7 @@ class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
 
     - ``numerical``: error in the claim's unit, estimated from the run itself (same run at another tolerance,
-      Richardson). NaN if the engine gave no number to estimate it from; the claim then differs.
+      Richardson). NaN, if there is no estimate, makes the claim differ.
     - ``model``: size of the first neglected term of an approximation; zero for an identity.
     - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
     """
@@ -104,13 +104,12 @@ class Claim:
 
     - ``sentence``: statement, the same for every engine; it names the row of the matrix.
     - ``equation``: equation of the paper, such as "(3)"; "" if the statement is ours.
-    - ``kind``: source of the prediction, one of ``KINDS``.
     - ``engine``: name of the engine, or "theory" without a simulation.
     - ``predicted``, ``measured``, of the same shape, and ``budget``: numbers and their errors in ``unit``.
     - ``parameters``: numbers or words that repeat the measurement.
     - ``source``: origin of the parameters: a figure, or an assumption in words.
     - ``note``: method of the measurement or its error estimate, if not obvious.
-    - ``basis``: kind of evidence, one of ``BASES``, with the default of ``usual_basis``.
+    - ``basis``: kind of evidence, by default ``usual_basis``.
     - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
     - ``answers``: True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
     - ``named``: names for quotes of an element (its flat index), or of all (None), see ``compare.report.quotes``.
@@ -140,7 +139,6 @@ class Claim:
     axes: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        """Turn numbers into arrays and choose the usual basis; raise ``ValueError`` for inconsistent fields."""
         for name in ("predicted", "measured", "size"):
             if (value := getattr(self, name)) is not None:
                 object.__setattr__(self, name, np.asarray(value, dtype=float))
@@ -188,13 +186,13 @@ class Claim:
 
     @cached_property
     def units(self) -> tuple[str, ...]:
-        """Units along the last axis if they are mixed, else the one unit."""
+        """Units along the last axis if they are mixed, else one unit."""
         if "," not in self.unit:
             return (self.unit,)
         return tuple(_unit(name) for name in self.axes[-1])
 
     def element(self, index: int) -> str:
-        """Return the name of element ``index`` (flat), such as "μN = 0.05 N, x in m"; "" without names."""
+        """Return the name of element ``index`` (flat), such as "μN = 0.05 N, x in m", or ""."""
         return self._named(np.unravel_index(index, self.predicted.shape))
 
     def elements(self) -> Iterator[str]:
@@ -211,10 +209,7 @@ class Claim:
 
     @property
     def ratio(self) -> FloatArray:
-        """Difference over budget, elementwise: at most 1 for agreement.
-
-        The ratio is 0 without a difference, even if the budget is 0, and infinite for a missing number.
-        """
+        """Difference over budget, elementwise: at most 1 for agreement, infinite for a missing number."""
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(difference == 0.0, 0.0, difference / total)
@@ -232,7 +227,7 @@ class Claim:
     def relative_error(self) -> float:
         """Largest ratio of total error to ``size``, by default the largest prediction of the same unit.
 
-        It is infinite for a size of zero, and for orders and answers because they lack a scale.
+        It is infinite for orders and answers, which lack a scale.
         """
         if self.answers or self.kind == "order":
             return math.inf
@@ -252,7 +247,7 @@ class Claim:
 
     @cached_property
     def grade(self) -> Grade | None:
-        """Finest grade that the relative error permits; None if only the resolution can decide."""
+        """Finest grade that the relative error permits, or None."""
         relative = self.relative_error
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 
@@ -273,7 +268,7 @@ class Claim:
 
 
 def _unit(name: str) -> str:
-    """Return the unit in the name of a component, such as "m" for "x in m"; "" without one."""
+    """Return the unit in the name of a component, such as "m" for "x in m", or ""."""
     return name.rpartition(" in ")[2] if " in " in name else ""
 
 

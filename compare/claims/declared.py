@@ -23,8 +23,8 @@ class Declared:
     - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
     - ``swept``: parameters of the system that the claim varies.
     - ``each``: names and values of the members of a family; empty for a single claim.
-    - ``duration``: approximate total duration in s of the motions of a long claim, with more weight for finer steps,
-      else 0. The quick level skips claims that would take too long.
+    - ``duration``: total duration in s of the motions of a long claim, with more weight for finer steps, else 0. The
+      quick level skips claims that would take too long.
     """
 
     function: Callable[..., Measured | None]
@@ -47,7 +47,7 @@ class Declared:
         return takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and the additional arguments of its function."""
+        """Yield the name of each member of the family and additional arguments of its function."""
         if not self.each:
             yield "", ()
         for name, value in self.each.items():
@@ -62,7 +62,7 @@ class Declared:
         return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
 
     def identity(self, study: str, case: str) -> str:
-        """Return the permanent id of the claim, such as "fig06/rests"; it does not depend on other claims."""
+        """Return the permanent id of the claim, such as "fig06/rests"."""
         parts = (study, self.function.__name__.strip("_"), case)
         return "/".join(slug(part) for part in parts if part)
 

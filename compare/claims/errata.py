@@ -42,11 +42,7 @@ TEXT = (
 
 @dataclass(frozen=True)
 class Evidence:
-    """One quantity, computed from both formulas and independently of them.
-
-    ``quantity`` is its name with unit and parameters, ``exact`` the value from the equations of motion, the other two
-    are the values from the printed and the corrected formula.
-    """
+    """One quantity from both formulas and, as ``exact``, from the equations of motion."""
 
     quantity: str
     exact: float
@@ -58,9 +54,8 @@ class Evidence:
 class Erratum:
     """A printed formula and its correction.
 
-    ``equation`` is a number and a term, such as "(13), coefficient of λ²", or a section and its words. ``printed``
-    and ``correct`` are both formulas as plain text. ``explanation`` says why one is wrong and derives the other.
-    ``evidence`` computes the numbers.
+    ``equation`` is a number and a term, such as "(13), coefficient of λ²", or a section and its words.
+    ``explanation`` says why the printed formula is wrong and derives the other; ``evidence`` computes numbers.
     """
 
     equation: str

@@ -83,10 +83,10 @@ def parameters_of(
 
 
 def at_each(name: str, values: ArrayLike) -> str:
-    """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
+    """Return "name = a, b, c" for the note of a claim with these elements."""
     return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
 
 
 def components_of(system: System) -> tuple[str, ...]:
-    """Return the names of the state's components with their units, such as "x in m"."""
+    """Return the components of the state with units, such as "x in m"."""
     return tuple(f"{name} in {unit}" for name, unit in COLUMNS[type(system)])

@@ -39,7 +39,7 @@ class Prose:
     """The texts of a study.
 
     ``title`` is one line, ``paper`` the statements of the paper, ``section`` the heading of the study's group in the
-    overview. ``finding`` answers a question that the paper leaves open; it is shown on the first screen while all
+    overview. The first screen shows ``finding``, the answer to a question that the paper leaves open, while all
     claims agree. ``figures`` contains captions by the names of figures and animations.
     """
 
@@ -83,13 +83,13 @@ class Prose:
 
 
 def _paragraphs(text: str) -> str:
-    """Return the paragraphs, each in one line, separated by empty lines."""
+    """Return the paragraphs, each in one line."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts with a caption; all rows have the length of ``header``."""
+    """A table of texts with a caption."""
 
     caption: str
     header: tuple[str, ...]

@@ -26,7 +26,7 @@ from reference_model.systems import FloatArray, System
 Data = dict[str, FloatArray]
 
 ByEngine = Mapping[str, Data]
-"""Data of the figures by the names of the engines that produced any, and by "theory"."""
+"""Data of the figures by engine, and by "theory"."""
 
 Figures: TypeAlias = "dict[str, Figure]"
 """Matplotlib figures by the names of their captions."""
@@ -40,7 +40,7 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 class Findings:
     """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``; "" if none is missing.
+    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -54,7 +54,6 @@ class Recorded:
 
     - ``engine``, ``setting``, ``version``, ``date``: engine, its setting ("" if it has only one), its version and the
       date of the recording.
-    - ``claims``: claims about that engine.
     - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
     - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
     - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
@@ -85,7 +84,6 @@ class Study:
     """One figure or group of statements, with claims declared by the decorator ``claim``.
 
     - ``name``: name on the command line, such as "fig03".
-    - ``prose``: title, statements of the paper, finding and captions.
     - ``only``: names of the engines that the study is about; empty for all.
     - ``source``: origin of the parameters: a figure, or an assumption in words.
     - ``system``: system whose parameters repeat the measurements.
@@ -156,15 +154,15 @@ class Study:
         return self._provided("animations", {}, data)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the report's additional tables."""
+        """Return additional tables."""
         return self._provided("tables", ())
 
     def recorded(self) -> tuple[Recorded, ...]:
-        """Return recorded results of engines, which are not part of a run."""
+        """Return recorded results of engines."""
         return self._provided("recorded", ())
 
     def validations(self) -> tuple[Validation, ...]:
-        """Return comparisons with measurements, which have no verdict."""
+        """Return comparisons with measurements."""
         return self._provided("validations", ())
 
     def _provided(self, name: str, otherwise: Value, *arguments: Any) -> Value:
@@ -234,8 +232,8 @@ class Study:
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims on ``engine``, or the claims of the theory if it is None.
 
-        Findings leave out claims that the engine does not support, and say why. ``few`` contains arguments of claims'
-        functions by their names, to measure fewer cases. ``only`` selects functions by name, or a member of a family
+        Findings say why they leave out claims that the engine does not support. ``few`` contains arguments of claims'
+        functions by their names, to measure fewer cases. ``only`` selects functions by name, or members of a family
         by "function/case"; empty for all.
         """
         claims: list[Claim] = []
@@ -317,7 +315,7 @@ class Study:
         )
 
     def sentences(self) -> dict[str, str]:
-        """Return the sentences about engines, and for each its selector in ``only`` of ``measure``."""
+        """Return the sentences about engines with their selectors in ``only`` of ``measure``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 

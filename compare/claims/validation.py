@@ -16,12 +16,11 @@ class Validation:
 
     - ``sentence``: result in a sentence, with its numbers.
     - ``quantity``, ``unit``: compared quantity, and the unit of all following numbers.
-    - ``error``, ``error_uncertainty``: median of the comparison error E = S − D over all measurements, and its
-      standard error from their scatter.
+    - ``error``, ``error_uncertainty``: median of the comparison error E = S − D, and its standard error from the
+      scatter.
     - ``data``, ``input``, ``numerical``: median standard uncertainties of the measured data, the parameters and the
       computation.
-    - ``explained``: share of the measurements with |E| at most twice their total uncertainty.
-    - ``count``: number of measurements.
+    - ``explained``: share of the ``count`` measurements with |E| at most twice their total uncertainty.
     """
 
     sentence: str

@@ -21,7 +21,7 @@ NO_CLAIM = "-"
 class Bench:
     """Measures one claim at a time, within the time that the other claims of its study leave.
 
-    At the quick level, a claim that would take too long is not attempted.
+    The quick level does not attempt a claim that would take too long.
     """
 
     def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
@@ -35,7 +35,7 @@ class Bench:
     def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
         """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure.
 
-        Later claims reuse the motions of earlier claims, because one process measures them all.
+        One process measures all claims, so later ones reuse the motions of earlier ones.
         """
         key = (study.name, engine)
         left = self._limit - self._spent[key]

@@ -1,7 +1,7 @@
 """The motions that a study requests, if they do not depend on the answers.
 
-Each claim is measured with exact and with slightly wrong answers by an engine that records its questions. If these
-are equal, every engine would receive them.
+An engine that records its questions gives exact and then slightly wrong answers. If the questions are equal, every
+engine would receive them.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
-"""Error of the wrong answers relative to each component's largest size; larger than the errors of engines."""
+"""Error of the wrong answers relative to each component's size, larger than those of engines."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Planned:
 class _Recorder:
     """The ``simulate`` of an engine that records its questions.
 
-    No two instances are equal, so a study never reuses cached results of another instance.
+    No two instances are equal, so a study never reuses results of another one.
     """
 
     answer: Callable[..., Trajectory]
@@ -68,7 +68,7 @@ def planned(study: Study, kinds: tuple[str, ...], seed: int | None = None) -> Pl
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
-    for part in study.sentences().values():  # measured separately
+    for part in study.sentences().values():
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
         found = _measured(study, Engine("plan", exact, kinds, phases=False, seed=seed), part)
         with suppress(Exception):  # a study may raise anything for wrong answers
@@ -86,7 +86,7 @@ def _measured(study: Study, engine: Engine, part: str) -> int:
 
 
 class _Truth:
-    """Cached answers of the reference, without phases because files contain none."""
+    """Cached answers of the reference, without phases."""
 
     def __init__(self) -> None:
         self._known: dict[bytes, Trajectory] = {}

@@ -31,7 +31,7 @@ LIBRARIES = ("numpy", "scipy", "exudyn", "numba")
 
 
 def platform_stamp() -> dict[str, str]:
-    """Return versions, operating system, number of cores and date, without names of machines or folders."""
+    """Return versions, operating system, number of cores and date."""
     return {
         "friction-discs": version_of("friction-discs"),
         "commit": commit() or "unknown",
@@ -46,17 +46,17 @@ def platform_stamp() -> dict[str, str]:
 
 
 ENGINES = {"reference": "friction-discs", "plain": "friction-discs", "exudyn": "exudyn"}
-"""Distributions that contain the code of this project's engines."""
+"""Distributions with the code of this project's engines."""
 
 
 def engine_version(name: str, kin: str, own: str) -> str:
-    """Return ``own``, or the version of the engine's distribution; "" if unknown."""
+    """Return ``own``, or the version of the engine's distribution, or ""."""
     source = ENGINES.get(kin or name)
     return own or (version_of(source) if source else "")
 
 
 def commit() -> str:
-    """Return the commit of the code, with "-dirty" if files differ from it; "" if unknown."""
+    """Return the commit of the code, with "-dirty" if files differ from it, or ""."""
     if (ROOT / ".git").exists():
         try:
             found = subprocess.run(
@@ -75,7 +75,7 @@ def commit() -> str:
 
 
 def processor() -> str:
-    """Return the model name of the processor, or else its architecture."""
+    """Return the model of the processor, or its architecture."""
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("model name"):
@@ -102,7 +102,7 @@ def exudyn_user_settings() -> str:
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 
 SITES = {"site-packages", "dist-packages"}
-"""Folders of installed packages, which are independent of each other."""
+"""Folders of independent installed packages."""
 
 
 def files_of(function: Callable[..., Any]) -> list[Path] | None:
@@ -181,7 +181,7 @@ def engine_stamp(engine: Engine | None) -> str | None:
 
 @cache
 def _sources(root: Path) -> str:
-    """Return the digest of the packages, cached because a process keeps the code it started with."""
+    """Return the digest of the packages, cached because a process keeps its code."""
     paths = (path for name in PACKAGES for path in (root / name).rglob("*") if path.suffix in SOURCES)
     return _digest((path.relative_to(root).as_posix(), path) for path in sorted(paths))
 

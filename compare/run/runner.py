@@ -1,4 +1,4 @@
-"""Run studies with engines: in parallel, with failures kept apart, and nothing lost at Ctrl-C."""
+"""Run studies with engines: in parallel, with separate failures, and nothing lost at Ctrl-C."""
 
 from __future__ import annotations
 
@@ -36,13 +36,12 @@ class Run:
 
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
     - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
-    - ``about``: descriptions of the engines.
+    - ``about``, ``versions``: descriptions and versions of the engines.
     - ``errata``: errata whose evidence was requested.
     - ``outcomes``: findings or failure for each finished (study, engine or "theory").
     - ``seconds``: duration of each measurement in s.
     - ``drawings``: drawing or failure for each study.
     - ``evidence``: evidence or failure for each erratum, by its index in ``errata``.
-    - ``versions``: versions of the engines by name; "" if unknown.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
     - ``interrupted``: True if Ctrl-C ended the run early.
     """
@@ -84,7 +83,7 @@ class Run:
         return len(self.outcomes) + len(self.drawings) + len(self.evidence)
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of the findings by engine, without empty ones."""
+        """Return the arrays of the findings by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
         return {
             column: outcome.data
@@ -109,9 +108,8 @@ def run(
 
     Findings and drawings are written as they arrive; drawings of equal data are reused. ``jobs`` is the number of
     processes. A piece of work that takes longer than ``limit`` (s) fails. ``resume`` reuses findings with the same
-    digest of code and libraries, see ``compare.run.provenance``. ``expected`` are the durations of an earlier run,
-    see ``Run.seconds``. ``progress`` is called whenever a piece of work begins or ends. After Ctrl-C the results are
-    incomplete, with ``interrupted`` set.
+    digest of code and libraries. ``expected`` are the durations of an earlier run. ``progress`` is called whenever a
+    piece of work begins or ends. After Ctrl-C the results are incomplete, with ``interrupted`` set.
     """
     result = Run(
         studies,
@@ -134,7 +132,7 @@ def run(
 
 @dataclass
 class _Runner:
-    """Scheduler of the measurements, and of each study's drawing after its last one unless a stored drawing fits."""
+    """Scheduler of the measurements, and of each study's drawing after its last one."""
 
     result: Run
     workers: Workers
@@ -170,7 +168,6 @@ class _Runner:
         self.show([])
 
     def show(self, running: Collection[Hashable]) -> None:
-        """Report the running work, and the remaining time by the durations of an earlier run."""
         result, now = self.result, time.monotonic()
         self.began = {key: self.began.get(key, now) for key in running}
         left: dict[Hashable, float] = {}
@@ -225,7 +222,7 @@ QUICK_SEED = 1
 
 
 def seed_of(level: str, seed: int | None) -> int | None:
-    """Return the given ``seed`` of the units of motions, or that of the level "quick" or "full"."""
+    """Return the given ``seed`` of the units of motions, or that of the level."""
     return QUICK_SEED if level == "quick" and seed is None else seed
 
 
@@ -234,8 +231,8 @@ def measured(
 ) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    An engine given by name is imported here, in a process that may hang or crash; ``seed`` is for its units. ``only``
-    selects claims as in ``Study.measure``. Raises ``TypeError`` if the result is not ``Findings``.
+    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
+    ``Study.measure``. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
@@ -273,7 +270,7 @@ def pace(name: str) -> float:
 
 
 def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
-    """Return the engines of the given names, as ``compare.engines.engines`` does, using one of the ``workers``.
+    """Return the engines of the given names, loaded by the ``workers``.
 
     Raises ``ValueError`` for a name that is unknown or that the process could not load.
     """

@@ -25,14 +25,14 @@ from compare.run.provenance import stamp
 # diskcache would pickle results, which is neither readable nor safe to share.
 
 LONGEST = 100
-"""Largest number of readable characters of a file name; a program's name may exceed the limit of the file system."""
+"""Largest number of readable characters of a file name, because file systems limit it."""
 
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
 class _Archives:
-    """A folder, made with its first archive, with one archive for each finished piece of work."""
+    """A folder, made with its first archive, with an archive for each finished piece of work."""
 
     folder: Path
 
@@ -58,13 +58,13 @@ class _Archives:
             return None
 
     def _path(self, key: tuple[str, ...]) -> Path:
-        # The digest makes names unique, even on file systems that ignore case; the words are for people.
+        # The digest makes names unique, even on file systems that ignore case.
         words = re.sub(r"[^\w-]", "_", "--".join(key), flags=re.ASCII)[:LONGEST]
         return self.folder / f"{words}--{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.zip"
 
 
 def _comment(stamp: str | None, files: int) -> bytes:
-    """Return the archive's comment, with the number of files because a damaged table of contents may list fewer."""
+    """Return the archive's comment, with the number of files because a damaged archive may list fewer."""
     return f"{stamp} {files}".encode()
 
 
@@ -91,7 +91,7 @@ class Store(_Archives):
     ) -> tuple[Findings, float] | None:
         """Return the findings and their duration in s; None if they are missing, damaged or have another stamp.
 
-        Claims must have one of the ``identities`` or none, because they become file names of the report.
+        Claims must have one of the ``identities`` or none, because these become file names.
         """
 
         def restored(files: dict[str, bytes]) -> tuple[Findings, float] | None:
@@ -126,7 +126,7 @@ def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
 
 
 def drawing_stamp(data: Mapping[str, Data]) -> str:
-    """Return the digest of all that a drawing depends on: data, code and libraries."""
+    """Return the digest of data, code and libraries."""
     digest = hashlib.sha256()
     for engine, arrays in data.items():
         for name, values in arrays.items():

@@ -18,7 +18,7 @@ JUMP = 0.3  # largest relative difference between the radii of a motion and thos
 
 
 class Motion(NamedTuple):
-    """A motion in which starts end: its kind, their number, medians of least and largest radius in m."""
+    """A motion that starts end in: its kind, their number, medians of least and largest radius in m."""
 
     end: int
     starts: int
@@ -27,7 +27,7 @@ class Motion(NamedTuple):
 
 
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
-    """Return the motions in which starts end, without undecided ones; all arguments have shape (n,).
+    """Return the motions that starts end in, without undecided ones; all arguments have shape (n,).
 
     A gap between radii separates motions of one kind. Stuck motions form one group, because a pin may stick anywhere.
     """

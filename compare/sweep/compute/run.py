@@ -30,13 +30,13 @@ from compare.sweep.store import SweepStore, flags
 CHECKED = 20  # number of trajectories that the plain reference repeats
 
 CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
-"""Groups of a store besides its rounds."""
+"""Groups of a store in addition to its rounds."""
 
 Progress = Callable[[str, int, int], None]  # takes the name of the work, the amount done and the total
 
 
 def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
-    """Compute what ``store`` lacks."""
+    """Compute the parts that ``store`` lacks."""
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))

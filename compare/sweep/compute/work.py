@@ -28,7 +28,7 @@ class OtherCodeError(RuntimeError):
 
 @dataclass(frozen=True, eq=False)
 class Plain:
-    """A trajectory of the plain reference: its state at a requested time, and its end; NaN and undecided if it failed."""
+    """A trajectory of the plain reference: its state at a requested time (NaN if it failed), and its end."""
 
     state: FloatArray
     end: int
