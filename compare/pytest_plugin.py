@@ -101,7 +101,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
 
 
 def _is_own(argument: str, by_module: bool) -> bool:
-    """Return whether an argument is within this package, by its name after ``--pyargs``, else by its path."""
+    """Return whether an argument is within this package."""
     place = argument.partition("::")[0]
     if by_module and place.partition(".")[0] == __name__.partition(".")[0]:
         return True
@@ -205,7 +205,7 @@ class ClaimTest(pytest.Item):
 
     @classmethod
     def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
-        """Return the test of ``sentence``, named by the sentence and, unless ``alone``, the engine."""
+        """Return the test of ``sentence``, named with the engine unless ``alone``."""
         test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
         test.study, test.engine, test.sentence = parent.study, engine, sentence
         test.user_properties.append((ENGINE, engine))
@@ -251,7 +251,7 @@ class ClaimTest(pytest.Item):
 
 
 class Counts:
-    """Plugin that counts the results of each engine, including those from other processes, and ends the bench."""
+    """Plugin that counts the results of each engine, also from other processes."""
 
     def __init__(self, bench: Bench) -> None:
         self.bench = bench
@@ -366,7 +366,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Return a scheduler that keeps the claims of a study in one process, because they are measured together."""
+    """Return a scheduler that keeps the claims of a study in one process."""
     if not _engines(config) or config.getoption("dist") != "load":
         return None
     from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]

@@ -54,7 +54,7 @@ def _simulated(case: Case) -> Quantity:
 
 
 def _places(trajectory: Trajectory) -> Quantity:
-    """Return the positions of the pin, or of a disc's first contact point, which also depends on its angle."""
+    """Return the positions of the pin, or of a disc's first contact point, which depends on its angle too."""
     system, states = trajectory.system, trajectory.states
     places = states[:, 0] + 1j * states[:, 1]
     if isinstance(system, DiscOnDisc):
@@ -80,7 +80,7 @@ def _exact_radius() -> Quantity:
 
 
 def _exact_stuck() -> Quantity:
-    """Return the positions of a pin that turns with the disc, which do not depend on the law of slip."""
+    """Return the positions of a pin that turns with the disc, whatever the law of slip."""
     return np.asarray(_ON_THE_DISC[0] * np.exp(1j * _CENTRED.disc_speed * _STUCK_TIMES))
 
 
@@ -144,7 +144,7 @@ CASES = {
         resolution=2.5e-3,
     ),
 }
-"""Cases with the parameters of Figs. 5 and 11; the initial states on the disc and on the whirl are ours."""
+"""Cases with the parameters of Figs. 5 and 11; initial states on the disc and on the whirl are ours."""
 
 
 # --- Results of foreign engines and of our own, recorded by ``builders/record.py``.

@@ -104,7 +104,7 @@ _OTHERS = (
 
 @contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply the settings of ``PAPER`` to figures drawn and saved inside."""
+    """Apply ``PAPER`` to figures drawn and saved inside."""
     import matplotlib
 
     with matplotlib.rc_context(PAPER):
@@ -135,7 +135,7 @@ def new_figure(
 
 
 def engine_style(engine: str) -> EngineStyle:
-    """Return the fixed style of an engine or of "theory"; other engines have a style by their name."""
+    """Return the style of an engine or of "theory"."""
     return _STYLES.get(engine) or _OTHERS[zlib.crc32(engine.encode()) % len(_OTHERS)]
 
 
@@ -166,7 +166,7 @@ def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, A
 
 
 def beside(panel: Axes, place: float) -> Any:
-    """Return the transform that shifts marks by ``place`` mark widths to the right of their true position.
+    """Return the transform that shifts marks to the right by ``place`` mark widths.
 
     It keeps coinciding marks visible; mention it in the caption.
     """
@@ -188,7 +188,7 @@ def axis(symbol: str, unit: str = "") -> str:
 
 
 def saved(figure: Figure) -> tuple[bytes, bytes]:
-    """Return the figure as SVG and as PNG; equal figures give equal bytes."""
+    """Return the figure as SVG and as PNG, reproducible to the byte."""
     png = io.BytesIO()
     with paper_style():
         figure.savefig(png, format="png", metadata={"Software": None})
@@ -196,12 +196,12 @@ def saved(figure: Figure) -> tuple[bytes, bytes]:
 
 
 def as_svg(figure: Figure) -> bytes:
-    """Return the figure as SVG; equal figures give equal bytes."""
+    """Return the figure as SVG, reproducible to the byte."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     svg = io.BytesIO()
     canvas: Any = FigureCanvasSVG(figure)
-    with paper_style():  # faster than ``savefig``, which draws the figure once more for its layout
+    with paper_style():  # faster than ``savefig``, which draws the figure twice
         figure.set_dpi(PAPER["savefig.dpi"])  # for rasterised parts
         canvas.print_svg(svg, metadata={"Date": None})
     return svg.getvalue()

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = 64
-"""Number of colours of a frame, enough for lines and labels in a small file."""
+"""Number of colours of a frame."""
 
 DPI = 80.0
 
@@ -27,7 +27,7 @@ def gif(
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
 
-    ``update(i)`` changes the artists of ``figure`` for frame i. The layout of the first frame is kept. If it changes
+    ``update(i)`` changes the artists of ``figure`` for frame i, with the layout of the first frame. If it changes
     only the artists ``moving``, pass them; the others are then drawn once, below them.
     """
     import PIL.Image
@@ -70,7 +70,7 @@ def gif(
 
 
 def still(content: bytes) -> bytes:
-    """Return the first frame of an animation as PNG, for readers who prefer no motion."""
+    """Return the first frame of an animation as PNG."""
     import PIL.Image
 
     stream = io.BytesIO()

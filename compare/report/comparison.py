@@ -56,9 +56,9 @@ class Change:
 
 
 def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Change, ...]:
-    """Return the changes from ``old`` to ``new``, bad ones first; both are results of ``read_results``.
+    """Return the changes between two results of ``read_results``, bad ones first.
 
-    Changes of claims in ``known`` are included but do not count.
+    Changes of claims in ``known`` do not count.
     """
     found = [*_of_runs(old, new), *_of_claims(old, new)]
     order = list(Kind)
@@ -67,7 +67,7 @@ def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Ch
 
 
 def failures(results: Results) -> dict[Key, str]:
-    """Return the claims that differ, and the studies that failed with an engine, with the word for it."""
+    """Return the claims that differ and the studies that failed, with the word for it."""
     differ = {
         (claim["id"], claim["engine"]): State.DIFFERS.value
         for claim in _claims(results)
@@ -179,7 +179,7 @@ FORMAT, VERSION = "friction-discs baseline", 1
 def read_baseline(path: Path) -> frozenset[Key]:
     """Return the claims, or studies, and engines that are known to fail.
 
-    Raises ``ValueError`` for a file that cannot be read or is not a baseline.
+    Raises ``ValueError`` for an invalid file.
     """
     try:
         content = all_printable(json.loads(path.read_text(encoding="utf-8")))
@@ -193,7 +193,7 @@ def read_baseline(path: Path) -> frozenset[Key]:
 
 
 def write_baseline(path: Path, failures: Mapping[Key, str]) -> None:
-    """Write the ``failures``, by claim or study and engine, with an empty reason to be filled in."""
+    """Write the ``failures`` with empty reasons to be filled in."""
     known = [
         {"claim": claim, "engine": engine, "state": state, "why": ""}
         for (claim, engine), state in sorted(failures.items())

@@ -167,7 +167,7 @@ def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
 
 
 def _particular(row: Row, claim: Claim) -> str:
-    """Return the parameters of a claim that the other claims of its row do not share."""
+    """Return the parameters of a claim that other claims of its row do not share."""
     shared = _shared_parameters(row.claims)
     return _parameters({name: value for name, value in claim.parameters.items() if name not in shared})
 
@@ -190,7 +190,7 @@ def _shared_parameters(claims: tuple[Claim, ...]) -> dict[str, Any]:
 
 
 def _by_engine(row: Row, attribute: str) -> list[str]:
-    """Return the distinct texts, each after the names of its engines if there are several."""
+    """Return the distinct texts, with the names of their engines if there are several."""
     texts: dict[str, list[str]] = {}
     for claim in row.claims:
         text = getattr(claim, attribute)
@@ -210,7 +210,7 @@ def _parameters(parameters: Mapping[str, Any]) -> str:
 
 
 def _is_answered(study: Study, own: Matrix) -> bool:
-    """Return whether a study has a finding, all its claims agree, and all numbers in the finding were measured."""
+    """Return whether a study's finding may be shown: its claims agree, and all of its numbers were measured."""
     return (
         bool(study.prose.finding)
         and own.agrees
@@ -219,7 +219,7 @@ def _is_answered(study: Study, own: Matrix) -> bool:
 
 
 def _quoting(own: Matrix, text: str) -> Markup:
-    """Return a text with numbers quoted from ``own``, each with its error and a link to its claim."""
+    """Return a text with quotes from ``own``, each with its error and a link to its claim."""
     found = Markup()
     for literal, words in quotes.parts(text):
         found += _with_code(literal)
@@ -249,7 +249,7 @@ def _origin(quote: quotes.Quote) -> str:
 
 
 def _pictures(run: Run, study: Study) -> list[tuple[str, str]]:
-    """Return name and suffix of the study's pictures in the order of their captions; others come last."""
+    """Return name and suffix of the study's pictures in the order of their captions."""
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
@@ -290,7 +290,7 @@ def _claim_commands(seed: int | None, row: Row) -> list[str]:
 
 
 def command(what: str, engine: str, seed: int | None = None) -> str:
-    """Return the command that repeats the measurement of a study, or of a claim, with one engine."""
+    """Return the command that repeats the measurement of a study or a claim with one engine."""
     text = f"friction-discs report {what}"
     if engine == THEORY:
         return text

@@ -116,7 +116,7 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
 
 
 def parts(text: str) -> Iterator[tuple[str, str | None]]:
-    """Yield pairs of the text before each quote and the words of the quote, then the remaining text and None."""
+    """Yield each text before a quote with the words of the quote, then the remaining text and None."""
     for literal, name, options, _ in Formatter().parse(text):
         yield literal, f"{name}:{options}" if options else name
 

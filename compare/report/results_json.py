@@ -53,7 +53,7 @@ COLUMNS = (
     "numerical_error",
     "size",
 )
-"""Columns of a table; ``element`` counts from 0, ``place`` describes it, ``size`` is empty if the claim has none."""
+"""Columns of a table; ``element`` counts from 0, ``place`` describes it."""
 
 LARGE = 32_768
 """Size in bytes above which a table is compressed."""
@@ -150,7 +150,7 @@ def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, A
 # --- The report as one file.
 
 FORMAT, VERSION = "friction-discs results", 1
-"""Name and version of the format; the version rises with incompatible changes."""
+"""Name and version of the format; incompatible changes increase the version."""
 
 FILE = "results.json"
 
@@ -189,7 +189,7 @@ def read_results(path: Path) -> dict[str, Any]:
 
 
 def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
-    """Return the duration in s of each measurement in the first report of ``folders``; {} without a report."""
+    """Return the duration in s of each measurement in the first report of ``folders``."""
     for folder in folders:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
             content = json.loads((folder / FILE).read_text(encoding="utf-8"))
@@ -203,10 +203,7 @@ def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
 
 
 def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of ``results.json``; numbers that JSON lacks are "nan", "inf" and "-inf".
-
-    ``paths`` are the claims' tables by identity.
-    """
+    """Return the content of ``results.json``; ``paths`` are the claims' tables by identity."""
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -267,7 +264,6 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
 
 
 def _verdict(claim: Claim, cell: Cell, measurement: int, identity: str, path: str) -> dict[str, Any]:
-    """Return a claim with its kind of evidence in this report and the path of its numbers."""
     said = _without_arrays(claim)
     more = {
         "measurement": measurement,

@@ -19,11 +19,11 @@ from compare.run.runner import Run
 from compare.run.store import Drawing
 
 LINES = 4
-"""Number of nesting levels of ``results.json`` with one line per value; each claim gets one line."""
+"""Number of nesting levels of ``results.json`` with one line per value."""
 
 
 def write_report(run: Run, output: Path) -> Matrix:
-    """Write the report of a complete or interrupted run to the folder ``output`` and return its matrix."""
+    """Write the report of a run to the folder ``output`` and return its matrix."""
     verdicts, stamp = matrix(run), platform_stamp()
     output.mkdir(parents=True, exist_ok=True)
     for drawing in run.drawings.values():

@@ -29,30 +29,29 @@ It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
-"""Factor that extends the viscous part of the friction law in the model of a creeping system."""
+"""Factor that extends the viscous part of the friction law of a creeping system."""
 
 CREEP_ANGLE = 0.15
 """Rotation of the ground in rad per step of creep: the error of a step h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""Smallest ratio of slow to fast relaxation time for steps of creep that resolve the slow one."""
+"""Smallest ratio of slow to fast relaxation time for steps that resolve the slow one."""
 
 STEPS_OF_RELAXATION = 20.0
 """Steps of creep per slow relaxation time."""
 
 Part = int | frozenset[int]
-"""Creeping part of a contact: ``WHOLE``, or some of several points, the argument ``held`` of ``add``."""
+"""Creeping part of a contact: ``WHOLE``, or some of several points."""
 
 Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 
 
 @dataclass(frozen=True)
 class Friction:
-    """A kind of friction between two discs, in the units and the axes of a run.
+    """Friction between two discs, in the units and the axes of a run.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping``, like ``RegularisedContact.creeping``,
-    returns the creeping part of the contact, which may be modelled with unlimited viscosity (single points by the
-    argument ``held`` of ``add``).
+    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` returns the creeping part of the contact,
+    which may be modelled with unlimited viscosity (single points by the argument ``held`` of ``add``).
     """
 
     add: Callable[..., Any]
@@ -68,7 +67,7 @@ RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
 
 @dataclass(frozen=True)
 class SlipSolver:
-    """Solver for slip: integrator, step and tolerance as in ``solver_run.solve``."""
+    """Integrator, step and tolerance for slip, as in ``solver_run.solve``."""
 
     integrator: str
     step: float
@@ -91,7 +90,7 @@ def solve_in_turns(
 
     A creeping part, the whole contact or one of several points, feels only the viscous part of the law. The model
     extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
-    between two steps, as soon as a different part creeps, or none.
+    between two steps.
 
     All numbers are in units that make the motion of order one; ``seconds`` is the unit of time in s, for messages.
     """
@@ -122,7 +121,7 @@ class _Turns:
     count: StepCount
 
     def slip(self, state: FloatArray, start: float, first_step: float) -> tuple[Steps, Part | None]:
-        """Solve from ``state`` until something creeps, and record the run; return the steps and the creeping part."""
+        """Solve from ``state`` until something creeps; return the steps and the creeping part."""
         watch = _Slip(self)
         run = solve(
             build_model(
@@ -141,10 +140,10 @@ class _Turns:
         return run, watch.settled
 
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
-        """Solve from the last of the steps ``before`` while ``part`` creeps, and record the run.
+        """Solve from the last of the steps ``before`` while ``part`` creeps, since ``began``.
 
-        Return the steps, and ``part`` if it still creeps, since ``began``. A release starts so gently that the steps
-        before it become smaller.
+        Return the steps, and ``part`` if it still creeps. Steps before a release become smaller, because it starts
+        gently.
         """
         state, start = before.states[-1], float(before.times[-1])
         step, until = self._creep_step(before, part, began)
@@ -233,7 +232,7 @@ class _Turns:
         )
 
     def _end_of_creep(self, run: Steps, part: Part) -> float | None:
-        """Return the first time in ``run`` when another part than ``part`` creeps, or None."""
+        """Return the first time in ``run`` when another part creeps, or None."""
         seen, states_at = self.contact.in_master_axes, creep_between(run)
 
         def first_other(times: FloatArray) -> int | None:
@@ -264,14 +263,14 @@ GRAZING = 1e-6
 """(ωh)² of the steps that decide whether friction can hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""Ratio of the steps before and after a reduction for a release; there may be several reductions."""
+"""Ratio of the steps before and after a reduction for a release."""
 
 PARTS = 16
 """Number of checks in a step close to the end of creep."""
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
-    """Return the indices of maxima of creep above ``above``·ε among the steps, possibly including the ends."""
+    """Return the indices of maxima of creep above ``above``·ε."""
     ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 

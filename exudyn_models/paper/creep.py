@@ -14,10 +14,10 @@ from exudyn_models.forces.slip_potential import ring_potential_slopes, ring_pote
 from reference_model.systems import DiscOnDisc, FloatArray, Place, System
 
 WHOLE = 0
-"""Column of the contact as a whole; columns of single points follow, if there are any."""
+"""Column of the contact as a whole; columns of single points follow."""
 
 RELAXATIONS = 40.0
-"""Number of relaxation times until slip has settled to its creep; the rest is exp(−t/relaxation time)."""
+"""Number of relaxation times until slip has settled to its creep."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class RegularisedContact:
 
     @cached_property
     def in_master_axes(self) -> RegularisedContact:
-        """The contact in axes that turn with the master disc, which rests there."""
+        """The contact in axes that turn with the master disc."""
         return replace(self, system=replace(self.system, disc_speed=0.0))
 
     @cached_property
@@ -57,7 +57,7 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s that slip below ε needs to settle to its creep, except for slow relaxations."""
+        """Time in s that slip below ε needs to settle to its creep."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
@@ -73,7 +73,7 @@ class RegularisedContact:
     def slip_ratios(self, states: FloatArray) -> FloatArray:
         """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
 
-        The first column is the (mean) slip speed of the contact over ε, the others are those of the points over δ.
+        The first column is the mean slip speed over ε, the others are those of the points over δ.
         """
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         if not isinstance(system, DiscOnDisc):

@@ -14,8 +14,7 @@ from reference_model.systems import FloatArray
 def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
     """Return a function that gives the states of a creeping body at times (s), shape (len(times), 2d).
 
-    Velocities are cubic Hermite interpolants, because rounding of positions would spoil the small creep in short
-    steps.
+    Velocities are cubic Hermite interpolants, because rounding of positions would spoil the creep in short steps.
     """
     velocities = _velocities(steps)
 
@@ -27,7 +26,7 @@ def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
 
 
 def creep_until(steps: Steps, time: float) -> Steps:
-    """Return ``steps`` of a creeping body up to ``time`` (s), which lies after the first of them."""
+    """Return ``steps`` of a creeping body up to ``time`` (s)."""
     before = int(np.searchsorted(steps.times, time))
     return Steps(
         np.append(steps.times[:before], time),
@@ -58,7 +57,6 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     p0, p1 = steps.states[index, :size], steps.states[after, :size]
     v0, v1 = h * steps.states[index, size:], h * steps.states[after, size:]
     a0, a1 = h * h * steps.accelerations[index], h * h * steps.accelerations[after]
-    # Residuals of the Taylor polynomial from the left end.
     dp = p1 - p0 - v0 - a0 / 2.0
     dv = v1 - v0 - a0
     da = a1 - a0

@@ -16,8 +16,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 MASTER_INERTIA = 1e30
 """Inertia in kg m² of the master disc, a body whose speed no contact torque can change.
 
-A torque of 1 N m changes ω by 1e-30 rad/s per second, so ω stays constant to the last bit. Explicit solvers would
-silently ignore a constraint.
+A torque of 1 N m changes ω by 1e-30 rad/s per second. Explicit solvers would silently ignore a constraint.
 """
 
 
@@ -31,9 +30,8 @@ def build_model(
 ) -> Model:
     """Build ``system`` in ``initial_state``, shape (4,) or (6,), with the contact that ``friction`` adds.
 
-    A rigid body on springs and dampers to a support at (X0, 0) touches a master disc that turns about (0, 0) with ω,
-    with ring friction of radius 0 for a pin. A disc has a torsional damper to its shaft. Connectors with zero
-    friction or damping are omitted.
+    A body on springs and dampers to a support at (X0, 0) touches a master disc that turns about (0, 0) with ω. A disc
+    has a torsional damper to its shaft. Connectors with zero friction or damping are omitted.
 
     ``initial_state`` refers to axes that turn with ``axes_speed`` (rad/s); the ground turns backwards in them.
     """
@@ -80,7 +78,7 @@ def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axe
             initialVelocities=velocity + turn,
         )
     )
-    # The moment of inertia of a pin's body is arbitrary, because nothing turns it.
+    # The inertia of a pin is arbitrary, because nothing turns it.
     inertia = system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
     mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=inertia))
     add_radial_support(

@@ -44,10 +44,7 @@ def simulate_with_native_contact(
 
 
 def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:
-    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None.
-
-    A disc that is hardly held creeps with some points faster than δ, under Coulomb friction.
-    """
+    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None."""
     part, system = contact.creeping(state), contact.system
     if part is None or not isinstance(system, DiscOnDisc):
         return part

@@ -76,6 +76,6 @@ class Units:
         return replace(system, **changes)
 
     def of_states(self, size: int) -> FloatArray:
-        """Return the units of the ``size`` components of a state, in m and m/s, rad and rad/s."""
+        """Return the units of the ``size`` components of a state."""
         places = [self.length, self.length, 1.0][: size // 2]
         return np.array([*places, *(place / self.time for place in places)])

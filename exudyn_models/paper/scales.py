@@ -62,7 +62,7 @@ def hardened_stiffness(system: System, state: FloatArray) -> float:
 
 
 def support_energy(system: System, state: FloatArray) -> float:
-    """Return the energy in J of the centre's motion and of its support, relative to the relaxed position."""
+    """Return the energy in J of the centre's motion and of its support."""
     position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
     return system.mass * abs(velocity) ** 2 / 2.0 + elastic_energy(
         abs(position - system.offset) ** 2, _law_of(system)

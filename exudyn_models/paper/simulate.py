@@ -51,12 +51,11 @@ LARGEST_STEP = 6.0
 """Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
-"""Tolerance of Newton's method for the residual, relative to the forces at the start."""
+"""Tolerance of Newton's residual, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
 
 METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit": "Exudyn generalised-α"}
-"""Name of each solver in a result."""
 
 
 def simulate(

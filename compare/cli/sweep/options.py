@@ -25,8 +25,7 @@ STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
 
 UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
 """Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls. On
-single contact points it is shorter: the plain reference simulates their rests slowly, and more time decides no
-further motion."""
+single contact points it is shorter, because the plain reference simulates their rests slowly."""
 
 
 @refused()
@@ -192,5 +191,5 @@ class Request:
         return [setting.partition("=")[0].strip() for setting in self.settings or []]
 
     def run(self, plan: Plan) -> int:
-        """Run or resume the sweep of ``plan`` and return the exit status."""
+        """Run or resume the sweep of ``plan``."""
         return run_sweep(plan, self.chunk, self.scheduler, self.output, self.resume)
