@@ -157,8 +157,7 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     )
 
 
-# --- Engines with a fixed step that is too long for a claim: repeated at shorter steps, which often decides the
-# claim.
+# --- Shorter steps, if the fixed step of an engine leaves a claim open
 
 SHORTER = 4.0
 """Ratio of successive steps."""

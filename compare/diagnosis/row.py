@@ -141,8 +141,10 @@ class Row:
         return self.verdict == WRONG
 
 
-# --- The figure of the matrix: error of each engine in each motion against the rung. Each rung halves a fixed step
-# and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to another friction law.
+# --- The figure of the matrix: error of each engine in each motion against the rung.
+#
+# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due
+# to another friction law.
 
 MARKERS = "os^Dvx+*"
 LEAST = 1e-16  # smallest plotted error in m

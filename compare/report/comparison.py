@@ -169,8 +169,11 @@ def _numbers(claim: Mapping[str, Any], name: str) -> FloatArray:
     return np.array(claim[name], dtype=float).ravel()
 
 
-# --- A baseline: claims that are known to fail, so a server reports only new failures. A file for people to read and
-# edit:: {"format": "friction-discs baseline", "version": 1, "known": [{"claim": "fig05/slides", "engine": "mine",
+# --- A baseline: claims that are known to fail, so a server reports only new failures.
+#
+# A file for people to read and edit::
+#
+# {"format": "friction-discs baseline", "version": 1, "known": [{"claim": "fig05/slides", "engine": "mine",
 # "state": "differs", "why": "issue 12"}]}
 
 FORMAT, VERSION = "friction-discs baseline", 1

@@ -37,8 +37,9 @@ from compare.run.workers import Failure
 from reference_model.systems import FloatArray
 
 # --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
-# ``measurement`` counts repeated claims of an engine from 1. Numbers are written in full precision, and as "nan" or
-# "inf". Large tables are compressed (xz); pandas and R read them directly.
+#
+# ``measurement`` counts repeated claims of an engine from 1. Numbers have all digits, or are "nan" or "inf". Large
+# tables are compressed (xz); pandas and R read them directly.
 
 FOLDER = "arrays"
 

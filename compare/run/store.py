@@ -21,8 +21,9 @@ from compare.output.outside_text import all_printable
 from compare.output.text_files import replacing
 from compare.run.provenance import stamp
 
-# --- Archives: contents by path, each with a checksum, valid for the version of the code that made them. joblib and
-# diskcache would pickle results, which is neither readable nor safe to share.
+# --- Archives: contents by path, each with a checksum, valid for the version of the code that made them.
+#
+# joblib and diskcache would pickle results, which is neither readable nor safe to share.
 
 LONGEST = 100
 """Largest number of readable characters of a file name, because file systems limit it."""

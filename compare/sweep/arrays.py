@@ -200,7 +200,9 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-# --- Trajectories of a round in the store Two workers that write the same chunk write the same bits.
+# --- Trajectories of a round in the store
+#
+# Two workers that write the same chunk write the same bits.
 
 
 @dataclass(frozen=True)

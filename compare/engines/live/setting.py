@@ -171,11 +171,12 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
     return (force.real, force.imag, moment)[:half]
 
 
-# --- Common code of planar engines, with contact as a joint.  A planar engine has no third axis for a normal load.
-# For top-down scenes, these engines recommend a joint that removes the relative velocity of two bodies up to a force
-# limit, here μN/n at each contact point. The second body at each point is kinematic and has the velocity of the
-# master disc there. Springs, dampers and the shaft are forces, set in each step. Steps are semi-implicit, of order
-# 1.
+# --- Common code of planar engines, with contact as a joint.
+#
+# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint that
+# removes the relative velocity of two bodies up to a force limit, here μN/n at each contact point. The second body
+# at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
+# forces, set in each step. Steps are semi-implicit, of order 1.
 
 
 class TopDown(Model):

@@ -61,8 +61,9 @@ def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
     return TheoryMotion(meaning, radius, radius, stable)
 
 
-# --- Boundaries between motions according to formulas, as curves in the plane of a map. All except (5) hold without
-# offset; a disc is treated as a continuous ring.
+# --- Boundaries between motions according to formulas, as curves in the plane of a map
+#
+# All except (5) hold without offset; a disc is treated as a continuous ring.
 
 NODES = 101  # values of each parameter; zeros of a margin are interpolated
 
