@@ -1,9 +1,9 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
 Each study is a file and each of its claim sentences a test, collected without measuring. A separate process measures
-the claims, and all claims of a study share a time limit. A test fails if the claim differs or the engine has no
-answer. A claim is "not attempted" if the engine does not support it or its study has no time left, "inconclusive" if
-the errors leave it open, and "not finished" if it exceeds the limit. None of these is a pass.
+the claims. A test fails if the claim differs or the engine has no answer. A claim is "not attempted" if the engine
+does not support it or its study has no time left, "inconclusive" if the errors leave it open, and "not finished" if
+it exceeds the limit. None of these is a pass.
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
 """
@@ -101,7 +101,7 @@ def pytest_load_initial_conftests(early_config: pytest.Config, parser: pytest.Pa
 
 
 def _is_own(argument: str, by_module: bool) -> bool:
-    """Return whether an argument is within this package, by its name after ``--pyargs``, else by its path."""
+    """Return whether an argument is within this package."""
     place = argument.partition("::")[0]
     if by_module and place.partition(".")[0] == __name__.partition(".")[0]:
         return True
@@ -205,7 +205,7 @@ class ClaimTest(pytest.Item):
 
     @classmethod
     def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
-        """Return the test of ``sentence``, named by the sentence and, unless ``alone``, the engine."""
+        """Return the test of ``sentence``, named with the engine unless ``alone``."""
         test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
         test.study, test.engine, test.sentence = parent.study, engine, sentence
         test.user_properties.append((ENGINE, engine))
@@ -251,7 +251,7 @@ class ClaimTest(pytest.Item):
 
 
 class Counts:
-    """A plugin that counts the results of each engine, including those from other processes, and ends the bench."""
+    """Plugin that counts the results of each engine, also from other processes."""
 
     def __init__(self, bench: Bench) -> None:
         self.bench = bench
@@ -271,7 +271,7 @@ _COUNTS = pytest.StashKey[Counts]()
 
 
 def _account(claim: Claim, again: str) -> str:
-    """Return a description of a claim: the deciding numbers, and the parameters and command that repeat it."""
+    """Return the deciding numbers of a claim, and the parameters and command that repeat it."""
     from compare.claims.claim import Verdict
     from compare.report.numbers import answers_text, error_text, in_short, value_text, worst
 
@@ -324,12 +324,10 @@ def pytest_report_teststatus(report: pytest.TestReport) -> tuple[str, str, str] 
 
 
 def _why_none(report: pytest.TestReport) -> str:
-    """Return why a test has no verdict; "" if it has one or is not a claim."""
     return _property(report, PROPERTY) if report.when == "call" and report.skipped else ""
 
 
 def _property(report: pytest.TestReport, name: str) -> str:
-    """Return a property of a claim's test; "" if the test is not a claim."""
     return str(dict(report.user_properties).get(name, ""))
 
 
@@ -368,7 +366,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Return a scheduler that keeps the claims of a study in one process, because they are measured together."""
+    """Return a scheduler that keeps the claims of a study in one process."""
     if not _engines(config) or config.getoption("dist") != "load":
         return None
     from xdist.scheduler import LoadFileScheduling  # type: ignore[import-untyped]

@@ -9,9 +9,8 @@ All public names are exported here. They come from these packages:
   ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
 - ``solver``: ``solve_dynamic`` is ``mbs.SolveDynamic`` with checks and clear errors. It returns a ``ModeChange`` for
   each change of a contact with exact stick. ``largest_stable_step`` is for explicit solvers with a fixed step.
-- ``drivetrain``: engine, clutch and vehicle made of these parts. ``Drivetrain`` contains the parameters,
-  ``PASSENGER_CAR`` is an example and ``four_cylinder`` its engine torque; ``build_drivetrain`` returns a
-  ``DrivetrainModel``.
+- ``drivetrain``: engine, clutch and vehicle made of these parts. ``Drivetrain`` contains the parameters, with
+  ``PASSENGER_CAR`` and its torque ``four_cylinder`` as examples; ``build_drivetrain`` returns a ``DrivetrainModel``.
 - ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference;
   ``simulate_fixed_step`` is for convergence studies; ``simulate_with_native_contact`` uses Exudyn's contact;
   ``build_model`` returns their model; ``eigenvalues`` linearises about a state.

@@ -38,7 +38,7 @@ class HeadersMissingError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit in a ``file`` with a library for ``platform``, or "" and a ``remark`` with the reason for none."""
+    """A unit in a ``file``, with a library for ``platform``, or "" and a ``remark`` with the reason for none."""
 
     file: Path
     platform: str
@@ -66,7 +66,7 @@ def write_standard(folder: Path, fmi: Fmi) -> None:
 
 
 def standard_headers() -> Path:
-    """Return FMPy's folder with the headers of the standard; raise ``HeadersMissingError`` if FMPy is missing."""
+    """Return FMPy's folder with the headers of the standard; raise ``HeadersMissingError`` without FMPy."""
     found = importlib.util.find_spec("fmpy")
     if found is None or found.origin is None:
         raise HeadersMissingError(
@@ -102,10 +102,10 @@ def platform(fmi: Fmi) -> tuple[str, str]:
 
 
 def export(model: Model, file: Path, fmi: Fmi = 2) -> Exported:
-    """Write a model as a unit; return its path and platform.
+    """Write a model as a unit.
 
     Raises ``ValueError`` if the file name does not end with .fmu, as the standard requires, ``HeadersMissingError``
-    if FMPy is not installed, ``RuntimeError`` if the compiler fails, and ``OSError`` if the file cannot be written.
+    without FMPy, ``RuntimeError`` if the compiler fails, and ``OSError`` if the file cannot be written.
     """
     if file.suffix.lower() != ".fmu":
         raise ValueError(f"output = {str(file)!r}: the name of a unit must end with .fmu")

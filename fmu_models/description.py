@@ -29,7 +29,7 @@ UNITS: dict[str, dict[str, int]] = {
     "J": {"kg": 1, "m": 2, "s": -2},
     "W": {"kg": 1, "m": 2, "s": -3},
 }
-"""Exponents of the base units for each unit of a variable."""
+"""Exponents of the base units in each unit of a variable."""
 
 CAUSALITY = {
     "time": "independent",
@@ -50,7 +50,7 @@ UNTIL = "100"
 
 
 def token_of(model: Model) -> str:
-    """Return the token that must agree between the library and the description of a model."""
+    """Return the token that library and description of a model must share."""
     return "{" + hashlib.sha256(repr(model).encode()).hexdigest()[:32] + "}"
 
 

@@ -61,7 +61,7 @@ def tables(model: Model) -> str:
 
 
 def _rules(model: Model) -> str:
-    """Return the C function that checks the rules of a model."""
+    """Return the C function that checks a model's rules."""
     values = {one.name: f"v[V_{one.name}]" for one in model.having("parameter")}
     lines = [f"{BROKEN} {{", "    (void)v, (void)sentence, (void)size;"]
     for condition, sentence in model.rules:

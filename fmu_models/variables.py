@@ -54,8 +54,8 @@ class Variable:
 class Model:
     """A model: name, description, C source, variables in the order of value references, and rules.
 
-    A rule is a condition on parameters, an expression valid in both Python and C, and the message if it is violated,
-    with "{name:g}" for values. The export checks it, and so does the unit at initialisation.
+    A rule is a condition on parameters, an expression valid in both Python and C, and a message with "{name:g}" for
+    values. The export checks it, and so does the unit at initialisation.
     """
 
     name: str
@@ -204,7 +204,6 @@ def _supported(kind: type[System], values: Sequence[float], start: Sequence[floa
 
 
 def _stick_events(columns: Sequence[tuple[str, str]]) -> tuple[Variable, ...]:
-    """Return the outputs of an exact contact for its last stick and release."""
     places = [(name, unit) for name, unit in columns if unit in ("m", "rad")]
     return (
         Variable("stick_count", "", "number of times the contact stuck", "event", type="whole"),

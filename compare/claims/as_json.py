@@ -1,7 +1,6 @@
 """Conversion to JSON and back for numbers, arrays, dataclasses (systems, plans of sweeps) and claims.
 
-NaN and infinity become "nan", "inf" and "-inf", which ``float`` reads. All other numbers are restored exactly. Arrays
-and tuples become lists, dataclasses become mappings of their fields.
+NaN and infinity become "nan", "inf" and "-inf". All numbers are restored exactly.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from compare.claims.claim import Claim, ErrorBudget
 Kind = TypeVar("Kind")
 
 TYPE = "type"
-"""Key with the name of the dataclass, if a field allows several."""
+"""Key for the name of the dataclass, if a field allows several."""
 
 
 def as_json(value: Any) -> Any:
@@ -45,22 +44,19 @@ def as_json(value: Any) -> Any:
 def from_json(kind: type[Kind], content: Mapping[str, Any]) -> Kind:
     """Return an instance of the dataclass ``kind`` from the output of ``as_json``.
 
-    Fields may be numbers, strings, arrays, tuples of one type, and dataclasses. Raises ``KeyError``, ``TypeError`` or
-    ``ValueError`` if ``content`` does not fit.
+    Raises ``KeyError``, ``TypeError`` or ``ValueError`` if ``content`` does not fit.
     """
     kinds = get_type_hints(kind)
     return kind(**{name: _value(kinds[name], item) for name, item in content.items()})
 
 
 def _tag(kind: Any, value: Any) -> Any:
-    """Return the JSON value of a field of type ``kind``, with the name of its dataclass if several are allowed."""
     content = as_json(value)
     tagged = value is not None and _dataclasses(kind)
     return {TYPE: type(value).__name__} | content if tagged else content
 
 
 def _value(kind: Any, content: Any) -> Any:
-    """Return the value of type ``kind`` from JSON."""
     if possible := _dataclasses(kind):
         return from_json(
             possible[content[TYPE]], {name: item for name, item in content.items() if name != TYPE}
@@ -75,13 +71,13 @@ def _value(kind: Any, content: Any) -> Any:
 
 
 def _dataclasses(kind: Any) -> dict[str, type[Any]]:
-    """Return the dataclasses in the union ``kind`` by name; empty if it is not a union."""
+    """Return the dataclasses in the union ``kind`` by name."""
     several = get_args(kind) if get_origin(kind) is UnionType else ()
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
 
 
 def claim_as_json(claim: Claim) -> dict[str, Any]:
-    """Return the claim as JSON values; ``claim_from_json`` restores it exactly."""
+    """Return a claim as JSON values."""
     return {
         "sentence": claim.sentence,
         "equation": claim.equation,

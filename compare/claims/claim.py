@@ -18,9 +18,8 @@ Kind = Literal["formula", "conservation", "order", "trajectory"]
 """Source of the prediction.
 
 "formula": a closed form, an eigenvalue, the root of a balance, or the end state that a theory predicts.
-"conservation": energy or momentum, without another solution. "order": the order of an error.
-"trajectory": another simulation, or a quantity read from it. An engine passes the last if it shares a mistake with
-that simulation.
+"conservation": energy or momentum. "order": the order of an error. "trajectory": another simulation, whose mistakes
+an engine may share.
 """
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -29,7 +28,7 @@ THEORY = "theory"
 """Engine name of claims about the theory alone."""
 
 Evidence = Literal["independent", "self-check", "algebra", "implied"]
-"""Kind of evidence that agreement provides, see ``EVIDENCE``."""
+"""Kind of evidence that agreement provides."""
 
 EVIDENCE: dict[Evidence, str] = {
     "independent": "comparison with a formula, a conservation law, an order of convergence or an independent code",
@@ -37,13 +36,13 @@ EVIDENCE: dict[Evidence, str] = {
     "algebra": "formulas of the theory against each other, without an engine",
     "implied": "consequence of another verdict that agrees; not counted as additional evidence",
 }
-"""Descriptions of the kinds of evidence, the strongest kind first."""
+"""Kinds of evidence, the strongest first."""
 
 Basis = Literal["independent", "reference", "self-check", "algebra"]
 """Kind of evidence before the engine is known.
 
-"reference": the prediction is a motion of the reference, or is computed with its friction law. It is a self-check for
-the reference and for engines that share its code, and independent for all others.
+"reference": the prediction comes from the reference or its friction law, so it is a self-check for engines that share
+its code.
 """
 
 BASES: tuple[Basis, ...] = get_args(Basis)
@@ -58,7 +57,7 @@ class Verdict(Enum):
 
 
 class Grade(Enum):
-    """Precision of a claim: its error relative to the predicted quantity, see ``Claim.grade``."""
+    """Precision of a claim, see ``Claim.grade``."""
 
     EXACT = "exact"
     FINE = "fine"
@@ -73,17 +72,10 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
 
-    Parameters
-    ----------
-    numerical : float or array
-        Error in the claim's unit, estimated from the run itself (same run at another tolerance, Richardson). NaN if
-        the engine gave no number to estimate it from; the claim then differs.
-    model : float
-        Size of the first neglected term of an approximation; zero for an identity.
-    resolution : float
-        Largest total error of a conclusive agreement. With a larger error the claim may still agree to a coarser
-        grade, see ``Claim.grade``.
-
+    - ``numerical``: error in the claim's unit, estimated from the run itself (same run at another tolerance,
+      Richardson). NaN, if there is no estimate, makes the claim differ.
+    - ``model``: size of the first neglected term of an approximation; zero for an identity.
+    - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
     """
 
     numerical: FloatArray
@@ -110,45 +102,20 @@ class ErrorBudget:
 class Claim:
     """One statement about one engine (or about the theory alone).
 
-    Parameters
-    ----------
-    sentence : str
-        Statement, the same for every engine; it names the row of the matrix.
-    equation : str
-        Equation of the paper, such as "(3)"; "" if the statement is ours.
-    kind : str
-        Source of the prediction, one of ``KINDS``.
-    engine : str
-        Name of the engine, or "theory" without a simulation.
-    predicted, measured : float or array of the same shape
-        Numbers in ``unit``.
-    budget : ErrorBudget
-        Errors in the same unit.
-    parameters : mapping
-        Parameters that repeat the measurement, as numbers or words.
-    source : str
-        Origin of the parameters: a figure, or an assumption in words.
-    unit : str
-        Unit, "" for a dimensionless number.
-    note : str
-        Method of the measurement or its error estimate, if not obvious.
-    basis : str
-        Kind of evidence, one of ``BASES``. Default: "reference" for the kind "trajectory", else "algebra" without an
-        engine and "independent" with one.
-    implied_by : str
-        Sentence of a claim of the same study that implies this one for the same engine, by algebra or because both
-        use the same numbers; "" for none.
-    answers : bool
-        True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
-    named : mapping
-        Names for quotes of an element (its flat index), or of all elements (None), see ``compare.report.quotes``.
-    identity : str
-        Permanent id, such as "fig06/rests"; "" for a claim made by hand.
-    size : float or broadcastable array, optional
-        Scale of a relative error, required if the prediction is zero, see ``relative_error``.
-    axes : tuple
-        Names of the elements along each axis, () for an axis without names; () for none at all.
-
+    - ``sentence``: statement, the same for every engine; it names the row of the matrix.
+    - ``equation``: equation of the paper, such as "(3)"; "" if the statement is ours.
+    - ``engine``: name of the engine, or "theory" without a simulation.
+    - ``predicted``, ``measured``, of the same shape, and ``budget``: numbers and their errors in ``unit``.
+    - ``parameters``: numbers or words that repeat the measurement.
+    - ``source``: origin of the parameters: a figure, or an assumption in words.
+    - ``note``: method of the measurement or its error estimate, if not obvious.
+    - ``basis``: kind of evidence, by default ``usual_basis``.
+    - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
+    - ``answers``: True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
+    - ``named``: names for quotes of an element (its flat index), or of all (None), see ``compare.report.quotes``.
+    - ``identity``: permanent id, such as "fig06/rests"; "" for a claim made by hand.
+    - ``size``: scale of a relative error, broadcastable, required if the prediction is zero.
+    - ``axes``: names of the elements along each axis, () for an axis without names; () for none at all.
     """
 
     sentence: str
@@ -172,7 +139,6 @@ class Claim:
     axes: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:
-        """Turn numbers into arrays and choose the usual basis; raise ``ValueError`` for inconsistent fields."""
         for name in ("predicted", "measured", "size"):
             if (value := getattr(self, name)) is not None:
                 object.__setattr__(self, name, np.asarray(value, dtype=float))
@@ -181,7 +147,6 @@ class Claim:
         self._check()
 
     def _check(self) -> None:
-        """Raise ``ValueError`` for inconsistent fields."""
         sentence, numerical = self.sentence, self.budget.numerical
         if self.kind not in KINDS:
             raise ValueError(
@@ -221,13 +186,13 @@ class Claim:
 
     @cached_property
     def units(self) -> tuple[str, ...]:
-        """Units along the last axis if they are mixed, else the one unit."""
+        """Units along the last axis if they are mixed, else one unit."""
         if "," not in self.unit:
             return (self.unit,)
         return tuple(_unit(name) for name in self.axes[-1])
 
     def element(self, index: int) -> str:
-        """Return the name of element ``index`` (flat), such as "μN = 0.05 N, x in m"; "" without names."""
+        """Return the name of element ``index`` (flat), such as "μN = 0.05 N, x in m", or ""."""
         return self._named(np.unravel_index(index, self.predicted.shape))
 
     def elements(self) -> Iterator[str]:
@@ -244,11 +209,7 @@ class Claim:
 
     @property
     def ratio(self) -> FloatArray:
-        """Difference over budget, elementwise: at most 1 for agreement.
-
-        The ratio is 0 without a difference, even if the budget is 0. It is infinite for a difference without a
-        budget and for a missing number.
-        """
+        """Difference over budget, elementwise: at most 1 for agreement, infinite for a missing number."""
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(difference == 0.0, 0.0, difference / total)
@@ -257,7 +218,7 @@ class Claim:
 
     @cached_property
     def worst(self) -> int:
-        """Flat index of the element with the largest ratio; ties are resolved by the largest difference."""
+        """Flat index of the element with the largest ratio; the larger difference decides ties."""
         ratio = self.ratio
         nearest = np.where(ratio == np.max(ratio), self.difference, -1.0)
         return int(np.argmax(np.nan_to_num(nearest, nan=np.inf, posinf=np.inf)))
@@ -266,7 +227,7 @@ class Claim:
     def relative_error(self) -> float:
         """Largest ratio of total error to ``size``, by default the largest prediction of the same unit.
 
-        It is infinite for a size of zero, and for orders and answers because they lack a scale.
+        It is infinite for orders and answers, which lack a scale.
         """
         if self.answers or self.kind == "order":
             return math.inf
@@ -276,7 +237,6 @@ class Claim:
         return float(np.max(np.nan_to_num(relative, nan=math.inf), initial=0.0))
 
     def _size(self) -> FloatArray:
-        """Return the scale of a relative error, broadcastable to the numbers."""
         if self.size is not None:
             return self.size
         numbers = np.abs(self.predicted)
@@ -287,7 +247,7 @@ class Claim:
 
     @cached_property
     def grade(self) -> Grade | None:
-        """Finest grade that the relative error permits; None if only the resolution can decide."""
+        """Finest grade that the relative error permits, or None."""
         relative = self.relative_error
         return next((grade for grade, largest in GRADES.items() if relative <= largest), None)
 
@@ -308,7 +268,7 @@ class Claim:
 
 
 def _unit(name: str) -> str:
-    """Return the unit in the name of a component, such as "m" for "x in m"; "" without one."""
+    """Return the unit in the name of a component, such as "m" for "x in m", or ""."""
     return name.rpartition(" in ")[2] if " in " in name else ""
 
 

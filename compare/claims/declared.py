@@ -16,23 +16,15 @@ from compare.claims.prose import slug
 class Declared:
     """All properties of a claim that do not depend on the engine.
 
-    Parameters
-    ----------
-    function : callable
-        ``function(engine) -> Measured``, without an argument for a claim of the theory. It returns None if the claim
-        does not apply to the engine. For a family it also takes one of the values of ``each``.
-    sentence, equation, kind, unit, note, basis, implied_by, named
-        As in :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the member's name.
-    resolution : float, optional
-        Largest total error of a conclusive agreement; None if the measurement contains it.
-    swept : tuple of str
-        Parameters of the system that the claim varies.
-    each : mapping
-        Names and values of the members of a family; empty for a single claim.
-    duration : float
-        Approximate total duration in s of the motions of a long claim, with more weight for finer steps; 0 if the
-        claim is short. The quick level does not attempt a claim that would take too long.
-
+    - ``function``: ``function(engine) -> Measured``, or without an argument for the theory. It returns None if the
+      claim does not apply to the engine. In a family it also takes one of the values of ``each``.
+    - ``sentence``, ``equation``, ``kind``, ``unit``, ``note``, ``basis``, ``implied_by``, ``named``: as in
+      :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the member's name.
+    - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
+    - ``swept``: parameters of the system that the claim varies.
+    - ``each``: names and values of the members of a family; empty for a single claim.
+    - ``duration``: total duration in s of the motions of a long claim, with more weight for finer steps, else 0. The
+      quick level skips claims that would take too long.
     """
 
     function: Callable[..., Measured | None]
@@ -55,22 +47,22 @@ class Declared:
         return takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and the additional arguments of its function."""
+        """Yield the name of each member of the family and additional arguments of its function."""
         if not self.each:
             yield "", ()
         for name, value in self.each.items():
             yield name, (value,)
 
     def sentence_of(self, case: str) -> str:
-        """Return the sentence of one member of the family."""
+        """Return the sentence of a member of the family."""
         return self.sentence.format(case) if self.each else self.sentence
 
     def part(self, case: str) -> str:
-        """Return the selector of one member of the family, "function/case", or of the claim, "function"."""
+        """Return the selector "function/case" of a member of the family, or "function" of a single claim."""
         return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
 
     def identity(self, study: str, case: str) -> str:
-        """Return the permanent id of the claim, such as "fig06/rests"; it does not depend on other claims."""
+        """Return the permanent id of the claim, such as "fig06/rests"."""
         parts = (study, self.function.__name__.strip("_"), case)
         return "/".join(slug(part) for part in parts if part)
 

@@ -42,18 +42,7 @@ TEXT = (
 
 @dataclass(frozen=True)
 class Evidence:
-    """One quantity, computed from both formulas and independently of them.
-
-    Parameters
-    ----------
-    quantity : str
-        Name of the quantity, with its unit and the parameters.
-    exact : float
-        Value from the equations of motion.
-    printed_value, corrected_value : float
-        Values from the printed and from the corrected formula.
-
-    """
+    """One quantity from both formulas and, as ``exact``, from the equations of motion."""
 
     quantity: str
     exact: float
@@ -65,17 +54,8 @@ class Evidence:
 class Erratum:
     """A printed formula and its correction.
 
-    Parameters
-    ----------
-    equation : str
-        Number and term, such as "(13), coefficient of λ²"; or a section and its words.
-    printed, correct : str
-        Both formulas as plain text.
-    explanation : str
-        Reason for the error and derivation of the correction.
-    evidence : callable
-        Computes the numbers.
-
+    ``equation`` is a number and a term, such as "(13), coefficient of λ²", or a section and its words.
+    ``explanation`` says why the printed formula is wrong and derives the other; ``evidence`` computes numbers.
     """
 
     equation: str
@@ -86,7 +66,7 @@ class Erratum:
 
     @property
     def heading(self) -> str:
-        """Heading, such as "Equation (13), coefficient of λ²"."""
+        """Heading of the erratum."""
         return f"Equation {self.equation}" if self.equation.startswith("(") else self.equation
 
 
@@ -133,9 +113,7 @@ def _moment_of_the_expansion() -> Evidence:
     slip, rim_speed = 1j, 1.0
     mean_speed = math.hypot(abs(slip), rim_speed)
     places = 2.0 * math.pi * np.arange(16) / 16  # averages are exact: cubic at most in sine and cosine
-    along_rim = [
-        slip.real * math.sin(place) - slip.imag * math.cos(place) + rim_speed for place in places
-    ]  # ν̃_r
+    along_rim = [slip.real * math.sin(place) - slip.imag * math.cos(place) + rim_speed for place in places]
     corrected = [inverse_slip_speed(slip, rim_speed, place) for place in places]
     # The first line is ν̃_r/|ν_r| as printed, and ν̄_r/|ν_r| as corrected.
     return Evidence(

@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit  # the quantile of Student's t, without the rest of scipy.stats
+from scipy.special import stdtrit  # without the rest of scipy.stats
 
 from compare.engines import COARSENING as COARSENING
 from compare.engines import USUAL_TOLERANCE
@@ -30,15 +30,14 @@ TRUTH = 1e-13
 SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
-If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It covers the error
-unless the two errors are equal by chance to within an eighth. That includes errors that fall slowly or irregularly
-with the tolerance, as tolerance^(1/10) or from one of a few steps to the next. The change against a *larger*
-tolerance would also be 7 times the error, but it is too small if the other error is less than twice as large instead
-of 8 times. That happens for one number in twenty of the reference and one in fifty of Exudyn.
+If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
+that fall slowly or irregularly with the tolerance, unless both errors are equal by chance to within an eighth. The
+change against a *larger* tolerance is too small if its error is not even twice as large, which happens for one number
+in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
-"""Relative error of states above which events read from them may appear or vanish: a stick phase, a release."""
+"""Relative error of states above which events, such as a release, may appear or vanish."""
 
 ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
@@ -72,9 +71,8 @@ def refined(
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
     If the numbers of a row (along the last axis) are ``alike``, of one unit and size, it is also at least the largest
-    change in the row, because a single number may hardly change by chance. If the smaller tolerance changes nothing,
-    the estimate uses the next larger tolerance that does, because engines do not follow ever smaller tolerances. The
-    study "error-estimates" measures how often the estimate covers the true error, and by how much it exceeds it.
+    change in the row, because a single number may hardly change by chance. Engines do not follow ever smaller
+    tolerances, so the next larger one that changes the result is used if necessary.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
@@ -87,7 +85,7 @@ def refined(
 def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
     """Return ``errors`` with NaN replaced by infinity if the value is a number.
 
-    If the value is also missing, the error stays NaN: that is a failure, not an uncertainty.
+    If the value is missing too, the error stays NaN, a failure.
     """
     return np.where(np.isnan(errors) & np.isfinite(values), np.inf, errors)
 
@@ -95,7 +93,7 @@ def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
 def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
     """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse.
 
-    Errors of that size may add or remove a stick phase, or delay the last release.
+    Such errors may add or remove a stick phase, or delay the last release.
     """
     coarse = states.largest > COARSE * float(np.max(np.abs(states.value)))
     missing = ~np.isfinite(found.value)
@@ -105,9 +103,9 @@ def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
 def change_as_error(found: FloatArray, other: FloatArray, *, alike: bool = True) -> FloatArray:
     """Return the error of ``found`` estimated from ``other``, see ``refined``; all of the same shape.
 
-    It is infinite if only one of them is a number, because a value that depends on the tolerance is unknown.
+    It is infinite if only one of them is a number.
     """
-    with np.errstate(invalid="ignore"):  # difference of two infinite numbers
+    with np.errstate(invalid="ignore"):
         change = np.where(np.isfinite(found) ^ np.isfinite(other), np.inf, np.abs(other - found))
     numbers = np.where(np.isfinite(change), change, 0.0)
     largest = np.max(numbers, axis=-1, keepdims=True, initial=0.0) if alike and change.ndim > 0 else change
@@ -144,8 +142,8 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     """Return the order in h of ``errors`` at halved steps (shape (n,), n >= 4), its numerical and its model error.
 
     Orders observed between neighbours are a series in h, so 2·(last) − (second last) gains one power. The model error
-    is the last change of the observed orders. The numerical error is the last change of the extrapolated orders, plus
-    the effect of ``noise`` in the errors.
+    is the last change of the observed orders, the numerical error that of the extrapolated ones, plus the effect of
+    ``noise``.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0
@@ -159,10 +157,7 @@ def extrapolated_order(errors: FloatArray, noise: float) -> tuple[float, float, 
     )
 
 
-# --- Engines with a fixed step that is too long for a claim: repeated at shorter steps.
-#
-# The error of a long step may exceed the resolution of a claim. That does not count against the engine, and a shorter
-# step often decides.
+# --- Shorter steps, if the fixed step of an engine leaves a claim open
 
 SHORTER = 4.0
 """Ratio of successive steps."""
@@ -178,7 +173,7 @@ def decided(
 ) -> tuple[Answer, str]:
     """Return the engine's answer, at a shorter step if its own leaves the claim open, and a note.
 
-    An exception at the engine's own step is raised; an exception at a shorter step goes into the note.
+    An exception at a shorter step goes into the note.
     """
     began, share, note = time.perf_counter(), 1.0, ""
     answer = ask(engine)
@@ -188,7 +183,7 @@ def decided(
         began, share = time.perf_counter(), SHORTER * share
         try:
             answer = ask(replace(engine, step=engine.step / share))
-        except Exception as error:  # any error: the engine's own step succeeded
+        except Exception as error:  # the engine's own step succeeded
             return (
                 answer,
                 f"The run with 1/{share:g} of the engine's own step failed: {printable(error)}",

@@ -1,4 +1,4 @@
-"""Linearised flow of an engine, its eigenvalues from simulations, and helpers to compare eigenvalues."""
+"""Linearised flow of an engine, its eigenvalues from simulations, and their comparison."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ DIFFERENCE = 4e-3
 """Step of the central differences, as a fraction of the slip."""
 
 FLOW_TOLERANCE = 10.0 * TIGHTEST
-"""Tolerance of the simulations; their differences are small."""
+"""Tolerance of the simulations, small because of their differences."""
 
 
 def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
-    """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) turned about the axis by ``angle`` in rad."""
+    """Return ``states`` (shape (..., 4) of a pin, (..., 6) of a disc) turned about the axis by ``angle`` (rad)."""
     states, angle = np.asarray(states, dtype=float), np.asarray(angle, dtype=float)
     result = np.array(np.broadcast_to(states, np.broadcast_shapes(states.shape, (*angle.shape, 1))))
     half = result.shape[-1] // 2
@@ -37,7 +37,7 @@ def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
 def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArray]:
     """Return the indices of the components that deviate, and their scales.
 
-    Friction changes with the direction of slip, so deviations must be small compared with the slip.
+    Deviations must be small compared with the slip, because friction changes with its direction.
     """
     half, omega = len(state) // 2, system.disc_speed
     (x, y), (vx, vy) = state[:2], state[half : half + 2]
@@ -55,24 +55,13 @@ def measured_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues in 1/s of small deviations from a steady motion, and their error.
 
-    Central differences of the engine's flow over ``duration`` give the linearised flow, with two simulations for each
-    column; its eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
-    change with 2h and 4h instead, plus the estimate of ``refined`` for the tolerance, plus the tolerance itself as an
-    error of the states. The largest error counts for all eigenvalues, because a single one may be right by chance.
+    Central differences of the engine's flow over ``duration`` (s), with |Im λ|·duration < π, give the linearised
+    flow, whose eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
+    change with 2h and 4h instead, plus the estimate of ``refined``, plus the tolerance itself. The largest error
+    counts for all eigenvalues, because a single one may be right by chance.
 
-    Parameters
-    ----------
-    engine : Engine
-        The engine.
-    system : PinOnDisc or DiscOnDisc
-        The parameters. A disc has a continuous ring, so its angle drops out and five eigenvalues remain.
-    state : array of shape (4,) or (6,)
-        State of the steady motion, which must slide.
-    duration : float
-        Duration in s, short enough for |Im λ|·duration < π.
-    frame_speed : float
-        Angular velocity in rad/s of the axes that make the motion steady.
-
+    The motion must slide from ``state``, shape (4,) or (6,), and is steady in axes that turn with ``frame_speed``
+    (rad/s). A disc has a continuous ring and five eigenvalues, without that of its angle.
     """
     state = np.asarray(state, dtype=float)
     moving, size = _deviations(system, state)
@@ -134,8 +123,8 @@ def real_and_imaginary(values: Any) -> FloatArray:
 def eigenvalues_with_rounding(matrices: ArrayLike) -> tuple[ComplexArray, FloatArray]:
     """Return the eigenvalues of ``matrices`` (shape (..., n, n)) and the rounding error of each.
 
-    The error is n·ε·‖A‖, as for a backward stable algorithm, times the condition of the eigenvalue: the product of
-    the norms of its right and left eigenvectors.
+    The error is n·ε·‖A‖, as for a backward stable algorithm, times the product of the norms of the right and left
+    eigenvectors.
     """
     matrices = np.asarray(matrices, dtype=float)
     values, right = np.linalg.eig(matrices)

@@ -20,38 +20,19 @@ ONE = 0.5
 class Measured:
     """Predicted and measured values of a claim.
 
-    Parameters
-    ----------
-    predicted, value : float or array of the same shape
-        Numbers in the claim's unit.
-    error : float or broadcastable array
-        Numerical error of both, see ``ErrorBudget``.
-    model : float
-        Size of the first neglected term of an approximation.
-    resolution : float, optional
-        Largest total error of a conclusive agreement; overrides the declared one.
-    components : sequence of str
-        Names along the last axis, such as "x in m"; () for one quantity.
-    at : mapping
-        Varied quantities in the order of the other axes: a name with its unit, such as "μN in N", and the numbers or
-        words along that axis.
-    system : PinOnDisc or DiscOnDisc, optional
-        System to repeat the measurement; overrides the study's.
-    parameters : mapping
-        Additional parameters to repeat the measurement.
-    source : str
-        Origin of the parameters; overrides the study's source.
-    note : str
-        Method, if it depends on the measurement; appended to the declared note.
-    data : mapping
-        Arrays by name, for the figures.
-    named : mapping
-        Names for quotes of an element (its flat index), in addition to the declared ones.
-    size : float or broadcastable array, optional
-        Scale of a relative error, see ``Claim.relative_error``.
-    answers : bool
-        True if the numbers count yes-or-no answers, see ``answers_of``.
-
+    - ``predicted``, ``value``, of the same shape: numbers in the claim's unit.
+    - ``error``, ``model``: numerical error of both (broadcastable), and model error, see ``ErrorBudget``.
+    - ``resolution``: largest total error of a conclusive agreement; overrides the declared one.
+    - ``components``: names along the last axis, such as "x in m"; () for one quantity.
+    - ``at``: varied quantities in the order of the other axes: a name with its unit, such as "μN in N", and the
+      numbers or words along that axis.
+    - ``system``, ``source``: system to repeat the measurement, and origin of its parameters; they override the
+      study's.
+    - ``parameters``: additional parameters to repeat the measurement.
+    - ``note``: method, if it depends on the measurement; appended to the declared note.
+    - ``data``: arrays by name, for the figures.
+    - ``named``: names for quotes of an element (its flat index), in addition to the declared ones.
+    - ``size``, ``answers``: as in ``Claim``.
     """
 
     predicted: ArrayLike
@@ -72,10 +53,7 @@ class Measured:
 
     @property
     def axes(self) -> tuple[tuple[str, ...], ...]:
-        """Names along each axis, () for an axis without names.
-
-        Raises ``ValueError`` if the number of names does not fit the shape.
-        """
+        """Names along each axis, () for an axis without names; raises ``ValueError`` unless they fit the shape."""
         shape = np.shape(self.predicted)
         if not (self.at or self.components):
             return ()
@@ -103,19 +81,10 @@ def _place(name: str, value: Any) -> str:
 def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int = 0, **more: Any) -> Measured:
     """Return the measurement of a claim that must hold in all of n cases; it differs if one case certainly fails.
 
-    It is inconclusive if no case fails but more than ``may_be_open`` cases are undecided.
-
-    Parameters
-    ----------
-    margins : array of n numbers or truth values
-        Distance of each quantity from its threshold, positive if the case holds, in any unit; NaN is a failure.
-    errors : broadcastable array
-        Error of each margin; NaN if it could not be estimated, which is a failure; infinite if the margin is unknown.
-    may_be_open : int
-        Largest number of undecided cases in a conclusive claim.
-    more
-        Fields of :class:`Measured`.
-
+    It is inconclusive if no case fails but more than ``may_be_open`` are undecided. ``margins``, n numbers or truth
+    values, are the distances of quantities from their thresholds, positive if the case holds; NaN is a failure. An
+    error of NaN is a failure too, and an infinite error leaves a case undecided. ``more`` contains fields of
+    :class:`Measured`.
     """
     margins, errors = np.broadcast_arrays(_as_numbers(margins), np.asarray(errors, dtype=float))
     yes, unsure = margins > errors, (np.abs(margins) <= errors) | np.isposinf(errors)

@@ -13,7 +13,7 @@ from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc, System
 # --- Parameter sets that the paper prints.
 
 FIG4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.1)
-"""Parameters of Fig. 4, which varies ω. Fig. 6 has the same parameters with ω = 1.2 and varies the load."""
+"""Parameters of Fig. 4, which varies ω. Fig. 6 has the same with ω = 1.2 and varies the load."""
 
 CENTRED = replace(FIG4, offset=0.0)
 """Fig. 4 without offset, as (10) to (16) assume."""
@@ -83,10 +83,10 @@ def parameters_of(
 
 
 def at_each(name: str, values: ArrayLike) -> str:
-    """Return "name = a, b, c" for the note of a claim whose elements belong to these values."""
+    """Return "name = a, b, c" for the note of a claim with these elements."""
     return f"{name} = {', '.join(f'{value:g}' for value in np.ravel(values))}"
 
 
 def components_of(system: System) -> tuple[str, ...]:
-    """Return the names of the state's components with their units, such as "x in m"."""
+    """Return the components of the state with units, such as "x in m"."""
     return tuple(f"{name} in {unit}" for name, unit in COLUMNS[type(system)])

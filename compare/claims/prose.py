@@ -38,19 +38,9 @@ SECTIONS = {
 class Prose:
     """The texts of a study.
 
-    Parameters
-    ----------
-    title : str
-        Title in one line.
-    paper : str
-        Statements of the paper.
-    section : str
-        Heading of the study's group in the overview.
-    finding : str
-        Answer to a question that the paper leaves open, for the first screen; shown while all claims agree.
-    figures : mapping
-        Captions by the names of figures and animations.
-
+    ``title`` is one line, ``paper`` the statements of the paper, ``section`` the heading of the study's group in the
+    overview. The first screen shows ``finding``, the answer to a question that the paper leaves open, while all
+    claims agree. ``figures`` contains captions by the names of figures and animations.
     """
 
     title: str
@@ -93,13 +83,13 @@ class Prose:
 
 
 def _paragraphs(text: str) -> str:
-    """Return the paragraphs, each in one line, separated by empty lines."""
+    """Return the paragraphs, each in one line."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts with a caption; all rows have the length of ``header``."""
+    """A table of texts with a caption."""
 
     caption: str
     header: tuple[str, ...]

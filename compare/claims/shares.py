@@ -34,7 +34,7 @@ class Share(NamedTuple):
 
 
 def counted(ends: Ends) -> IntArray:
-    """Return the number of each end state, in the order of ``EndState``."""
+    """Return the number of each end state."""
     return np.bincount(ends.ravel(), minlength=len(EndState))
 
 
@@ -55,7 +55,7 @@ def of_counts(counts: IntArray) -> dict[EndState, Share]:
 
 def of_count(count: int, total: int, doubtful: int = 0) -> Share:
     """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may count."""
-    from scipy.stats import binomtest  # slow to import, and not needed for grids
+    from scipy.stats import binomtest  # slow import
 
     low, high = (
         binomtest(k, total).proportion_ci(CONFIDENCE, method="wilson") for k in (count, count + doubtful)
@@ -90,7 +90,6 @@ def mixed(ends: Ends) -> BoolArray:
 
 
 def _corners(chosen: np.ndarray) -> np.ndarray:
-    """Return the number of chosen corners of each cell."""
     one = chosen.astype(np.uint8)
     result: np.ndarray = one[:-1, :-1] + one[1:, :-1] + one[:-1, 1:] + one[1:, 1:]
     return result

@@ -26,7 +26,7 @@ from reference_model.systems import FloatArray, System
 Data = dict[str, FloatArray]
 
 ByEngine = Mapping[str, Data]
-"""Data of the figures by the names of the engines that produced any, and by "theory"."""
+"""Data of the figures by engine, and by "theory"."""
 
 Figures: TypeAlias = "dict[str, Figure]"
 """Matplotlib figures by the names of their captions."""
@@ -38,17 +38,9 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """Results of one study for one engine.
+    """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    Parameters
-    ----------
-    claims : tuple of Claim
-        Measured claims.
-    data : dict
-        Arrays for the figures.
-    not_simulated : str
-        Reason why claims are missing, in a sentence, see ``Engine.lacking``; "" if none is missing.
-
+    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -60,23 +52,13 @@ class Findings:
 class Recorded:
     """Recorded results for one setting of an engine, not measured in a run.
 
-    Parameters
-    ----------
-    engine, setting, version, date : str
-        Engine, its setting ("" if it has only one), its version and the date of the recording.
-    claims : tuple of Claim
-        Claims about that engine.
-    own : bool
-        True if the friction is the engine's own, False if it is a user-defined force.
-    cases : mapping
-        Name of the motion and "slip" or "stick", by the sentence of each claim.
-    law, says, adapter : str
-        Shape of the friction law, description of the setting, and file of the adapter; "" if unknown.
-    advice : str
-        Refinement for a small error, or the error of the finest run, as a clause; "" without advice.
-    whirl : float
-        Relative error of the radius of the whirl; NaN if not simulated.
-
+    - ``engine``, ``setting``, ``version``, ``date``: engine, its setting ("" if it has only one), its version and the
+      date of the recording.
+    - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
+    - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
+    - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
+    - ``advice``: refinement for a small error, or the error of the finest run, as a clause; "" without advice.
+    - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
     """
 
     engine: str
@@ -101,30 +83,16 @@ PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validation
 class Study:
     """One figure or group of statements, with claims declared by the decorator ``claim``.
 
-    Parameters
-    ----------
-    name : str
-        Name on the command line, such as "fig03".
-    prose : Prose
-        Title, statements of the paper, finding and captions.
-    only : tuple of str
-        Names of the engines that the study is about; empty for all.
-    source : str
-        Origin of the parameters: a figure, or an assumption in words.
-    system : PinOnDisc or DiscOnDisc, optional
-        System whose parameters repeat the measurements.
-    seconds : float
-        Approximate time in s for one engine; the longest work starts first to keep all cores busy.
-    quick : bool
-        True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
-    contact : bool
-        True if the study tests an engine's contact code, see ``Engine.contact_only``. For engines with that flag,
-        its claims leave out cases that depend on other code.
-    declared : list of Declared
-        Claims in the order of the report.
-    provided : dict
-        Additional functions, see ``provides``.
-
+    - ``name``: name on the command line, such as "fig03".
+    - ``only``: names of the engines that the study is about; empty for all.
+    - ``source``: origin of the parameters: a figure, or an assumption in words.
+    - ``system``: system whose parameters repeat the measurements.
+    - ``seconds``: approximate time in s for one engine; the longest work starts first to keep all cores busy.
+    - ``quick``: True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
+    - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
+      claims leave out cases that depend on other code.
+    - ``declared``: claims in the order of the report.
+    - ``provided``: additional functions, see ``provides``.
     """
 
     name: str
@@ -186,15 +154,15 @@ class Study:
         return self._provided("animations", {}, data)
 
     def tables(self) -> tuple[Table, ...]:
-        """Return the tables that the report shows in addition to claims and figures."""
+        """Return additional tables."""
         return self._provided("tables", ())
 
     def recorded(self) -> tuple[Recorded, ...]:
-        """Return recorded results of engines, which are not part of a run."""
+        """Return recorded results of engines."""
         return self._provided("recorded", ())
 
     def validations(self) -> tuple[Validation, ...]:
-        """Return comparisons with measurements, which have no verdict."""
+        """Return comparisons with measurements."""
         return self._provided("validations", ())
 
     def _provided(self, name: str, otherwise: Value, *arguments: Any) -> Value:
@@ -264,15 +232,9 @@ class Study:
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims on ``engine``, or the claims of the theory if it is None.
 
-        Parameters
-        ----------
-        engine : Engine, optional
-            The engine. If it does not support a claim, that claim is missing and the findings contain the reason.
-        few : mapping, optional
-            Arguments of claims' functions by their names, to measure fewer cases.
-        only : collection of str
-            Names of the functions to call, or "function/case" for one member of a family; empty for all.
-
+        Findings say why they leave out claims that the engine does not support. ``few`` contains arguments of claims'
+        functions by their names, to measure fewer cases. ``only`` selects functions by name, or members of a family
+        by "function/case"; empty for all.
         """
         claims: list[Claim] = []
         data: Data = {}
@@ -353,7 +315,7 @@ class Study:
         )
 
     def sentences(self) -> dict[str, str]:
-        """Return the sentences about engines, and for each its selector in ``only`` of ``measure``."""
+        """Return the sentences about engines with their selectors in ``only`` of ``measure``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 

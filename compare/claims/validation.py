@@ -1,10 +1,8 @@
 """A validation: a prediction of theory against a measured experiment.
 
-It is not a verdict. Two codes that solve the same equations agree or differ, but a law of friction describes a
-real contact only to some extent. A validation states how far, and how much of the difference the known
-uncertainties explain.
-
-ASME V&V 20-2009, Standard for Verification and Validation in Computational Fluid Dynamics and Heat Transfer.
+It is not a verdict, because a law of friction describes a real contact only to some extent. A validation states how
+far, and how much of the difference the known uncertainties explain (ASME V&V 20-2009, Standard for Verification and
+Validation in Computational Fluid Dynamics and Heat Transfer).
 """
 
 from __future__ import annotations
@@ -16,23 +14,13 @@ from dataclasses import dataclass
 class Validation:
     """Result of a comparison with measurements.
 
-    Parameters
-    ----------
-    sentence : str
-        Result in a sentence, with its numbers.
-    quantity, unit : str
-        Compared quantity, and the unit of all following numbers.
-    error : float
-        Median size of the comparison error E = S − D over all measurements.
-    error_uncertainty : float
-        Standard error of this median, from the scatter of the measurements.
-    data, input, numerical : float
-        Median standard uncertainties of the measured data, of the parameters and of the computation.
-    explained : float
-        Share of the measurements with |E| at most twice their total uncertainty.
-    count : int
-        Number of measurements.
-
+    - ``sentence``: result in a sentence, with its numbers.
+    - ``quantity``, ``unit``: compared quantity, and the unit of all following numbers.
+    - ``error``, ``error_uncertainty``: median of the comparison error E = S − D, and its standard error from the
+      scatter.
+    - ``data``, ``input``, ``numerical``: median standard uncertainties of the measured data, the parameters and the
+      computation.
+    - ``explained``: share of the ``count`` measurements with |E| at most twice their total uncertainty.
     """
 
     sentence: str

@@ -145,7 +145,7 @@ def main(arguments: Sequence[str] | None = None, studies: tuple[Study, ...] | No
 
 def status(arguments: Sequence[str], studies: tuple[Study, ...] | None = None) -> int:
     """Run the command line and return its exit status."""
-    # typer exports no base class of usage errors, and click may be its own copy or the installed one
+    # typer exports no base class of usage errors, and may use its own copy of click
     usage_error: type[Exception] = typer.BadParameter.__mro__[1]
     try:
         with printing():

@@ -36,7 +36,7 @@ class Command(TyperCommand):
     """A command that rejects repeated and empty options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Parse arguments; raise ``BadInputError`` for an empty option or one that a later one would override."""
+        """Parse arguments; raise ``BadInputError`` for an empty option or a repeated one."""
         values, _, given = self.make_parser(ctx).parse_args(args=list(args))
         for option in given:
             if option.param_type_name != "option" or option.is_flag or option.multiple:  # type: ignore[attr-defined]
@@ -57,7 +57,7 @@ class Command(TyperCommand):
 
 @contextmanager
 def printing() -> Iterator[None]:
-    """Ignore a reader such as ``head`` that closes the pipe early, so the exit status does not change."""
+    """Keep the exit status if a reader such as ``head`` closes the pipe early."""
     try:
         yield
         sys.stdout.flush()
@@ -72,7 +72,7 @@ def close_output() -> None:
 
 @contextmanager
 def refused() -> Iterator[None]:
-    """Turn a check's ``ValueError`` into ``BadInputError``; wrap checks only, because it would hide bugs."""
+    """Turn a check's ``ValueError`` into ``BadInputError``; wrap only checks, to hide no bugs."""
     try:
         yield
     except ValueError as error:
@@ -88,12 +88,12 @@ def say(sentence: str, result: int) -> int:
 # --- Progress: a bar on a terminal; elsewhere, measurements print a line from time to time.
 
 LINE_INTERVAL = 10.0
-"""Time between two lines of progress without a terminal, in s."""
+"""Time in s between two lines of progress without a terminal."""
 
 
 @contextmanager
 def _bar(*columns: Any) -> Iterator[Callable[..., None]]:
-    """Show a bar; the function sets its description and numbers, and forgets the rate so far on ``restart``."""
+    """Show a bar; the function sets its description and numbers, and forgets the rate on ``restart``."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress
 
@@ -111,7 +111,7 @@ def _bar(*columns: Any) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def measurements() -> Iterator[Callable[..., None]]:
-    """Show finished measurements, the remaining time in s and the running ones: a bar, or a line at intervals."""
+    """Show finished and running measurements and the remaining time in s: a bar, or a line at intervals."""
     if not sys.stderr.isatty():
         yield _lines()
         return

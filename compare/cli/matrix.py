@@ -110,7 +110,7 @@ def matrix(
 
 
 def _status(rows: Sequence[Row]) -> int:
-    """Return the exit status for the verdicts of the measured rows, and say why if it is not that of a verdict."""
+    """Return the exit status for the verdicts of the measured rows, and say why there is no verdict."""
     from compare.diagnosis.row import UNDECIDED
 
     if any(row.wrong for row in rows):

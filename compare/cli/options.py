@@ -76,7 +76,7 @@ def _number(name: str, text: str) -> float:
 
 
 def count(name: str, text: str, least: int, most: int) -> int:
-    """Return ``text`` as an integer; raise ``ValueError`` if it is not one from ``least`` to ``most``."""
+    """Return ``text`` as an integer; raise ``ValueError`` unless it lies between ``least`` and ``most``."""
     try:
         value = int(text)
     except ValueError:
@@ -87,7 +87,7 @@ def count(name: str, text: str, least: int, most: int) -> int:
 
 
 def cores() -> int:
-    """Return the number of cores available to this process."""
+    """Return the number of available cores."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -129,8 +129,8 @@ def with_options(
 ) -> Callable[[Callable[Concatenate[Group, Own], Value]], Callable[..., Value]]:
     """Add the fields of the dataclass ``group`` to a command as options.
 
-    The command takes a ``group`` as its first argument. In the signature that typer reads, the fields replace it.
-    ``defaults`` override defaults of the fields.
+    They replace the first argument, a ``group``, in the signature that typer reads. ``defaults`` override their
+    defaults.
     """
 
     def decorated(command: Callable[Concatenate[Group, Own], Value]) -> Callable[..., Value]:
@@ -164,7 +164,7 @@ def changed(system: System, settings: Sequence[str]) -> System:
 
 
 def changes_of(settings: Sequence[str], names: Sequence[str]) -> dict[str, str]:
-    """Return the values of settings "name=value" by name; raise ``ValueError`` for a name not in ``names``."""
+    """Return the values of settings "name=value" by name; raise ``ValueError`` for an unknown name."""
     changes: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
@@ -201,7 +201,7 @@ def studies_of(context: typer.Context, names: Sequence[str], level: str = "full"
 
 
 def check_file(path: Path) -> None:
-    """Raise ``ValueError`` if ``path`` cannot be written; do not change an existing file."""
+    """Raise ``ValueError`` if ``path`` cannot be written; change no existing file."""
     try:
         check_writable(path)
     except OSError as error:

@@ -88,7 +88,6 @@ def plan(
 def _found(
     studies: tuple[Study, ...], kinds: tuple[str, ...], seed: int | None, jobs: int
 ) -> dict[str, Planned | Failure]:
-    """Return the plan of each study, or its failure."""
     from compare.run.plan import planned
     from compare.run.workers import Workers
 

@@ -192,14 +192,14 @@ def _check_logs(folder: Path | None) -> None:
 
 
 def store_of(output: Path) -> Path:
-    """Return the folder of measurements for ``--resume``, outside the report because readers do not need it."""
+    """Return the folder of measurements for ``--resume``, outside the report."""
     return output.resolve().with_name(f"{output.resolve().name}.data")
 
 
 def _requested_studies(
     context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
 ) -> tuple[Study, ...]:
-    """Return the studies to measure; for ``--claim``, its study. Reject options that conflict with it."""
+    """Return the studies to measure; reject options that conflict with ``--claim``."""
     studies = studies_of(context, names, level)
     if claim is None:
         return studies
@@ -210,13 +210,13 @@ def _requested_studies(
 
 
 def _folder(context: typer.Context, output: Path, part: bool) -> Path:
-    """Return the folder; "report-part" is the default of a partial report, so the full one is kept."""
+    """Return the folder; a partial report does not replace a full one by default."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
 
 
 def _write(result: Run, output: Path) -> Matrix:
-    """Write the report; Ctrl-C is ignored for these seconds, so no file is incomplete."""
+    """Write the report without interruption by Ctrl-C."""
     from compare.report.write import write_report
     from compare.run.workers import interrupts_ignored
 
@@ -243,7 +243,6 @@ def _print_numbers(matrix: Matrix) -> None:
 
 
 def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
-    """Print the short diagnosis of each engine that differs or failed."""
     from compare.diagnosis.run import in_short
     from compare.report.matrix import State
 
@@ -254,7 +253,7 @@ def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status; print what is missing. ``named`` are the engines from ``--engine``."""
+    """Return the exit status and print what is missing; ``named`` are the engines from ``--engine``."""
     from compare.report.matrix import State
 
     if result.interrupted:
@@ -311,7 +310,7 @@ def _print_summary(result: Run, matrix: Matrix, index: Path) -> None:
                 lines.append(f"{line}: {cell.reason}")
             elif cell.state in (State.DIFFERS, State.INCONCLUSIVE):
                 lines.append(f"{line}: {row.sentence}")
-    for line in dict.fromkeys(lines):  # an engine gives one reason for all claims of a study
+    for line in dict.fromkeys(lines):  # one reason may apply to all claims of a study
         print(line)
     for what, failure in _failures(result).items():
         print(f"{what}: {failure}")
@@ -324,7 +323,6 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _failures(result: Run) -> dict[str, Failure]:
-    """Return failed drawings and errata, by a description to print."""
     from compare.run.workers import Failure
 
     work: dict[str, object] = {
@@ -343,7 +341,7 @@ def _failures(result: Run) -> dict[str, Failure]:
 def with_claim(studies: Sequence[Study], identity: str) -> Study:
     """Return the study of the claim ``identity``, for example "fig06/rests", without its other claims and figures.
 
-    Raises ``ValueError`` if no study declares the claim.
+    Raises ``ValueError`` if no study declares it.
     """
     found = {
         declared.identity(study.name, case): (study, declared, case)

@@ -35,10 +35,9 @@ MOST_SAMPLES = 10_000_000
 """Limit of ``--samples``; more would exhaust the memory."""
 
 PICTURES = (".png", ".pdf", ".svg")
-"""Suffixes of the pictures that ``--plot`` draws."""
 
 PATIENCE = 2.0
-"""Time in s before a terminal shows that the engine is still at work."""
+"""Time in s before a terminal shows that the engine still works."""
 
 simulate = typer.Typer(rich_markup_mode=None)
 
@@ -204,7 +203,7 @@ def _writing(path: Path, mode: str) -> Iterator[IO[Any]]:
 
 @contextmanager
 def _elapsed_time(what: str) -> Iterator[None]:
-    """Show on a terminal for how long the engine has worked; engines do not report how far they are."""
+    """Show on a terminal for how long the engine has worked."""
     if not sys.stderr.isatty():
         yield
         return
@@ -227,7 +226,7 @@ def _elapsed_time(what: str) -> Iterator[None]:
 def _simulated(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
-    """Return the motion as arrays; include its phases on request, because they may need another simulation."""
+    """Return the motion as arrays, with phases only on request, because they may need another simulation."""
     from reference_model.trajectory import Trajectory
 
     found = engine.simulate(system, state, times, tolerance=tolerance)

@@ -22,11 +22,11 @@ from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
 PER_STEP = 0.2  # largest deviation from −1 of the order of a force whose impulse per step is bounded
-SAME = 0.8  # least ratio of the creep at any rung to the largest, for creep that is the same at all rungs
+SAME = 0.8  # least ratio of the creep at any rung to the largest, if it does not depend on the rung
 HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
 
 MOST_HELD, BISECTIONS = 32.0, 20
-"""Largest load over μN that is tried on blocks at rest, and the number of bisections."""
+"""Largest load over μN on blocks at rest, and the number of bisections."""
 
 
 # --- The parts and their results.
@@ -40,7 +40,6 @@ MOTIONS = CASES | {
         system=FIG11,
     )
 }
-"""Motions for every engine that supports them."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +51,7 @@ class Creep:
 
     speed: float  # under a load of μN/2
     order: float
-    smoothing: str  # regularised friction law that explains the creep; "" if none does
+    smoothing: str  # regularised friction law that explains the creep, or ""
     epsilon: float  # its regularisation
     chatter: float = 0.0  # largest deviation of the velocity from the creep
     chatter_order: float = math.nan
@@ -62,7 +61,7 @@ class Creep:
 class History:
     """Dependence of friction on the motion before."""
 
-    static: float  # largest load over μN that friction holds from rest; 1 if it holds no load above μN
+    static: float  # largest load over μN that friction holds from rest, at least 1
     second: float  # distance of a second release over the exact one
     second_error: float
     delay: float  # of the release from rest, in s
@@ -74,10 +73,9 @@ class History:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces over the exact ones, and their errors.
+    """Forces over the exact ones, and their errors; NaN where there is none.
 
-    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2); NaN where there is
-    none.
+    They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
     """
 
     shares: FloatArray
@@ -86,7 +84,7 @@ class Shares:
 
 @dataclass(frozen=True)
 class Repeat:
-    """Difference between two equal calls, over the size of the states, and the precision that the engine declares.
+    """Difference between two equal calls, over the size of the states, and the declared precision.
 
     ``deaf`` is True if a motion does not change with the tolerance or the step.
     """
@@ -98,7 +96,7 @@ class Repeat:
 
 @dataclass(frozen=True)
 class Lag:
-    """Delay in s of the friction force behind the slip at the finest rung, its error, and its order in the step."""
+    """Delay in s of the friction force behind the slip, its error, and its order in the step."""
 
     seconds: float
     error: float
@@ -112,12 +110,12 @@ class Motion:
     errors: tuple[float, ...]  # largest over time at each rung
     estimate: float  # of the last error, from the changes between rungs
     order: float  # as in ``Creep``
-    resolution: float  # a tenth of the change due to another friction law, see ``Case``
+    resolution: float  # a tenth of the change due to another friction law
     seconds: float  # of processor time at the finest rung
 
     @property
     def error(self) -> float:
-        """Error at the finest rung, in m."""
+        """Error in m at the finest rung."""
         return self.errors[-1]
 
     @property
@@ -176,7 +174,7 @@ def scales(engine: Engine) -> Scales:
 
 
 def creep(engine: Engine) -> Creep:
-    """Return the creep of blocks under loads that friction can hold."""
+    """Return the creep under loads that friction can hold."""
     ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.PULLS))
     half, ratio = np.abs(ladder.values[:, probes.PULLS.index(0.5)]), step_ratio(engine)
     shaking = np.max(ladder.values[:, :, 1], axis=1)
@@ -213,7 +211,7 @@ def history(engine: Engine) -> History:
 
 
 def _held(engine: Engine, pulls: Sequence[float]) -> float:
-    """Return the largest load over μN that a block at rest withstands, at most ``MOST_HELD``, by bisection."""
+    """Return the largest load over μN, up to ``MOST_HELD``, that a block at rest withstands."""
     least, most = pulls[0], MOST_HELD
     for number in range(BISECTIONS):
         middle = (
@@ -237,7 +235,7 @@ def support(engine: Engine) -> Shares:
 
 
 def moments(engine: Engine) -> Shares:
-    """Return force and moment on the discs that the engine simulates, on a ring and on points."""
+    """Return force and moment on discs, on a ring and on points."""
     kinds = [points for points in (None, 6) if engine.simulates(probes.discs(points)[0][0])]
     ladder = Ladder.of(
         engine, lambda tolerance: np.vstack([probes.moments(engine, points, tolerance) for points in kinds])
@@ -303,14 +301,11 @@ PROBES: dict[str, type[Any]] = {
     "lag": Lag,
     "moments": Shares,
 }
-"""Parts that identify the friction law, and their results."""
+"""Parts that identify the friction law."""
 
 
 def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
-    """Return the measurements that apply to an engine by name: the friction law first, then the motions.
-
-    The functions can be sent to other processes.
-    """
+    """Return the measurements that apply to an engine by name: the friction law first, then the motions."""
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}

@@ -22,8 +22,8 @@ class Case:
 
     The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``
     (the coefficient times the normal force). ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A
-    ring lies on the plate with the same pressure everywhere. It has the ``radius`` R and the moment of inertia m·R²,
-    and turns with ``spin`` at the start.
+    ring lies on the plate under uniform pressure. It has the ``radius`` R and the moment of inertia m·R², and turns
+    with ``spin`` at the start.
     """
 
     name: str
@@ -64,7 +64,7 @@ def ramps() -> Iterator[Case]:
 
 
 def at_rest_after_swings(start: float, least: float) -> float:
-    """Return where a mass on a spring, released at ``start`` > 0, stops; friction holds it up to ``least`` = F/C."""
+    """Return where a mass on a spring, released at ``start`` > 0, stops; ``least`` = F/C."""
     swings = max(0, math.ceil((start - least) / (2.0 * least)))
     return float((-1.0) ** swings) * (start - 2.0 * swings * least)
 
@@ -134,7 +134,7 @@ def run(simulate: Callable[[Case, Sequence[float]], Any]) -> dict[str, Any]:
     """Return the results of all cases as a dictionary that JSON can hold.
 
     ``simulate(case, times)`` returns the states (x, y, vx, vy) at both times, shape (2, 4). It raises
-    ``NotImplementedError`` for a case that the engine does not simulate, for example the ring.
+    ``NotImplementedError`` for a case that the engine does not simulate.
     """
     results: list[dict[str, Any]] = []
     for case in cases():

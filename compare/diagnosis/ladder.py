@@ -13,7 +13,7 @@ from compare.claims.error_estimates import ROUNDING
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
 from reference_model.systems import FloatArray
 
-RUNGS = 4  # number of rungs of a ladder, the same for every engine and machine
+RUNGS = 4  # rungs of a ladder
 HALVED = 2.0  # ratio of fixed steps from rung to rung
 
 SAFETY = 3.0
@@ -21,7 +21,7 @@ SAFETY = 3.0
 
 
 def tolerances(engine: Engine) -> FloatArray:
-    """Return the tolerances of the rungs in descending order, shape (RUNGS,); the last one is the default."""
+    """Return the tolerances of the rungs, shape (RUNGS,), down to the default."""
     factor = COARSENING if engine.step is None else HALVED**engine.root
     return USUAL_TOLERANCE * factor ** np.arange(RUNGS - 1, -1, -1.0)
 
@@ -44,13 +44,13 @@ class Ladder:
 
     @property
     def error(self) -> FloatArray:
-        """Estimated distance of the finest value from the limit, shape (...), at least rounding error."""
+        """Estimated distance of the finest value from the limit, shape (...)."""
         change = np.max(np.abs(np.diff(self.values[-3:], axis=0)), axis=0)
         return np.asarray(SAFETY * change + ROUNDING * np.max(np.abs(self.finest), initial=0.0))
 
 
 def step_ratio(engine: Engine) -> float:
-    """Return the ratio of steps from rung to rung, or of tolerances if the step is not fixed."""
+    """Return the ratio of steps, or of tolerances, from rung to rung."""
     return COARSENING if engine.step is None else HALVED
 
 

@@ -22,13 +22,13 @@ from reference_model.systems import FloatArray
 Complex = NDArray[np.complex128]
 
 SIDES = (3, 4, 6, 8, 12, 16)
-"""Number of sides of the polygons, each tried with a corner on the x axis and with a side across it."""
+"""Number of sides of the polygons, each tried with a corner and with a side on the x axis."""
 
-FITS = 1e-6  # misfit over μN allowed for any law, because the force is not quite constant during the slide
+FITS = 1e-6  # misfit over μN allowed for any law, because the force varies a little
 DISTINCT = 3.0  # least ratio of the second-best misfit to the best, and of a reported deviation to its error
 
 NEAR, FAR = 1e-3, 100.0
-"""Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit to it."""
+"""Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def _against(slip: complex) -> complex:
 
 
 def _polygon(sides: int, tilt: float, slip: complex) -> complex:
-    """Return the corner nearest to the direction opposite to the slip; the first corner is at ``tilt`` in rad."""
+    """Return the corner nearest to the direction opposite to the slip; the first corner is at ``tilt`` (rad)."""
     step = 2.0 * math.pi / sides
     return cmath.rect(1.0, tilt + step * round((cmath.phase(-slip) - tilt) / step))
 
@@ -79,14 +79,14 @@ class Friction:
 
     shape: str  # name of the law in ``SHAPES``
     strength: float  # ratio of the fitted to the nominal μ
-    angle: float  # counterclockwise rotation of the force from the law's direction, in rad
+    angle: float  # rotation of the force from the law's direction, in rad
     error: float  # of the measured force over μN; also that of ``strength`` and ``angle``
     misfit: float  # largest difference between the forces, over μN
-    sure: bool  # True if this law fits and no other law fits nearly as well
+    sure: bool  # no other law fits nearly as well
     along: float = math.nan  # μ along the first axis of an ellipse, over the nominal μ
     across: float = math.nan
     axis: float = math.nan  # direction of that axis in rad
-    per_step: float = math.nan  # largest impulse of a step in N s over μN, if it does not depend on the step
+    per_step: float = math.nan  # largest impulse of a step in N s over μN, if independent of the step
 
     @property
     def fits(self) -> bool:
@@ -95,11 +95,11 @@ class Friction:
 
     @property
     def coulomb(self) -> bool:
-        """True if friction is Coulomb's cone with the nominal μ to 10 %, so other probes can be compared with it."""
+        """True if friction is Coulomb's cone with the nominal μ to 10 %."""
         return self.sure and self.shape == CONE and abs(self.strength - 1.0) < 0.1
 
     def force(self, slips: Complex) -> Complex:
-        """Return the force over μN for slip directions of unit length, shape (n,)."""
+        """Return the force over μN for unit slips, shape (n,)."""
         if self.shape == ELLIPSE:
             return _ellipse(np.array([self.along, self.across, self.axis]), slips)
         shape, size = next((s, s.sizes[self.shape]) for s in SHAPES if self.shape in s.sizes)
@@ -126,7 +126,7 @@ def fitted(forces: FloatArray, error: float) -> Friction:
 
 
 def _ellipse(numbers: FloatArray, slips: Complex) -> Complex:
-    """Return the force with the largest dissipation in an ellipse with the semi-axes and direction ``numbers``."""
+    """Return the force of largest dissipation in an ellipse with semi-axes and direction ``numbers``."""
     turn = np.exp(1j * numbers[2])
     along = slips / turn
     x, y = numbers[0] ** 2 * along.real, numbers[1] ** 2 * along.imag
@@ -135,7 +135,7 @@ def _ellipse(numbers: FloatArray, slips: Complex) -> Complex:
 
 
 def _as_ellipse(slips: Complex, measured: Complex, error: float, misfit: float) -> Friction | None:
-    """Return an ellipse if it fits much better than the other laws, whose best ``misfit`` is given."""
+    """Return an ellipse if it fits much better than the best ``misfit`` of the other laws."""
 
     def off(numbers: FloatArray) -> FloatArray:
         rest = measured - _ellipse(numbers, slips)
@@ -164,7 +164,7 @@ def _as_ellipse(slips: Complex, measured: Complex, error: float, misfit: float) 
 
 
 def _fit(shape: Shape, slips: Complex, measured: Complex) -> tuple[Shape, complex, float]:
-    """Return the shape, the complex factor of best fit, and the largest remaining difference."""
+    """Return the best shape, its complex factor, and the largest remaining difference."""
     law = np.array([shape.direction(complex(slip)) for slip in slips])
     factor = complex(np.vdot(law, measured) / np.vdot(law, law)) or 1e-300
     return shape, factor, float(np.max(np.abs(measured - factor * law)))
@@ -197,7 +197,7 @@ SMOOTHING_FITS = 0.2  # largest relative misfit of an identified regularisation
 
 
 def smoothing_of(creep: FloatArray) -> tuple[str, float]:
-    """Return the regularisation that explains the creep speeds under ``PULLS`` and its ε in m/s, else "" and NaN."""
+    """Return the regularisation that explains the creep under ``PULLS`` and its ε in m/s, else "" and NaN."""
     if not np.all(creep > 0.0):
         return "", math.nan
     pulls = np.array(PULLS)

@@ -1,8 +1,7 @@
 """Short motions that reveal the friction force, its history, the support and the moment of a disc.
 
-The change of momentum gives the friction force without a friction law or an exact solution. A block that slides
-straight on a plane at rest is decelerated by a constant force. Steps then have no error, so any step distinguishes
-cone, box and pyramid.
+The change of momentum gives the friction force without a friction law or an exact solution. A constant force
+decelerates a block that slides straight on a plane at rest, so any step distinguishes cone, box and pyramid.
 """
 
 from __future__ import annotations
@@ -23,15 +22,12 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 PLANE = np.array([1.0, 1j])
 
 HEADINGS = np.radians(np.arange(4.0, 364.0, 15.0))
-"""Directions of slip in rad; no direction is equally close to two axes of a polygon with up to 16 sides."""
+"""Directions of slip in rad, none equally close to two axes of a polygon with up to 16 sides."""
 
 FRICTION = 0.2  # μN in N for a mass of 1 kg
 
 WEAK = 1e-5
-"""Stiffness in N/m for a mass of 1 kg: its force is small, and the momentum balance accounts for it.
-
-It is not smaller because engines may derive a characteristic speed from μN and the natural frequency.
-"""
+"""Stiffness in N/m for a mass of 1 kg; engines may derive a characteristic speed from it and μN."""
 
 SLIDE = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
 SPEED = 1.0  # speed of sliding blocks, in m/s
@@ -42,13 +38,13 @@ SETTLES_FOR = 0.05
 SLIDES_FOR = 0.1
 """Duration in s: friction removes 1/50 of the speed, less than the smallest component across an axis."""
 
-PANELS = 32  # number of intervals for the integral of friction with a direction that changes
-FEWEST_PANELS = 4  # the same at the coarsest rung, because longer steps than an interval are not possible
+PANELS = 32  # intervals for the integral of friction with a direction that changes
+FEWEST_PANELS = 4  # the same at the coarsest rung, where steps may not exceed an interval
 CHECKED_FOR = 1.0  # duration in s of the first check
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how far a block slides and how far a block moves that should rest: each found and exact, in m."""
+    """Return how far a block slides, and how far one at rest moves: each found and exact, in m."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     slid = engine.simulate(SLIDE, sliding, times).states[-1]
@@ -59,15 +55,15 @@ def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float
 
 # --- Friction force against mass, load, speed, heading and place.
 
-DRAWS, TURNING_DRAWS = 48, 24  # number of combinations on a plane at rest and on a turntable
+DRAWS, TURNING_DRAWS = 48, 24  # combinations on a plane at rest and on a turntable
 
 MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
-"""Ranges in kg, m/s and rad/s. Loads follow, because friction may remove little of the speed."""
+"""Ranges in kg, m/s and rad/s; they limit the loads, because friction may remove little of the speed."""
 
 SPENT = 0.05
-"""Largest share of the slip that friction may remove; otherwise the probe is repeated with a smaller load."""
+"""Largest share of the slip that friction may remove; the probe is repeated with smaller loads."""
 
-WEAKER, MOST_WEAKER = 10.0, 7  # factor of the load from repetition to repetition, and their largest number
+WEAKER, MOST_WEAKER = 10.0, 7  # factor of the load between repetitions, and their largest number
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +78,7 @@ class Push:
     def of(
         cls, mass: float, load: float, slip: complex, place: complex = 0j, disc_speed: float = 0.0
     ) -> Push:
-        """Return a slide with the slip velocity ``slip`` in m/s at ``place`` in m."""
+        """Return a slide with the velocity ``slip`` (m/s) at ``place`` (m)."""
         system = replace(SLIDE, mass=mass, stiffness=WEAK * mass, friction_force=load, disc_speed=disc_speed)
         return cls(system, place, slip + 1j * disc_speed * place)
 
@@ -96,7 +92,7 @@ class Push:
         return replace(self, system=replace(self.system, friction_force=self.system.friction_force / factor))
 
     def times(self, panels: int) -> FloatArray:
-        """Return the start in s and the ends of the intervals of the measurement; a straight slide has two."""
+        """Return the start in s and the ends of the intervals; a straight slide has two."""
         panels = panels if self.system.disc_speed else 2
         return np.concatenate(([0.0], SETTLES_FOR + np.linspace(0.0, self.lasts, panels + 1)))
 
@@ -112,7 +108,7 @@ def headings() -> list[Push]:
 
 
 def draws(turning: bool) -> list[Push]:
-    """Return slides whose masses, speeds, loads, headings and places fill their ranges (a Latin hypercube)."""
+    """Return slides that fill the ranges of mass, speed, load, heading and place (a Latin hypercube)."""
     number, random = (TURNING_DRAWS if turning else DRAWS), np.random.default_rng(1)
     levels = (np.array([random.permutation(number) for _ in range(7)]) + random.random((7, number))) / number
     found = []
@@ -138,7 +134,6 @@ FORCE, SLIP, RADIAL, CONDITIONS, BEGUN, NOISE, LEFT = (
     13,
     14,
 )
-"""Columns of ``slides``."""
 
 
 def slides(
@@ -174,7 +169,7 @@ def slides(
 
 
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
-    """Return the slides with loads so small that friction removes little of the slip, if there are such loads."""
+    """Return the slides with loads so small that friction removes little of the slip, if possible."""
     found, saturated = list(pushes), list(range(len(pushes)))
     for _ in range(MOST_WEAKER):
         left = slides(engine, [found[i] for i in saturated], tolerance)[:, LEFT]
@@ -196,15 +191,15 @@ NEARLY, BEYOND = 0.99, (1.001, 1.01, 1.05, 1.2)
 PULLED_FOR = 4.0  # duration in s; the creep speed is measured in the second half
 
 LOOKS = 16
-"""Number of samples of the velocity in the second half; a block that chatters has other velocities than its mean."""
+"""Number of samples of the velocity in the second half, because a block may chatter."""
 
 
 def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
-    """Return mean speed, largest deviation from it, and mean acceleration of pulled blocks, shape (n, 4).
+    """Return mean speed, largest deviation, mean acceleration and middle velocity of pulled blocks, shape (n, 4).
 
-    The fourth column is the velocity at the middle of the time. All refer to the second half, in m/s and m/s².
+    All refer to the second half of the time, in m/s and m/s².
     """
-    # an offset so large that a displacement of 1 m hardly changes the load
+    # so large that a displacement of 1 m hardly changes the load
     blocks = [replace(SLIDE, offset=share * FRICTION / WEAK) for share in pulls]
     times = np.concatenate(([0.0], PULLED_FOR * np.linspace(0.5, 1.0, LOOKS + 1)))
     runs = engine.simulate_many([(block, np.zeros(4), times) for block in blocks], tolerance=tolerance)
@@ -219,15 +214,12 @@ def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArr
 SWING = PinOnDisc(mass=1.0, stiffness=4.0, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
 """A block on a spring; μN stretches the spring by 5 cm."""
 
-SECOND_PULL = 1.03  # load over μN at the second release, after a swing that starts at a load larger by 2
+SECOND_PULL = 1.03  # load over μN at the second release
 RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
-    """Return how far the block moves after its second release, and its delay in s, shape (2,).
-
-    The distance is relative to the exact one: 1 for Coulomb friction, 0 if the block remains at rest.
-    """
+    """Return how far the block moves after its second release, over the exact distance, and its delay in s."""
     stretch = FRICTION / SWING.stiffness
     turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
     start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
@@ -238,7 +230,7 @@ def second_release(engine: Engine, tolerance: float) -> FloatArray:
 
 
 def at_rest(engine: Engine, tolerance: float) -> float:
-    """Return the largest creep speed in m/s of a block close to release and of one that came to rest from a slide.
+    """Return the largest creep speed in m/s of a block close to release and of one at rest after a slide.
 
     The slide starts across a pull of μN/2.
     """
@@ -253,13 +245,13 @@ def at_rest(engine: Engine, tolerance: float) -> float:
 TURN = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=0.02, disc_speed=1.0, offset=0.0)
 
 TURNS_FOR = 1.0
-"""Duration in s. The slip of a pin that leaves the axis radially rotates as the speed of the disc under it grows."""
+"""Duration in s. The slip of a pin that leaves the axis radially turns with the speed of the disc below."""
 
 
 def lag(engine: Engine, tolerance: float) -> float:
     """Return the delay in s of the friction direction behind the slip; 0 for Coulomb friction.
 
-    It is the missing momentum over the change of momentum due to a shift in time, along the direction of the latter.
+    It is the missing momentum over the change of momentum due to a shift in time, along the latter.
     """
     times = SETTLES_FOR + np.linspace(0.0, TURNS_FOR, PANELS + 1)
     run = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), np.concatenate(([0.0], times)), tolerance=tolerance)
@@ -276,7 +268,7 @@ def lag(engine: Engine, tolerance: float) -> float:
 
 # --- The support without friction, and the moment of a disc.
 
-SMOOTH = replace(SLIDE, friction_force=1e-9)  # a block with almost no friction; some engines cannot omit it
+SMOOTH = replace(SLIDE, friction_force=1e-9)  # some engines need friction
 
 SUPPORTS = {
     "spring force": (replace(SMOOTH, stiffness=1.0), (1.0, 0.5, 0.0, 0.0)),

@@ -49,7 +49,7 @@ class Row:
 
     @functools.cached_property
     def remarks(self) -> tuple[Remark, ...]:
-        """Findings about friction, the support and the motions, the cause of others first."""
+        """Findings about friction, the support and the motions, causes first."""
         law, found = self.law, [*wording.of_repeat(self.repeat)]
         if self.scales is not None and (text := speed_limit(self.scales)):
             found.append(Remark(sentence(text), True, MOTION))
@@ -89,7 +89,7 @@ class Row:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """Diagnosis in a few sentences: the verdict over everything, then the other findings."""
+        """Diagnosis in a few sentences, the verdict first."""
         decisive = True if self.verdict == WRONG else None
         first = next((remark for remark in self.remarks if remark.wrong is decisive), None)
         said = [remark.text for remark in self.remarks if remark is not first]
@@ -118,12 +118,11 @@ class Row:
 
     @property
     def _refined(self) -> str:
-        """Quantity that decreases from rung to rung: "tolerance" or "step"."""
         return "tolerance" if math.isnan(self.step) else "step"
 
     @property
     def _least_speed(self) -> float:
-        """Speed in m/s below which a block is at rest: that of an exact engine, or of noise in the states."""
+        """Speed in m/s below which a block is at rest, by noise in the states."""
         noise = max(self.repeat.difference, self.repeat.declared) if self.repeat is not None else 0.0
         return (RESTS + noise) * SPEED
 
@@ -138,21 +137,21 @@ class Row:
 
     @property
     def wrong(self) -> bool:
-        """True if a deviation was found that persists at smaller steps."""
+        """True if a deviation persists at smaller steps."""
         return self.verdict == WRONG
 
 
 # --- The figure of the matrix: error of each engine in each motion against the rung.
 #
-# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due to
-# another friction law.
+# Each rung halves a fixed step and reduces a tolerance to an eighth. The dotted line is a tenth of the change due
+# to another friction law.
 
 MARKERS = "os^Dvx+*"
-LEAST = 1e-16  # smallest plotted error in m; smaller errors are drawn there
+LEAST = 1e-16  # smallest plotted error in m
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """Return a figure with a panel for each simulated motion and a line for each engine."""
+    """Return a figure with a panel for each motion and a line for each engine."""
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
     columns = min(4, len(names))
     figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
@@ -175,12 +174,12 @@ def drawn(rows: Sequence[Row]) -> Figure:
 
 
 def drawn_forces(rows: Sequence[Row]) -> Figure:
-    """Return a figure of the measured friction force, with its error, against each variable of ``Scales``."""
+    """Return a figure of the measured friction force against each variable of ``Scales``."""
     figure, panels = new_figure(ncols=len(VARIABLES), width=15.0, height=3.5)
     wide = max(float(np.ptp(np.log10(np.hypot(*row.scales.forces.T)))) for row in rows if row.scales) > 1.0
     for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
         scales = row.scales
-        assert scales is not None  # by the caller
+        assert scales is not None
         sizes = np.hypot(*scales.forces.T)
         for panel, values in zip(panels, np.abs(scales.conditions).T, strict=True):
             moves = values > 0.0
@@ -200,13 +199,13 @@ def drawn_forces(rows: Sequence[Row]) -> Figure:
 
 
 def write_rows(rows: Sequence[Row], folder: Path) -> None:
-    """Write the rows available so far to ``folder``/matrix.json; the file is replaced atomically."""
+    """Write the available rows to ``folder``/matrix.json; the file is replaced atomically."""
     content = [as_json(row) | {"sentences": list(row.sentences), "wrong": row.wrong} for row in rows]
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def write_pictures(rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write matrix and friction as svg and png, if there is something to draw; return the paths of the latter."""
+    """Write matrix and friction, if there is something to draw, as svg and png; return the paths of the latter."""
     figures: dict[str, Figure] = {}
     wrong = [row for row in rows if row.scales is not None and row.verdict != RIGHT]
     with paper_style():

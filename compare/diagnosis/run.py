@@ -1,4 +1,4 @@
-"""Diagnosis of engines: parts run in worker processes, and each row is yielded when its parts are complete."""
+"""Diagnosis of engines by parts that run in worker processes."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ def diagnosed(
 ) -> Iterator[Row]:
     """Yield the row of each engine in order of completion; an engine that supports no part has an empty row.
 
-    A row reports parts that exceed ``limit`` in s. ``jobs`` is the number of processes. ``progress`` is called with
-    the number of finished parts, the total number and the name of the last part.
+    A row reports parts that exceed ``limit`` (s). ``progress`` is called with the number of finished parts, the total
+    number and the name of the last part.
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}
@@ -56,8 +56,8 @@ def diagnosed(
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
     """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
 
-    If the engine has no result, measuring it is useless, and its row takes the place of the sentence. The sentence
-    is "" for an engine that does not simulate blocks.
+    The row of an engine without a result takes the place of the sentence, which is "" for an engine that does not
+    simulate blocks.
     """
     for engine in engines:
         found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))
@@ -87,7 +87,7 @@ def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
 
 
 def _probed(engine: Engine, workers: Workers) -> Row:
-    """Return the results of the probes; stop after the first part without a result."""
+    """Return the results of the probes up to the first part without a result."""
     row, parts = _empty(engine), parts_of(engine)
     for part in PROBES:
         if part in parts and not row.gaps:
@@ -96,7 +96,7 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, or the reason if the engine does not support it."""
+    """Return one part of an engine's diagnosis, or the reason why it is not supported."""
     return _or_reason(parts_of(engine)[part], engine)
 
 
@@ -119,14 +119,14 @@ def _with(row: Row, part: str, found: Any, seconds: float = 0.0) -> Row:
         return replace(row, not_simulated=(*row.not_simulated, part))
     if isinstance(found, Motion):
         return replace(row, motions=row.motions | {part: found})
-    return replace(row, **{part: found})  # the names in PROBES are fields of the row
+    return replace(row, **{part: found})  # names in PROBES are fields of the row
 
 
-SLACK = 1e-6  # stiffness in N/m of a spring so long that it pulls with a constant force
+SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:
-    """Return the engine's results in ``friction_benchmark``; a constant force is that of a long, weak spring."""
+    """Return the engine's results in ``friction_benchmark``; a long, weak spring gives constant forces."""
 
     def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
         x, y, vx, vy = case.start
@@ -162,7 +162,7 @@ def recorded_rows() -> tuple[Row, ...]:
 
 
 def row_of(recording: Recording) -> Row:
-    """Return the row of a recording; recordings of our own engines contain no friction law."""
+    """Return the row of a recording."""
     motions = {name: _motion(runs, name) for name, runs in recording.runs.items()}
     probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
     version = f"{recording.version}, recorded on {recording.recorded}"
@@ -171,7 +171,7 @@ def row_of(recording: Recording) -> Row:
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:
-    """Return the last rungs of a recorded ladder, with the same error estimate as in the report."""
+    """Return the last rungs of a recorded ladder, with the report's error estimate."""
     ratio = float(runs[-2, TOLERANCE] / runs[-1, TOLERANCE]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),

@@ -17,10 +17,10 @@ from reference_model.systems import FloatArray
 LEAST = 1e-6
 """Smallest deviation of the force over μN that counts: friction removes down to 1e-4 of the speed, see ``probes``."""
 
-KEEPS = 0.98  # share of the initial speed below which a block has lost it by something other than friction
-GROWS = 1.1  # least growth of a force that is too small, from rung to rung, that counts as convergence
+KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
+GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
 POWER_FITS = 0.02  # largest relative misfit of a power law
-CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations that it explains
+CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
 FEWEST = 3  # least number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
 
@@ -39,7 +39,7 @@ class Scales:
     slips: FloatArray  # (n, 2): mean direction of slip
     radial: FloatArray  # (n, 2): mean direction from the axis to the body
     errors: FloatArray  # (n,): of the forces
-    speeds: FloatArray  # (n, 2): initial speed in m/s, given and as it follows when the measurement begins
+    speeds: FloatArray  # (n, 2): initial speed in m/s, given and as measured
 
     def ratios(self, law: Friction) -> NDArray[np.complex128]:
         """Return measured over expected forces, NaN where a law other than the cone has no fixed direction."""
@@ -77,7 +77,7 @@ def speed_limit(scales: Scales) -> str:
 
 @dataclass(frozen=True)
 class Deviation:
-    """A deviation in words, whether a known law explains it, and whether it falls with the step or the tolerance."""
+    """A deviation in words, whether a known law explains it, and whether it falls with the step."""
 
     text: str
     explained: bool
@@ -85,7 +85,7 @@ class Deviation:
 
 
 def deviation(scales: Scales, law: Friction) -> Deviation | None:
-    """Return how the force deviates from ``law`` over the ranges; None if it does not."""
+    """Return how the force deviates from ``law`` over the ranges, or None."""
     ratios = scales.ratios(law)
     keep = np.isfinite(ratios) & (scales.speeds[:, 1] >= KEEPS * scales.speeds[:, 0])
     ratios, conditions, errors = ratios[keep], scales.conditions[keep], scales.errors[keep]
@@ -123,7 +123,7 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
 
 
 def blind(scales: Scales) -> str:
-    """Return a description of friction that ignores slip along the radius, else ""."""
+    """Describe friction that ignores slip along the radius, else return ""."""
     at_rest = scales.conditions[:, DISC_SPEED] == 0.0
     force, slip, radial = ((one @ PLANE)[at_rest] for one in (scales.forces, scales.slips, scales.radial))
     acts, slides = force * np.conj(radial), slip * np.conj(radial)
@@ -134,7 +134,7 @@ def blind(scales: Scales) -> str:
 
 
 def _power(conditions: FloatArray, sizes: FloatArray) -> str:
-    """Return a description of a force that is a power of mass, load or speed, else ""."""
+    """Describe a force that is a power of mass, load or speed, else return ""."""
     if not np.all(sizes > 0.0):
         return ""
     logs = np.log(conditions[:, : SPEED + 1])
@@ -159,7 +159,7 @@ FALLING: dict[str, Curve] = {
 
 
 def _of_speed(conditions: FloatArray, sizes: FloatArray, errors: FloatArray) -> str:
-    """Return a description of a force that depends on the slip speed alone, else ""."""
+    """Describe a force that depends on the slip speed alone, else return ""."""
     allowed = CURVE_FITS * np.maximum(np.abs(sizes), 0.1) * min(1.0, float(np.ptp(sizes))) + DISTINCT * errors
     regularised = {one.name: one.share for one in SMOOTHINGS}
     found = [
@@ -198,7 +198,7 @@ def _fit(
 
 
 def _thresholds(conditions: FloatArray, sizes: FloatArray, wrong: NDArray[np.bool_]) -> str:
-    """Return a description of deviations beyond a threshold of one or several variables, else ""."""
+    """Describe deviations beyond a threshold of one or several variables, else return ""."""
     sides = []
     for name, unit, values in zip(VARIABLES, UNITS, np.abs(conditions).T, strict=True):
         right = values[~wrong & (values > 0.0)]

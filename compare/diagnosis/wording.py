@@ -15,21 +15,20 @@ from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 
 LEAST_DEVIATION = 1e-7  # smallest reported relative deviation of a force or its direction
-FALLS = 0.3  # order in the step above which a quantity counts as decreasing with it
+FALLS = 0.3  # order in the step above which a quantity decreases with it
 RESTS = 1e-9  # ratio of speed to sliding speed below which a block is at rest
 
 LEAST_LAG = 1e-6
 """Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
 
-STEPS = (0.2, 3.0)  # range of lags, in steps, that are reported in steps
-LEAST_SHARE = 1e-6  # smallest reported relative deviation of a distance, or of force and moment on a disc
+STEPS = (0.2, 3.0)  # range of lags that are reported in steps
+LEAST_SHARE = 1e-6  # smallest reported relative deviation of a distance, force or moment
 
 ALIKE = 0.1
-"""Largest spread of the forces of the support that a wrong mass explains, and deviation of a force that another
-explains, relative to the larger deviation."""
+"""Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
 
-SAME_DELAY = 0.2  # largest relative difference of the delays of two late releases
-CHATTERS = 3.0  # least ratio of the velocity of a block that chatters to its creep
+SAME_DELAY = 0.2  # largest relative difference of equal delays
+CHATTERS = 3.0  # least ratio of velocity to creep of a block that chatters
 
 MOTION, MASS = "Wrong motion", "Wrong mass"
 """Beginnings of the verdict of an engine whose friction may be right."""
@@ -94,7 +93,6 @@ def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: s
 
 
 def _cause(law: Friction) -> str:
-    """Return the sentence on how a law differs from Coulomb's, or ""."""
     deviations = _deviations(law)
     if law.shape == ELLIPSE:
         return (
@@ -126,7 +124,7 @@ def _deviations(law: Friction) -> list[str]:
 
 
 def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
-    """Yield whether a block that should rest creeps or chatters, faster than ``least`` m/s."""
+    """Yield whether a block at rest creeps or chatters, faster than ``least`` m/s."""
     chatters = creep.chatter > max(least, CHATTERS * abs(creep.speed))
     if not chatters and abs(creep.speed) < least:
         yield Remark("A block loaded below μN stays at rest.", False)
@@ -145,7 +143,7 @@ def of_creep(creep: Creep, refined: str, least: float) -> Iterator[Remark]:
 
 
 def of_history(history: History, explained: bool, least: float) -> Iterator[Remark]:
-    """Yield how friction depends on the motion before; ``explained`` if another finding may be the reason."""
+    """Yield how friction depends on earlier motion; ``explained`` if another finding may be the reason."""
     once, twice = history.delay, history.second_delay
     allowed = 2.0 * history.delay_error + history.second_delay_error + SAME_DELAY * once
     if explained:
@@ -168,7 +166,7 @@ def of_history(history: History, explained: bool, least: float) -> Iterator[Rema
 
 
 def of_support(support: Shares) -> list[Remark]:
-    """Return the forces of the support that are wrong; an equal factor of all is that of the mass."""
+    """Return the wrong forces of the support; an equal factor of all is that of the mass."""
     off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
     farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
     if np.all(off) and farthest and float(np.ptp(support.shares)) < ALIKE * abs(1.0 / farthest - 1.0):
@@ -191,7 +189,7 @@ def of_repeat(repeat: Repeat | None) -> list[Remark]:
 
 
 def of_moments(moments: Shares, law: Friction | None) -> Iterator[Remark]:
-    """Yield the errors of force and moment on discs that are not those of the law."""
+    """Yield wrong forces and moments on discs."""
     least = LEAST_SHARE
     if law is not None:
         least += 2.0 * (DISTINCT * law.error + abs(law.strength - 1.0))

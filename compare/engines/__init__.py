@@ -1,19 +1,16 @@
 """Engines of the comparison, each with the kinds of systems that it simulates.
 
-A study of a single system calls ``engine.simulate``. If the engine does not simulate the system, the report says
-"not simulated" in place of the claims, which is neither a pass nor a failure. A study of several systems measures
-those that the engine simulates and reports the others::
+A study of a single system calls ``engine.simulate``. If the engine does not simulate it, the report says "not
+simulated", which is neither a pass nor a failure. A study of several systems measures some and reports the others::
 
     mine = [disc for disc in discs if engine.simulates(disc)]
     return Findings(claims_of(mine), data_of(mine), not_simulated=engine.lacking(discs))
-
-Every trajectory is checked before a study sees it: requested times, shapes and finite numbers.
 """
 
 import os
 
-# A user's ~/.exudyn/config.json would change the results. Exudyn reads it on import, which always follows this line
-# because every study imports this package. Child processes inherit the setting.
+# A user's ~/.exudyn/config.json, which Exudyn reads on import, would change the results. Child processes inherit the
+# setting.
 os.environ["EXUDYN_NO_USER_SETTINGS"] = "1"
 
 from compare.engines.answer import BadTrajectoryError

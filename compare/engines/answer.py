@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Phase, Trajectory
 
-PHASES = ("slip", "pivot", "stick")  # kinds of phases
+PHASES = ("slip", "pivot", "stick")
 
 TIME_ROUNDING = 1e-12
 """Largest relative difference between times of one grid that were summed in different order."""
 
-REAL = "fiu"  # NumPy's kinds of real numbers, without strings and Booleans
+REAL = "fiu"  # NumPy's kinds of real numbers
 
 
 class BadTrajectoryError(RuntimeError):
@@ -77,7 +77,7 @@ def _is_real(value: object, shape: tuple[int, ...]) -> bool:
 
 
 def as_many_as(answers: object, asked: int) -> list[object]:
-    """Return ``answers`` of ``simulate_many`` as a list; raise ``BadTrajectoryError`` unless there are ``asked``."""
+    """Return ``answers`` as a list; raise ``BadTrajectoryError`` unless there are ``asked``."""
     if isinstance(answers, Trajectory) or not isinstance(answers, Iterable):
         raise TypeError(
             f"simulate_many() returned {reprlib.repr(answers)}: it must be a list of trajectories"

@@ -27,16 +27,13 @@ KINDS = {
     "points": "a disc on single points",
     "ring": "a disc on a continuous ring",
 }
-"""Kinds of systems that an engine may simulate, with their descriptions.
-
-A block is a pin on a disc at rest, so every engine that simulates pins simulates blocks.
-"""
+"""Kinds of systems that an engine may simulate. A block is a pin on a disc at rest."""
 
 EVERY_KIND = tuple(KINDS)
 
 
 LEAST_STEP = 1e-9
-"""Shortest fixed step in s; the studies' motions last 10 s and more, which would take over 10¹⁰ steps."""
+"""Shortest fixed step in s: the studies' motions, 10 s and more, would take over 10¹⁰ steps."""
 
 COARSE_STEP = 30.0
 """Coarseness of a fixed step, see ``StatesOnly``; a contact stuck along tangents creeps at ωh/2 of its speed."""
@@ -45,8 +42,8 @@ COARSE_STEP = 30.0
 class Simulate(Protocol):
     """The one function that an engine must implement.
 
-    ``tolerance`` is the required accuracy. Every approximation of the engine (step, iteration, regularised friction
-    law) must improve with it, because errors are estimated by tightening it.
+    Every approximation of the engine (step, iteration, regularised friction law) must improve with ``tolerance``,
+    because errors are estimated by tightening it.
     """
 
     def __call__(
@@ -64,48 +61,28 @@ class UnsupportedSystemError(ValueError):
 class Engine:
     """An engine's name, its ``simulate``, and its capabilities.
 
-    Parameters
-    ----------
-    name : str
-        Name on the command line.
-    function : callable
-        The engine's ``simulate``; a function of an importable module if several processes are to use it.
-    kinds : tuple of str
-        Systems that ``function`` simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
-        disc on single points), "ring" (a disc on the continuous ring).
-    sticks : bool
-        True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds no
-        stick, and which do not start at rest on the master disc.
-    nonlinear : bool
-        True if it simulates supports that harden or have a stop.
-    phases : bool
-        True if its trajectories contain the stick phases. Otherwise, and for a trajectory without phases, stick is
-        found from the states, see ``compare.engines.stick``.
-    precision : float
-        Error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for single
-        precision. See ``compare.engines.precision``.
-    step : float, optional
-        Step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function`` then
-        takes ``step`` in place of ``tolerance``.
-    order : float
-        Order of the error in a fixed step.
-    kin : str
-        Name of the engine whose code it shares; neither is independent evidence for the other.
-    contact_only : bool
-        True if it shares everything except the contact with its kin. It is then measured only in studies of the
-        contact, see ``Study.contact``, unless it is requested by name.
-    version : str
-        The engine's own version.
-    about : str
-        One or two sentences for readers of the report.
-    seed : int, optional
-        Seed of the units of the motions that ``function`` receives, see ``compare.engines.units``. None for SI units.
+    - ``name``: name on the command line.
+    - ``function``: the engine's ``simulate``; a function of an importable module if several processes are to use it.
+    - ``kinds``: systems that ``function`` simulates: "block" (a pin on a disc at rest), "pin" (includes blocks),
+      "points" (a disc on single points), "ring" (a disc on the continuous ring).
+    - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds
+      no stick, and which do not start at rest on the master disc.
+    - ``nonlinear``: True if it simulates supports that harden or have a stop.
+    - ``phases``: True if its trajectories contain the stick phases. Otherwise, and for a trajectory without phases,
+      stick is found from the states, see ``compare.engines.stick``.
+    - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for
+      single precision, see ``compare.engines.precision``.
+    - ``step``: step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function``
+      then takes ``step`` in place of ``tolerance``.
+    - ``order``: order of the error in a fixed step.
+    - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
+    - ``contact_only``: True if it shares everything except the contact with its kin. Unless it is requested by name,
+      it is then measured only in studies of the contact, see ``Study.contact``.
+    - ``version``: the engine's own version.
+    - ``about``: one or two sentences for readers of the report.
+    - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
-    Raises
-    ------
-    ValueError
-        If a kind is unknown, a number is out of range, or ``sticks``, ``nonlinear`` or ``phases`` is not a Boolean.
-
+    Raises ``ValueError`` if an argument is unknown, out of range or of another type.
     """
 
     name: str
@@ -153,15 +130,9 @@ class Engine:
     ) -> Trajectory:
         """Call ``function``, check the trajectory and return it.
 
-        Raises
-        ------
-        UnsupportedSystemError
-            If the engine does not simulate the system or the motion.
-        TypeError
-            If ``function`` does not return a ``Trajectory``.
-        BadTrajectoryError
-            If the trajectory has other times or shapes than requested, or numbers that are not finite.
-
+        Raises ``UnsupportedSystemError`` if the engine does not simulate the motion, ``TypeError`` if ``function``
+        does not return a ``Trajectory``, and ``BadTrajectoryError`` if that has other times or shapes than requested,
+        or numbers that are not finite.
         """
         self._refuse(system, initial_state, times)
         answer = self._asked(
@@ -176,12 +147,7 @@ class Engine:
 
         If ``function`` has an attribute ``simulate_many``, one call computes all motions. It takes equally long lists
         of systems, initial states and times, and ``tolerance`` or ``step``, and returns a sequence of trajectories.
-
-        Raises
-        ------
-        UnsupportedSystemError, TypeError, BadTrajectoryError
-            As ``simulate`` does; also if the number of trajectories is wrong.
-
+        Errors are those of ``simulate``.
         """
         motions = list(motions)
         at_once = getattr(self._asked, "simulate_many", None)
@@ -219,7 +185,6 @@ class Engine:
         return {"tolerance": tolerance} if self.step is None else {"step": self.step_at(tolerance)}
 
     def _start(self, system: System, initial_state: ArrayLike, tolerance: float) -> ArrayLike:
-        """Return the initial state passed to ``function``, perturbed if the precision is limited."""
         if self.precision == 0.0:
             return initial_state
         return blurred_start(system, np.asarray(initial_state, dtype=float), self.precision, tolerance)
@@ -227,7 +192,7 @@ class Engine:
     def _seen(
         self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the checked ``answer``, with noise of the engine's precision and with its stick phases."""
+        """Return the checked ``answer``, with noise of the engine's precision and with stick phases."""
 
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
@@ -251,8 +216,7 @@ class Engine:
     def root(self) -> float:
         """Exponent p of the fixed step h ∝ tolerance^(1/p): the order, so errors are proportional to the tolerance.
 
-        The smallest exponent is 2, because steps of first order would become too many. At an eighth of the tolerance,
-        used for error estimates, an error of first order then falls to a third.
+        It is at least 2, because steps of first order would become too many.
         """
         return max(self.order, 2.0)
 
@@ -268,7 +232,7 @@ class Engine:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
     def lacking(self, systems: Iterable[System]) -> str:
-        """Return a sentence that names the kinds of ``systems`` the engine does not simulate, or ""."""
+        """Return a sentence with the kinds of ``systems`` that the engine does not simulate, or ""."""
         words = dict.fromkeys(
             KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
             for system in systems
@@ -278,17 +242,17 @@ class Engine:
 
 
 def kind_of(system: System) -> str:
-    """Return the kind of a system, one of ``KINDS``."""
+    """Return one of ``KINDS``."""
     if isinstance(system, PinOnDisc):
         return "block" if system.disc_speed == 0.0 else "pin"
     return "ring" if system.contact_points is None else "points"
 
 
-@functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances in succession
+@functools.lru_cache(maxsize=64)  # each motion is requested at two tolerances
 def _slips(system: System, initial_state: tuple[float, ...], start: float, end: float) -> bool:
-    """Return whether, by the reference, the contact slips all the time from ``start`` to ``end``."""
+    """Return whether the contact of the reference always slips."""
     import reference_model
 
     run = reference_model.simulate(system, initial_state, [start, end], tolerance=1e-6)
-    # at zero slip, the direction of friction is defined only by a model of stick
+    # zero slip has no direction without a model of stick
     return slip_of(run)[0] > 0.0 and all(phase.kind == "slip" for phase in run.phases)

@@ -1,9 +1,8 @@
 """Noise that makes the limited precision of an engine visible in the error estimates.
 
-The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision may not
-contribute, because it can cut off the same digits at both tolerances. Noise of that size, different at each
-tolerance, propagates through a claim as rounding does and so contributes to the change. This is the idea of
-stochastic arithmetic (Vignes, Mathematics and Computers in Simulation 35, 1993).
+The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision can cut
+off the same digits at both tolerances. Noise of that size, different at each tolerance, propagates as rounding does
+and contributes to the change (stochastic arithmetic: Vignes, Mathematics and Computers in Simulation 35, 1993).
 """
 
 from __future__ import annotations
@@ -17,14 +16,14 @@ import numpy as np
 from reference_model.systems import ANGLE, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-LEAST_PRECISE = 1e-3  # largest precision that an engine may declare; coarser states are hardly comparable
-OTHER_SIZE = 0.25  # amplitude of the noise at every second tolerance, relative to that at the others
+LEAST_PRECISE = 1e-3  # largest precision that an engine may declare
+OTHER_SIZE = 0.25  # noise at every second tolerance, relative to that at the others
 
 
 def blurred_start(system: System, state: FloatArray, precision: float, tolerance: float) -> FloatArray:
     """Return ``state``, shape (4,) or (6,), with its position moved by noise of size ``precision``.
 
-    The velocity changes by that of the master disc, so the slip remains and a sticking body still sticks.
+    The velocity changes by that of the master disc, so a sticking body still sticks.
     """
     half = len(state) // 2
     moved = _blurred(state[np.newaxis], precision, tolerance, state)[0]
@@ -35,10 +34,7 @@ def blurred_start(system: System, state: FloatArray, precision: float, tolerance
 
 
 def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: FloatArray) -> Trajectory:
-    """Return ``trajectory`` with noise up to ``precision`` times its largest lengths, speeds, angle and spin.
-
-    The first state is the requested ``start``.
-    """
+    """Return ``trajectory`` with noise up to ``precision`` times its largest lengths, speeds, angle and spin."""
     states = np.asarray(trajectory.states, dtype=float)
     states = _blurred(states, precision, tolerance, start, trajectory.times)
     states[0] = start
@@ -48,9 +44,8 @@ def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: F
 def _blurred(states: FloatArray, precision: float, tolerance: float, *question: FloatArray) -> FloatArray:
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
-    The two tolerances of an estimate have the same noise with opposite signs and different amplitudes. Independent
-    noise could cause nearly equal errors by chance, which the estimate would miss. Opposite signs reveal effects that
-    are odd in the noise, different amplitudes those that are even.
+    Independent noise could cause nearly equal errors at both tolerances of an estimate. Opposite signs reveal effects
+    that are odd in the noise, different amplitudes those that are even.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision
@@ -58,7 +53,7 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
 
 
 def _sizes(states: FloatArray) -> FloatArray:
-    """Return the magnitude relative to which each component of ``states`` (n, 4) or (n, 6) is rounded."""
+    """Return the size relative to which each component of ``states`` (n, 4) or (n, 6) is rounded."""
     half = states.shape[1] // 2
     sizes = np.max(np.abs(states), axis=0)
     for x in (0, half):
@@ -66,9 +61,7 @@ def _sizes(states: FloatArray) -> FloatArray:
     return np.asarray(sizes)
 
 
-# --- Tolerances passed to engines.
-
 USUAL_TOLERANCE = 1e-9
 
 COARSENING = 8.0
-"""Ratio of the two tolerances that give an error estimate, see ``compare.claims.error_estimates``."""
+"""Ratio of the two tolerances of an error estimate."""

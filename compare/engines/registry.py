@@ -19,7 +19,7 @@ from reference_model.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class ByName:
-    """A function of a module that is imported on the first call, so the command line starts without SciPy and Exudyn.
+    """A function of a module that is imported on the first call, because SciPy and Exudyn load slowly.
 
     ``folder``, if given, is searched for the module after all other folders.
     """
@@ -35,12 +35,12 @@ class ByName:
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """The function's attribute of this name, or None; see ``Engine.simulate_many``."""
+        """The function's attribute of this name, or None."""
         return getattr(self.imported, "simulate_many", None)
 
     @property
     def imported(self) -> Callable[..., Any]:
-        """The function itself."""
+        """The function."""
         if self.folder and self.folder not in sys.path:
             # last, so that a user's file cannot replace a library's module
             sys.path.append(self.folder)
@@ -52,7 +52,7 @@ ENTRY_POINTS = "friction_discs.engines"
 """Group of entry points for the engines of an installed package: ``mine = "package.module:simulate"``."""
 
 DECLARED = ("kinds", "sticks", "nonlinear", "phases", "precision", "step", "order", "version")
-"""Optional attributes of a ``simulate`` function, named like the parameters of ``Engine``."""
+"""Attributes of a ``simulate`` function that override parameters of ``Engine``."""
 
 _REGISTRY: dict[str, Engine] = {}
 _ON_REQUEST: set[str] = set()
@@ -61,8 +61,7 @@ _ON_REQUEST: set[str] = set()
 class Scheme(NamedTuple):
     """Meaning of names "scheme:REST": a function that returns the engine of REST, and a quick check of REST.
 
-    Both raise ``ValueError`` if REST is invalid. If ``alone``, the name of the scheme is valid without ":REST", which
-    is then "".
+    Both raise ``ValueError`` if REST is invalid. If ``alone``, REST may be missing and is then "".
     """
 
     engine: Callable[[str], Engine]
@@ -94,10 +93,10 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or by default all registered engines except those on request.
 
-    A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. These names need no
-    registration: "module:function", which may be in the current folder; "exec:COMMAND", see
-    ``compare.engines.outside``; and an entry point "friction_discs.engines" of an installed package.
-    Raises ``ValueError`` if a name is unknown or cannot be imported.
+    A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Names may also be
+    "module:function", which may be in the current folder; "exec:COMMAND", see ``compare.engines.outside``; and an
+    entry point "friction_discs.engines" of an installed package. Raises ``ValueError`` if a name is unknown or cannot
+    be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(
@@ -106,7 +105,7 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
 
 
 def is_registered(name: str) -> bool:
-    """Return whether an engine of this name is registered, so that nothing else has to be imported."""
+    """Return whether an engine of this name is registered."""
     return name in _REGISTRY
 
 
@@ -116,7 +115,7 @@ def owner_of(engine: Engine | None) -> str:
 
 
 def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, ...]:
-    """Return the engines, renamed to the requested names if their own names would be ambiguous."""
+    """Return the engines, renamed to the requested names where their own are ambiguous."""
     taken = Counter([engine.name for engine in found]) + Counter([*_REGISTRY, "theory"])
     return tuple(
         replace(engine, name=name) if engine.name != name and taken[engine.name] > 1 else engine
@@ -125,7 +124,7 @@ def told_apart(names: Sequence[str], found: Sequence[Engine]) -> tuple[Engine, .
 
 
 def on_request() -> tuple[Engine, ...]:
-    """Return the registered engines that run only if requested by name."""
+    """Return the registered engines that run only on request."""
     return tuple(_REGISTRY[name] for name in sorted(_ON_REQUEST))
 
 
@@ -135,7 +134,7 @@ def shares_code(name: str, other: str) -> bool:
 
 
 def repeated_by(name: str) -> str:
-    """Return the name of the engine from which ``name`` differs only in its contact, "" if there is none."""
+    """Return the name of the engine from which ``name`` differs only in its contact, or ""."""
     engine = _REGISTRY.get(name)
     return engine.kin if engine is not None and engine.contact_only else ""
 
@@ -160,22 +159,21 @@ def known_name(name: str) -> str:
 
 
 def _scheme(name: str) -> Scheme | None:
-    """Return the scheme of ``name`` by its part before the colon, or None."""
     first, colon, _ = name.partition(":")
     scheme = _SCHEMES.get(first)
     return scheme if scheme and (colon or scheme.alone) and first not in packaged() else None
 
 
 def packaged() -> dict[str, str]:
-    """Return a map from the names of installed packages' engines to "module:function"."""
+    """Return "module:function" of installed packages' engines by name."""
     return {point.name: point.value for point in entry_points(group=ENTRY_POINTS)}
 
 
 def imported(name: str, place: str) -> Engine:
-    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` if there is none.
+    """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` without one.
 
-    By default it simulates the pin only, without reporting phases. Attributes of the function, named like the
-    parameters of ``Engine``, override the defaults::
+    By default it simulates the pin only, without reporting phases. Attributes of the function override parameters of
+    ``Engine``::
 
         simulate.kinds = ("pin", "points", "ring")
         simulate.sticks = False

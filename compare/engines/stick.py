@@ -1,7 +1,7 @@
 """Stick phases found from states, for engines that do not report them.
 
 Before stick, slip falls in proportion to the time left; after release, it grows as the square of the time elapsed.
-Both are sampled down to the engine's own creep or noise and extrapolated from there to the time of zero slip.
+Both are sampled down to the engine's own creep or noise and extrapolated to zero slip.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from reference_model.support import Support
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Phase, Trajectory, phases_of
 
-PER_PERIOD = 64  # samples per period of the support or per revolution, whichever is shorter
+PER_PERIOD = 64  # samples per period or revolution, whichever is shorter
 MOST = 20_000  # largest number of samples before refinement
 
 REST = 1e-2
@@ -28,31 +28,30 @@ REST = 1e-2
 CREEP = 3e-4
 """Largest creep in stick, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-It is proportional to the tolerance, as the creep of a regularised law should be, up to ``REST``.
+It is proportional to the tolerance, up to ``REST``.
 """
 
-CLOSER = 64  # factor between the sample densities, and between the levels of slip, of successive refinements
+CLOSER = 64  # factor between sample densities, and between levels of slip, of successive refinements
 LOOKS = 3
 
 LEAST = 1e-7
 """Least slip for extrapolation, relative to the largest speed of the motion, at a tolerance of 1e-9.
 
-It is proportional to the root of the tolerance. The error of extrapolation therefore changes with the tolerance and
-is part of the error estimate.
+It is proportional to the root of the tolerance, so that error estimates include the extrapolation.
 """
 
-ABOVE_NOISE = 32.0  # least slip for extrapolation as a multiple of the engine's precision, if that is larger
-NOISE = 0.1  # relative change of slip from sample to sample above which it is rounding noise instead of creep
-ABOVE_CREEP = 8.0  # least slip for extrapolation as a multiple of the creep in the stick phase
+ABOVE_NOISE = 32.0  # least slip for extrapolation over the engine's precision, if larger
+NOISE = 0.1  # relative change of slip between samples that indicates rounding noise instead of creep
+ABOVE_CREEP = 8.0  # least slip for extrapolation over the creep in the stick phase
 
 QUIET, QUIETER = 0.1, 0.5
-"""Share of a slow span that is certainly stick: at first, when the span may contain slow slip, and later."""
+"""Share of a slow span that is certainly stick: at first, when it may contain slow slip, and later."""
 
 GROWS = 1.2
-"""Ratio of the third to the first quartile of creep above which creep counts as growing up to release."""
+"""Ratio of the third to the first quartile of creep that grows up to release."""
 
 BELOW_REST = 16.0
-"""``REST`` over the largest growing creep; above that, the end of creep looks like the start of slip."""
+"""``REST`` over the largest growing creep; beyond it, the end of creep looks like the start of slip."""
 
 FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 
@@ -61,7 +60,7 @@ class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
     ``ask`` returns the states of the same motion at any times from ``told.times[0]`` on. ``coarseness`` is the
-    engine's tolerance as a multiple of 1e-9; for ``precision``, see ``compare.engines.precision``.
+    engine's tolerance as a multiple of 1e-9.
     """
 
     def __init__(
@@ -79,7 +78,7 @@ class StatesOnly(Trajectory):
 
     @cached_property
     def phases(self) -> tuple[Phase, ...]:
-        """Slip and stick phases from ``times[0]`` to ``times[-1]``; a pivot about a single point is not detected."""
+        """Slip and stick phases from ``times[0]`` to ``times[-1]``, without pivots."""
         return self._samples.phases(float(self.times[0]), float(self.times[-1]))
 
 
@@ -97,7 +96,7 @@ class _Span:
 
 
 class _Samples:
-    """States and slip speeds of a motion at a growing set of times; parameters as in ``StatesOnly``."""
+    """States and slip speeds of a motion at a growing set of times."""
 
     def __init__(
         self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float, precision: float
@@ -110,7 +109,6 @@ class _Samples:
         self.largest = 0.0  # speed in m/s
 
     def phases(self, begin: float, end: float) -> tuple[Phase, ...]:
-        """Return the phases from ``begin`` to ``end`` in s."""
         self.look(np.linspace(begin, end, self._how_many(end - begin)))
         self.look(self._where_it_may_rest_between())
         self.largest = self._largest_speed()
@@ -134,9 +132,9 @@ class _Samples:
         return phases_of([(kind, at, self._state(at)) for kind, at in begun], end)
 
     def _largest_speed(self) -> float:
-        """Return the largest speed of the motion in m/s: of its slip, or of the master disc below it.
+        """Return the largest speed in m/s of the slip, or of the master disc below the body.
 
-        For a body that creeps on a plane at rest, return the speed that the springs could give it.
+        If a body creeps on a plane at rest, return the speed that the springs could give it.
         """
         fastest, omega = float(np.max(self.slip)), abs(self.system.disc_speed)
         x, y = self.states[:, :2].T
@@ -151,11 +149,10 @@ class _Samples:
         return min(max(PER_PERIOD, math.ceil(PER_PERIOD * turns)), MOST) + 1
 
     def look(self, times: FloatArray) -> None:
-        """Request the states at further ``times``."""
         times = np.setdiff1d(times, self.times)
         if times.size == 0:
             return
-        # the motion starts at the first of the requested times
+        # the motion starts at the first requested time
         asked = times if self.times.size == 0 else np.concatenate((self.times[:1], times))
         states = self.ask(asked)[len(asked) - len(times) :]
         order = np.argsort(np.concatenate((self.times, times)))
@@ -177,7 +174,6 @@ class _Samples:
         )
 
     def _spans(self, level: float, start: int = 0, stop: int | None = None) -> list[_Span]:
-        """Return the spans of at least two samples, from ``start`` to ``stop``, with slip up to ``level`` in m/s."""
         slow = self.slip[start:stop] <= level
         edges = start + np.flatnonzero(np.diff(np.concatenate(([0], slow, [0]))))
         return [
@@ -196,7 +192,6 @@ class _Samples:
         return first, last
 
     def _edges(self, span: _Span) -> FloatArray:
-        """Return times between the outermost samples of a span and their outer neighbours."""
         first, last = self._places(span)
         outside = max(first - 1, 0), min(last + 1, len(self.times) - 1)
         return _joined(
@@ -205,7 +200,7 @@ class _Samples:
         )
 
     def _closer(self, span: _Span) -> list[_Span]:
-        """Return the spans within ``span`` below a lower level, as low as its creep allows."""
+        """Return the spans within ``span`` below a level as low as its creep allows."""
         first, last = self._places(span)
         share = QUIETER if span.level < REST * self.largest else QUIET
         creep = self._quantile(float(self.times[first]), float(self.times[last]), share)
@@ -213,15 +208,12 @@ class _Samples:
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
-        """Return the quantile ``share``, over time, of the slip in m/s from ``begin`` to ``end`` in s."""
+        """Return a quantile, over time, of the slip from ``begin`` to ``end``."""
         evenly = np.linspace(begin, end, 4 * CLOSER + 1)
         return float(np.quantile(np.interp(evenly, self.times, self.slip), share))
 
     def _is_stick(self, begin: float, end: float, span: _Span) -> bool:
-        """Return whether a body that is slow from ``begin`` to ``end``, in s, sticks and not only slips slowly.
-
-        It sticks if it only creeps, for most of the slow span, and friction can hold it.
-        """
+        """Return whether a slow body sticks: it mostly creeps, and friction can hold it."""
         if end - begin <= (span.last - span.first) / 2.0:
             return False
         slow, creep, fast = (self._quantile(begin, end, share) for share in (0.25, 0.5, 0.75))
@@ -238,7 +230,7 @@ class _Samples:
         return _joined(np.linspace(self.times[i], self.times[j], CLOSER + 1) for i, j in flanks)
 
     def _begin(self, span: _Span) -> float:
-        """Return the time in s of zero slip before the span; slip falls in proportion to the time left."""
+        """Return the time of zero slip before the span."""
         first, _ = self._places(span)
         if first == 0:
             return float(self.times[0])
@@ -246,7 +238,7 @@ class _Samples:
         return min(max(time, nearest), span.last)
 
     def _end(self, span: _Span) -> float:
-        """Return the time in s of zero slip after the span; slip grows as the square of the time elapsed."""
+        """Return the time of zero slip after the span."""
         _, last = self._places(span)
         if last == len(self.times) - 1:
             return float(self.times[-1])
@@ -257,10 +249,9 @@ class _Samples:
         """Return a span with the level and degree for extrapolating its end, the release.
 
         The level is the geometric mean of the creep and of ``REST``. If friction is regularised over ε, creep grows
-        before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. The level
-        depends only on that creep. If it jumped with the samples, so would the release, and its error would not fall
-        with the step, as the error estimate assumes. The same holds if the error of a parabola (late) cancelled that
-        of creep (early); a cubic has a smaller error.
+        before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. If the level
+        jumped with the samples, or the error of a parabola (late) cancelled that of creep (early), the error would
+        not fall with the step as the error estimate assumes. A cubic has a smaller error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]
@@ -288,7 +279,7 @@ def _joined(times: Iterable[FloatArray]) -> FloatArray:
 
 
 def slip_of(run: Trajectory) -> FloatArray:
-    """Return the slip speed on the master disc in m/s, shape (n,), of the centre combined with that of the rim."""
+    """Return the slip speed on the master disc in m/s, shape (n,), of centre and rim combined."""
     system = run.system
     if isinstance(system, DiscOnDisc):
         rim = system.contact_radius * (run.states[:, -1] - system.disc_speed)
@@ -297,7 +288,7 @@ def slip_of(run: Trajectory) -> FloatArray:
 
 
 def _load(system: System, state: FloatArray) -> float:
-    """Return the friction force in N that holds a body at the position of ``state`` on the master disc."""
+    """Return the friction force in N that holds a body on the master disc."""
     z, omega = complex(*state[:2]), system.disc_speed
     return abs(
         Support.of(system).force(z) - complex(0.0, system.damping * omega) * z + system.mass * omega**2 * z

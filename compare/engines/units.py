@@ -1,8 +1,8 @@
 """Motions in other units: equal to the requested ones in dimensionless form, with other parameters.
 
-The studies' masses are mostly 1 kg and their speeds below 2 m/s. An engine may be wrong at all others. If mass,
-length and time are measured in other units, the same claims test it there, at the same cost. The units are powers of
-two, so an engine without absolute constants returns the same digits.
+The studies' masses are mostly 1 kg and their speeds below 2 m/s; an engine may be wrong at all others. In other units
+the same claims test it there. The units are powers of two, so an engine without absolute constants returns the same
+digits.
 """
 
 from __future__ import annotations
@@ -21,10 +21,7 @@ from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 MOST = 5
-"""Largest power of two in the factors of masses, stiffnesses, loads, speeds, lengths and times.
-
-Each factor then has a range of 2¹⁰, three decades.
-"""
+"""Largest power of two in the factors of masses, stiffnesses, loads, speeds, lengths and times."""
 
 UNITS = tuple(
     (mass, length, time)
@@ -69,7 +66,7 @@ class InOtherUnits:
 
     @property
     def simulate_many(self) -> Callable[..., Any] | None:
-        """The same for ``function.simulate_many``; None if there is none, or if it takes one step for all motions."""
+        """The same for ``function.simulate_many``; None if it has none, or takes one step for all motions."""
         at_once = getattr(self.function, "simulate_many", None)
         return at_once and functools.partial(self._many, at_once)
 
@@ -81,7 +78,7 @@ class InOtherUnits:
         times: Sequence[ArrayLike],
         **accuracy: float,
     ) -> Any:
-        # one call has one step, so all of its motions have the units of the first system
+        # one call has one step, so all motions have the units of the first system
         units = [self._units(systems[0] if "step" in accuracy else system) for system in systems]
         asked = [_asked(*motion) for motion in zip(systems, initial_states, times, units, strict=True)]
         answers = at_once(*map(list, zip(*asked, strict=True)), **_step(accuracy, units[0]))
@@ -94,7 +91,6 @@ class InOtherUnits:
 
 
 def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
-    """Return the factors of the components of a state, shape (4,) or (6,)."""
     _, length, time = units
     places = [2.0**length, 2.0**length] + [1.0] * (system.state_size // 2 - 2)
     return np.array(places + [place / 2.0**time for place in places])
@@ -119,7 +115,7 @@ def _step(accuracy: dict[str, float], units: tuple[int, int, int]) -> dict[str, 
 
 
 def _back(answer: Any, system: System, units: tuple[int, int, int]) -> Any:
-    """Return the answer in the units of ``system``; one that is not a valid trajectory is unchanged."""
+    """Return the answer in the units of ``system``; an invalid one is unchanged."""
     factors, second = _factors(system, units), 2.0 ** units[2]
     if not isinstance(answer, Trajectory) or np.shape(answer.states)[1:] != factors.shape:
         return answer

@@ -1,4 +1,4 @@
-"""Parameters that a Python engine never reads, found by giving it a system that records every access."""
+"""Parameters that a Python engine never reads, found by recording every access."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ NONLINEAR = {"hardening": ("hardening",), "stop_stiffness": ("stop_stiffness", "
 An engine may read the stiffness of a stop only during contact, so reading the gap is sufficient.
 """
 
-SHORT = 1e-3  # duration of the motion in s; engines read all parameters before or in the first step
+SHORT = 1e-3  # duration of the motion in s
 
 
 def unread(function: Callable[..., Any], system: System, start: object, **accuracy: float) -> tuple[str, ...]:
     """Return the names in ``NONLINEAR`` that are nonzero in ``system`` but that ``function`` never reads.
 
-    The result is empty if ``function`` is not a Python function, or if it does not answer: then nothing is known.
+    The result is empty if ``function`` is not a Python function, or if it does not answer.
     """
     if not inspect.isfunction(function):  # a program or a file receives all parameters
         return ()

@@ -54,7 +54,7 @@ def _simulated(case: Case) -> Quantity:
 
 
 def _places(trajectory: Trajectory) -> Quantity:
-    """Return the positions of the pin, or of a disc's first contact point, which also depends on its angle."""
+    """Return the positions of the pin, or of a disc's first contact point, which depends on its angle too."""
     system, states = trajectory.system, trajectory.states
     places = states[:, 0] + 1j * states[:, 1]
     if isinstance(system, DiscOnDisc):
@@ -80,7 +80,7 @@ def _exact_radius() -> Quantity:
 
 
 def _exact_stuck() -> Quantity:
-    """Return the positions of a pin that turns with the disc, which do not depend on the law of slip."""
+    """Return the positions of a pin that turns with the disc, whatever the law of slip."""
     return np.asarray(_ON_THE_DISC[0] * np.exp(1j * _CENTRED.disc_speed * _STUCK_TIMES))
 
 
@@ -144,7 +144,7 @@ CASES = {
         resolution=2.5e-3,
     ),
 }
-"""Cases with the parameters of Figs. 5 and 11; the initial states on the disc and on the whirl are ours."""
+"""Cases with the parameters of Figs. 5 and 11; initial states on the disc and on the whirl are ours."""
 
 
 # --- Results of foreign engines and of our own, recorded by ``builders/record.py``.
@@ -154,15 +154,14 @@ FOLDER = Path(__file__).parent
 COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
 """Columns of a recorded run.
 
-"error" is the largest error over time in m, against the exact motion. "change" is the change in m against the
-previous run, whose tolerance is larger by ``compare.claims.error_estimates.COARSENING``; NaN for the first run.
-"seconds" is processor time and "wall" is wall-clock time; for an engine in another process both are wall-clock time.
+"error" is the largest error over time in m. "change" is the change in m against the previous run, whose tolerance is
+larger by ``compare.claims.error_estimates.COARSENING``; NaN for the first run. "seconds" is processor time and "wall"
+is wall-clock time; for an engine in another process both are wall-clock time.
 """
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
-"""Indices of ``COLUMNS`` in a recorded run."""
 
-DIGITS = 4  # number of digits in the files
+DIGITS = 4  # digits in the files
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,10 +173,10 @@ class Recording:
 
     engine: str
     version: str
-    recorded: str  # date
+    recorded: str
     platform: str
     setting: str  # name; "" for one of our own engines
-    says: str  # description of the setting
+    says: str
     runs: Mapping[str, FloatArray]
     probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
 
@@ -188,7 +187,7 @@ class Recording:
 
 
 def recordings() -> tuple[Recording, ...]:
-    """Return all recordings, our own engines first, and the reference before the others.
+    """Return all recordings: the reference, then our other engines, then foreign ones.
 
     Raises ``ValueError`` if the columns of a file differ from ``COLUMNS``.
     """
@@ -208,7 +207,7 @@ def recordings() -> tuple[Recording, ...]:
 def estimate(runs: FloatArray) -> float:
     """Return the error estimate in m of the finest of ``runs``: the sum of the last two changes.
 
-    With an error ~ step^p and two halvings the estimate is (4^p − 1) times the error: three times the error at order
-    1, and it covers the error for p ≥ 1/2. The estimate of a single run is zero.
+    With an error ~ step^p and two halvings it is (4^p − 1) times the error: three times at order 1, and enough for p
+    ≥ 1/2. The estimate of a single run is zero.
     """
     return float(np.nansum(runs[-2:, CHANGE]))

@@ -15,9 +15,8 @@ Example of a study's ``draw``::
         return {"fig03-radius": figure}
 
 Formulas are thin black lines on top of the engines' curves. Engines are broad lines (``curve``) or hollow marks
-(``points``), so coinciding results remain visible. ``draw`` is called, and its figures are saved, within
-``paper_style()``; pyplot's global state is not used. Import matplotlib only inside functions, because the command
-line must start without it.
+(``points``), so coinciding results remain visible. ``draw`` runs within ``paper_style()``, without pyplot's global
+state. Import matplotlib only inside functions, because the command line must start without it.
 """
 
 from __future__ import annotations
@@ -105,7 +104,7 @@ _OTHERS = (
 
 @contextmanager
 def paper_style() -> Iterator[None]:
-    """Apply the settings of ``PAPER`` to figures drawn and saved inside."""
+    """Apply ``PAPER`` to figures drawn and saved inside."""
     import matplotlib
 
     with matplotlib.rc_context(PAPER):
@@ -123,7 +122,7 @@ def new_figure(
     """Return a figure and its axes, row by row in a flat tuple.
 
     ``width`` and ``height`` are in inches; the defaults fit the number of panels. ``subplots`` are arguments of
-    ``Figure.subplots`` (``sharex=True``, ``width_ratios=...``, ``subplot_kw=...``).
+    ``Figure.subplots``.
     """
     import matplotlib.figure
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -136,7 +135,7 @@ def new_figure(
 
 
 def engine_style(engine: str) -> EngineStyle:
-    """Return the fixed style of an engine or of "theory"; the style of other engines depends on their name."""
+    """Return the style of an engine or of "theory"."""
     return _STYLES.get(engine) or _OTHERS[zlib.crc32(engine.encode()) % len(_OTHERS)]
 
 
@@ -167,7 +166,7 @@ def points(engine: str, label: str | None = None, **changes: Any) -> dict[str, A
 
 
 def beside(panel: Axes, place: float) -> Any:
-    """Return the transform that shifts marks by ``place`` mark widths to the right of their true position.
+    """Return the transform that shifts marks to the right by ``place`` mark widths.
 
     It keeps coinciding marks visible; mention it in the caption.
     """
@@ -189,7 +188,7 @@ def axis(symbol: str, unit: str = "") -> str:
 
 
 def saved(figure: Figure) -> tuple[bytes, bytes]:
-    """Return the figure as SVG and as PNG; equal figures give equal bytes."""
+    """Return the figure as SVG and as PNG, reproducible to the byte."""
     png = io.BytesIO()
     with paper_style():
         figure.savefig(png, format="png", metadata={"Software": None})
@@ -197,12 +196,12 @@ def saved(figure: Figure) -> tuple[bytes, bytes]:
 
 
 def as_svg(figure: Figure) -> bytes:
-    """Return the figure as SVG; equal figures give equal bytes."""
+    """Return the figure as SVG, reproducible to the byte."""
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     svg = io.BytesIO()
-    canvas: Any = FigureCanvasSVG(figure)  # untyped
-    with paper_style():  # faster than ``savefig``, which draws the figure once more for its layout
+    canvas: Any = FigureCanvasSVG(figure)
+    with paper_style():  # faster than ``savefig``, which draws the figure twice
         figure.set_dpi(PAPER["savefig.dpi"])  # for rasterised parts
         canvas.print_svg(svg, metadata={"Date": None})
     return svg.getvalue()

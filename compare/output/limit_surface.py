@@ -12,7 +12,6 @@ from compare.output.figures import PALETTE, Axes, axis
 from reference_model.contact import IsotropicContact, Points, largest_wrench
 
 SAMPLES = 181
-"""Samples of each curve."""
 
 
 def draw_limit_surface(
@@ -23,8 +22,7 @@ def draw_limit_surface(
 ) -> None:
     """Draw the curves where planes through the axis of the moment cut the limit surface of a disc at φ = 0.
 
-    The force has an angle of ``directions`` in rad to the x-axis. ``look`` are options of matplotlib for the curves.
-    Forces are over μN, moments over μN in m.
+    The force has an angle of ``directions`` in rad to the x-axis. Forces are over μN, moments over μN in m.
     """
     lever = max(abs(largest_wrench(contact, 0j, sign)[1]) for sign in (1.0, -1.0))
     loads = np.exp(2j * math.pi * np.linspace(0.0, 1.0, SAMPLES)).tolist()

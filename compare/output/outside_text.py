@@ -23,12 +23,12 @@ FORMULA = tuple("=+-@＝＋－＠")
 def printable(text: object, most: int = MOST) -> str:
     r"""Return ``text`` in a form that files, terminals and XML accept, with at most ``most`` characters.
 
-    Unprintable characters, such as control characters and lone surrogates, are escaped as by ``repr``: "\x1b".
-    Line breaks and tabs are kept. The function is idempotent.
+    Unprintable characters are escaped as by ``repr``: "\x1b". Line breaks and tabs are kept. The function is
+    idempotent.
     """
     try:
         text = str(text)
-    except Exception as error:  # an engine may define the class of an exception
+    except Exception as error:  # an engine may define the exception
         text = f"{type(text).__name__}, whose text raises {type(error).__name__}"
     return _shortened(NOT_ASCII.sub(_escaped, _shortened(text, most)), most)
 
@@ -50,7 +50,7 @@ def one_of(kind: str, name: str, names: Iterable[str]) -> str:
 
 
 def reason_of(error: BaseException) -> str:
-    """Return the message of an exception in one line, or its class if it has no message."""
+    """Return the message of an exception in one line, or its class."""
     return " ".join(str(error).split()) or type(error).__name__
 
 

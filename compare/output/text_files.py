@@ -32,19 +32,19 @@ def replacing(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
         with suppress(FileNotFoundError):
             shutil.copymode(path, part)
         os.replace(part, path)
-    except BaseException:  # Ctrl-C too
+    except BaseException:
         part.unlink(missing_ok=True)
         raise
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a file atomically: readers see either the old or the new contents."""
+    """Write a file atomically."""
     with replacing(path) as stream:
         stream.write(text)
 
 
 def check_writable(path: Path) -> None:
-    """Raise ``OSError`` if a file cannot be written; do not change an existing file."""
+    """Raise ``OSError`` if a file cannot be written; change no existing file."""
     path = _target(path)
     if path.is_file() or path.is_dir():
         with open(path, "ab"):
@@ -57,5 +57,5 @@ def check_writable(path: Path) -> None:
 
 
 def _target(path: Path) -> Path:
-    """Return the target of a link, so the link stays and its target is replaced."""
+    """Return the target of a link, which is replaced instead of the link."""
     return Path(os.path.realpath(path))

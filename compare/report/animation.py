@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = 64
-"""Number of colours of a frame, enough for lines and labels in a small file."""
+"""Number of colours of a frame."""
 
 DPI = 80.0
 
@@ -27,13 +27,13 @@ def gif(
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
 
-    ``update(i)`` changes the artists of ``figure`` for frame i. The layout of the first frame is kept. If ``update``
-    changes only the artists ``moving``, pass them; the others are then drawn once, below them.
+    ``update(i)`` changes the artists of ``figure`` for frame i, with the layout of the first frame. If it changes
+    only the artists ``moving``, pass them; the others are then drawn once, below them.
     """
     import PIL.Image
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    canvas: Any = FigureCanvasAgg(figure)  # untyped
+    canvas: Any = FigureCanvasAgg(figure)
     figure.set_dpi(DPI)
     update(0)
     canvas.draw()
@@ -70,7 +70,7 @@ def gif(
 
 
 def still(content: bytes) -> bytes:
-    """Return the first frame of an animation as PNG, for readers who prefer no motion."""
+    """Return the first frame of an animation as PNG."""
     import PIL.Image
 
     stream = io.BytesIO()
@@ -80,7 +80,6 @@ def still(content: bytes) -> bytes:
 
 
 def _palette(pictures: list[PIL.Image.Image]) -> PIL.Image.Image:
-    """Return a picture whose palette fits a sample of all frames."""
     import PIL.Image
 
     some = pictures[:: max(len(pictures) // 4, 1)]

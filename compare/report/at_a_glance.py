@@ -1,4 +1,4 @@
-"""The first screen of the report: a grade and a sentence for each engine, derived from its claims only."""
+"""The first screen of the report: a grade and a sentence for each engine, derived from its claims."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
 class Glance:
     """Summary of one engine.
 
-    ``cells`` are the recorded motions at its best setting, None for a motion that it does not simulate. ``where``
-    links to its claims, and ``why`` to the reasons for its grade.
+    ``cells`` are the recorded motions at its best setting, None if not simulated. ``where`` links to its claims, and
+    ``why`` to the reasons for its grade.
     """
 
     engine: str
@@ -38,7 +38,7 @@ class Glance:
 
 
 def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
-    """Return the engines of this run, then the recorded engines, each at its best setting."""
+    """Return the engines of this run, then the recorded ones at their best settings."""
     recorded = matrix.recorded[0] if matrix.recorded else None
     found = [_measured(run, matrix, engine, recorded) for engine in run.engines]
     if recorded is not None:
@@ -53,7 +53,6 @@ def glances(run: Run, matrix: Matrix) -> tuple[Glance, ...]:
 
 
 _RANKS = [grade.value for grade in GRADES] + [ROUGH, OPEN, DIFFERS]
-"""Grades, best first."""
 
 
 def cases(recorded: RecordedMatrix) -> tuple[str, ...]:
@@ -66,7 +65,7 @@ def _case(setting: Recorded, claim: Claim) -> str:
 
 
 def contrast(found: Sequence[Glance]) -> str:
-    """Return an example of a small error that differs and a larger one that agrees; "" if there is none."""
+    """Return an example of a small error that differs and a larger one that agrees, or ""."""
     errors = {
         state: [
             (float(cell.claims[0].difference.max()), one.engine)
@@ -127,7 +126,6 @@ def _best(settings: Sequence[Recorded]) -> Recorded:
 
 
 def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
-    """Return the summary of a recorded engine: its best setting, and the settings to avoid."""
     cells = recorded.cells(best)
     sentences = [f"{best.setting}: {_judged(best)}" if best.setting else _judged(best)]
     sentences += [best.advice] if best.advice else []
@@ -151,11 +149,9 @@ def _listed(settings: Sequence[str]) -> str:
 
 
 SHIPPED = "as shipped"
-"""Name of the settings that an engine has without any change."""
 
 
 def _judged(setting: Recorded) -> str:
-    """Return the verdict on the friction of a setting as a clause."""
     wrong = [_case(setting, claim) for claim in setting.claims if claim.verdict is Verdict.DIFFERS]
     if not wrong:
         agrees = any(claim.verdict is Verdict.AGREES for claim in setting.claims)
@@ -172,7 +168,6 @@ def _judged(setting: Recorded) -> str:
 
 
 MOST_NAMED = 2
-"""Largest number of wrong motions that a sentence names."""
 
 LEAST_SHARE = 0.01
 """Smallest relative error of the radius of a whirl that a sentence names."""
@@ -186,7 +181,7 @@ def _joined(sentences: Sequence[str]) -> str:
 
 
 def _share(setting: Recorded) -> float:
-    """Return the largest error of agreeing motions, relative to the change due to another friction law."""
+    """Return the largest error of agreeing motions over the change due to another friction law."""
     return max(
         (
             float(max(claim.difference.max(), claim.budget.total.max()))
@@ -199,7 +194,6 @@ def _share(setting: Recorded) -> float:
 
 
 def _grade(setting: Recorded) -> str:
-    """Return the grade of a setting: its error relative to the change due to another friction law."""
     verdicts = {claim.verdict for claim in setting.claims}
     if Verdict.DIFFERS in verdicts:
         return DIFFERS
@@ -217,11 +211,11 @@ GREEN, BROWN, RED = "#1d5c38", "#7a5200", "#9c1c1c"
 """Colours of the page; the contrast of white letters is at least 6.9:1."""
 
 WIDTH, MARGIN = 6.6, 12.0
-"""Width of a letter, and both margins together, in pixels."""
+"""Width of a letter, and of both margins together, in pixels."""
 
 
 def badge(matrix: Matrix) -> str:
-    """Return an SVG with the number of agreeing verdicts; its colour shows whether any differs or is inconclusive."""
+    """Return an SVG with the number of agreeing verdicts, coloured by the worst verdict."""
     counts = matrix.totals
     words = f"{counts[State.AGREES]} of {sum(counts[state] for state in (*VERDICTS, State.FAILED))} agree"
     bad = counts[State.DIFFERS] + counts[State.FAILED]

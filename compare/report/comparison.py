@@ -52,14 +52,13 @@ class Change:
         return self.kind in BAD and not self.known
 
     def __str__(self) -> str:
-        """Return the line that ``diff`` prints."""
         return f"{self.kind.value}{' (known)' * self.known}: {self.claim} {self.engine}: {self.words}"
 
 
 def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Change, ...]:
-    """Return the changes from ``old`` to ``new``, bad ones first; both are results of ``read_results``.
+    """Return the changes between two results of ``read_results``, bad ones first.
 
-    Changes of claims in ``known`` are included but do not count.
+    Changes of claims in ``known`` do not count.
     """
     found = [*_of_runs(old, new), *_of_claims(old, new)]
     order = list(Kind)
@@ -68,7 +67,7 @@ def changes(old: Results, new: Results, known: Collection[Key] = ()) -> tuple[Ch
 
 
 def failures(results: Results) -> dict[Key, str]:
-    """Return the claims that differ, and the studies that failed with an engine, with the word for it."""
+    """Return the claims that differ and the studies that failed, with the word for it."""
     differ = {
         (claim["id"], claim["engine"]): State.DIFFERS.value
         for claim in _claims(results)
@@ -89,7 +88,6 @@ def _claims(results: Results) -> Iterator[dict[str, Any]]:
 
 
 def _of_runs(old: Results, new: Results) -> Iterator[Change]:
-    """Yield the changes of whole studies of an engine."""
     before, after = _units(old), _units(new)
     for (study, engine), unit in after.items():
         state = unit["state"]
@@ -141,7 +139,7 @@ def _by_key(claims: Iterable[dict[str, Any]]) -> dict[tuple[str, str, str, int],
 
 
 def _moved(old: Mapping[str, Any], new: Mapping[str, Any]) -> str:
-    """Describe the number that moved farthest beyond the sum of both error bars; "" if none did."""
+    """Describe the number that moved farthest beyond the sum of both error bars, or return ""."""
     if old["shape"] != new["shape"] or old["places"] != new["places"]:
         return "the claim consists of different numbers, so they cannot be compared"
     allowed = _errors(old) + _errors(new)
@@ -184,7 +182,7 @@ FORMAT, VERSION = "friction-discs baseline", 1
 def read_baseline(path: Path) -> frozenset[Key]:
     """Return the claims, or studies, and engines that are known to fail.
 
-    Raises ``ValueError`` for a file that cannot be read or is not a baseline.
+    Raises ``ValueError`` for an invalid file.
     """
     try:
         content = all_printable(json.loads(path.read_text(encoding="utf-8")))
@@ -198,7 +196,7 @@ def read_baseline(path: Path) -> frozenset[Key]:
 
 
 def write_baseline(path: Path, failures: Mapping[Key, str]) -> None:
-    """Write the ``failures``, by claim or study and engine, with an empty reason to be filled in."""
+    """Write the ``failures`` with empty reasons to be filled in."""
     known = [
         {"claim": claim, "engine": engine, "state": state, "why": ""}
         for (claim, engine), state in sorted(failures.items())

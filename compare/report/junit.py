@@ -14,7 +14,7 @@ from compare.run.workers import Failure
 def junit(run: Run, matrix: Matrix) -> bytes:
     """Return the XML: "differs" is a failure, "failed" an error; claims without a verdict are skipped.
 
-    Recorded engines are left out, because their verdicts do not test this project.
+    Recorded engines do not test this project and are left out.
     """
     root = ET.Element("testsuites", name="friction-discs")
     for study in matrix.studies:
@@ -60,7 +60,6 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
 
 
 def _numbers(claim: Claim) -> dict[str, str]:
-    """Return the numbers of the deciding element in full precision, and its unit."""
     element = worst(claim)
     numbers = {
         "predicted": element.predicted,
@@ -73,7 +72,7 @@ def _numbers(claim: Claim) -> dict[str, str]:
 
 
 def _share_time(suite: ET.Element, run: Run, study: str) -> None:
-    """Divide the time of a study equally among its cases, because claims are not timed separately."""
+    """Divide the time of a study equally among its cases."""
     cases: dict[str, list[ET.Element]] = {}
     for case in suite.iter("testcase"):
         cases.setdefault(case.get("classname", ""), []).append(case)

@@ -46,7 +46,7 @@ _SYMBOLS = {
 }
 
 GRADE_SYMBOLS = {Grade.EXACT: "✔", Grade.FINE: "✓", Grade.COARSE: "≈"}
-"""Marks of agreement by grade; agreement within the resolution of a claim but without a grade also has "✓"."""
+"""Marks of agreement by grade; agreement without a grade has "✓" too."""
 
 VERDICTS = (State.AGREES, State.DIFFERS, State.INCONCLUSIVE)
 
@@ -58,26 +58,18 @@ WORST_FIRST = (
     State.NOT_SIMULATED,
     State.AGREES,
 )
-"""States by priority: a cell takes the first one that applies to any of its claims."""
+"""States by priority: a cell takes the first one of its claims."""
 
 
 @dataclass(frozen=True)
 class Cell:
     """One engine's answer to one claim.
 
-    Parameters
-    ----------
-    state : State
-        Worst state of the claims.
-    claims : tuple of Claim
-        Usually one; several if the study makes the same claim for several parameters.
-    reason : str
-        Reason for a missing verdict.
-    evidence : str
-        Kind of evidence, see ``compare.claims.claim.EVIDENCE``; "" without a verdict.
-    implied_by : str
-        Claim that implies this verdict, or engine whose verdict on the same claim implies it.
-
+    - ``state``: worst state of the claims.
+    - ``claims``: usually one; several if the study makes the same claim for several parameters.
+    - ``reason``: reason for a missing verdict.
+    - ``evidence``: kind of evidence; "" without a verdict.
+    - ``implied_by``: claim that implies this verdict, or engine whose verdict on the same claim implies it.
     """
 
     state: State
@@ -88,13 +80,13 @@ class Cell:
 
     @property
     def number(self) -> str:
-        """Number next to the verdict, see ``compare.report.numbers.in_short``; "" without claims."""
+        """Number next to the verdict, see ``compare.report.numbers.in_short``."""
         worst = [claim for claim in self.claims if state_of(claim) is self.state]
         return in_short(deciding(worst)) if worst else ""
 
     @property
     def grade(self) -> Grade | None:
-        """Coarsest grade of agreement of the claims; None if they do not agree or have no grade."""
+        """Coarsest grade of the claims; None if they do not agree or have no grade."""
         if self.state is not State.AGREES:
             return None
         found = {claim.grade for claim in self.claims}
@@ -110,7 +102,7 @@ class Cell:
 class Row:
     """One claim of a study, with a cell for each column that has a verdict or a reason for its absence.
 
-    ``identity`` is the permanent name of the claim and its anchor in the page: "fig06/rests".
+    ``identity`` is the permanent name of the claim, "fig06/rests".
     """
 
     study: Study
@@ -121,12 +113,12 @@ class Row:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        """All claims of the row, column by column."""
+        """All claims, column by column."""
         return tuple(claim for cell in self.cells.values() for claim in cell.claims)
 
     @property
     def kind(self) -> str:
-        """Source of the prediction; "" if no column made the claim."""
+        """Source of the prediction, or ""."""
         return self.claims[0].kind if self.claims else ""
 
 
@@ -147,7 +139,7 @@ class RecordedMatrix:
 
     @property
     def adapters(self) -> dict[str, Path]:
-        """The source files of the engines' adapters that exist here, by their paths in the report."""
+        """Existing source files of the engines' adapters by their paths in the report."""
         found = {
             f"adapters/{Path(one.adapter).name}.txt": ROOT / one.adapter
             for one in self.settings
@@ -161,11 +153,11 @@ class RecordedMatrix:
 
     @property
     def claims(self) -> tuple[Claim, ...]:
-        """The claims of the first setting, which is an engine of this project and has them all."""
+        """The claims of the first setting, which has them all."""
         return self.settings[0].claims
 
     def cells(self, setting: Recorded) -> tuple[Cell | None, ...]:
-        """Return the cells of a row in the order of ``claims``; None if the engine does not simulate it."""
+        """Return the cells of a row in the order of ``claims``; None if not simulated."""
         found = {claim.sentence: _cell([claim]) for claim in setting.claims}
         return tuple(found.get(claim.sentence) for claim in self.claims)
 
@@ -179,7 +171,7 @@ class RecordedMatrix:
 class Matrix:
     """The rows of some studies; ``columns`` are the engines, after "theory" if it has claims.
 
-    ``recorded`` is separate because it contains earlier results of foreign engines, not verdicts on this run.
+    ``recorded`` contains earlier results, not verdicts on this run.
     """
 
     columns: tuple[str, ...]
@@ -216,21 +208,21 @@ class Matrix:
         return Counter(cell.state for cell in self.cells)
 
     def grades(self, column: str) -> Counter[Grade]:
-        """Return the number of cells of the column that agree to each grade, finest first."""
+        """Return the number of cells that agree to each grade, finest first."""
         found = Counter(cell.grade for cell in self.column(column))
         return Counter({grade: found[grade] for grade in GRADES if found[grade]})
 
     def reasons(self, state: State) -> Counter[str]:
-        """Return the reasons of all cells in ``state``, with the number of cells for each."""
+        """Return the reasons of all cells in ``state`` with their numbers of cells."""
         return Counter(cell.reason for cell in self.cells if cell.state is state)
 
     def of_evidence(self, evidence: Evidence, column: str = "") -> Counter[State]:
-        """Return the number of verdicts in each state with this kind of evidence, in one column or in all."""
+        """Return the verdicts with this kind of evidence, in one column or in all."""
         cells = self.column(column) if column else self.cells
         return Counter(cell.state for cell in cells if cell.evidence == evidence)
 
     def row_of(self, sentence: str) -> Row | None:
-        """Return the row of a claim; None if there is none."""
+        """Return the row of a claim, or None."""
         return next((row for row in self.rows if row.sentence == sentence), None)
 
     @property
@@ -246,7 +238,7 @@ class Matrix:
 
 
 def matrix(run: Run) -> Matrix:
-    """Return the matrix of a run, also of an incomplete one."""
+    """Return the matrix of a run, which may be incomplete."""
     rows = tuple(row for study in run.studies for row in _rows(run, study))
     used = {column for row in rows for column in row.cells}
     recorded = tuple(
@@ -281,7 +273,7 @@ def _rows(run: Run, study: Study) -> list[Row]:
         replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
         for row in rows
     ]
-    # keep gaps that no row shows because no column made a claim
+    # keep gaps of columns that made no claim
     unseen = {
         column: gap for column, gap in gaps.items() if not any(row.cells.get(column) is gap for row in rows)
     }
@@ -291,7 +283,6 @@ def _rows(run: Run, study: Study) -> list[Row]:
 
 
 def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
-    """Return the identity of a claim, or a name derived from its sentence that is not used in ``rows``."""
     if claim.identity:
         return claim.identity
     name = f"{study.name}/{slug(claim.sentence)}"
@@ -300,7 +291,7 @@ def _identity(study: Study, claim: Claim, rows: Sequence[Row]) -> str:
 
 
 def _cell_with_evidence(row: Row, column: str, rows: list[Row], study: Study) -> Cell:
-    """Return a cell of ``row`` with its kind of evidence; another of ``rows`` may imply its verdict."""
+    """Return a cell with its kind of evidence; another of ``rows`` may imply its verdict."""
     cell = row.cells[column]
     if not cell.claims:
         return cell
@@ -329,7 +320,7 @@ def _agrees(cell: Cell | None) -> bool:
 
 
 def gap_of(run: Run, study: str, column: str) -> Cell | None:
-    """Return the cell that replaces missing claims of ``column``; None if none are missing."""
+    """Return the cell that replaces missing claims of ``column``, or None."""
     outcome = run.outcomes.get((study, column))
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
@@ -344,6 +335,6 @@ def _cell(claims: list[Claim]) -> Cell:
 
 
 def state_of(claim: Claim) -> State:
-    """Return the state for the verdict of a claim."""
+    """Return the state of a verdict."""
     verdict: Verdict = claim.verdict
     return State(verdict.value)

@@ -46,7 +46,7 @@ def value_text(value: float, uncertainty: float, most: int = MOST_DIGITS) -> str
 
 
 def error_text(value: float, digits: int = 2) -> str:
-    """Return an error or a difference, usually with two digits."""
+    """Return an error or a difference as text."""
     return with_digits(value, digits)
 
 
@@ -65,7 +65,7 @@ SPACE = "\N{NO-BREAK SPACE}"
 
 @dataclass(frozen=True)
 class Largest:
-    """The largest difference in one unit, with the index and the name of its element."""
+    """The largest difference in one unit, with index and name of its element."""
 
     index: int
     name: str
@@ -75,10 +75,7 @@ class Largest:
 
 @dataclass(frozen=True)
 class Worst:
-    """The deciding element of a claim, ``index`` (from 0) of ``count``, and the largest difference in each unit.
-
-    ``name`` describes the element, "" if the claim has only one.
-    """
+    """The deciding element of a claim, ``index`` (from 0) of ``count``, and the largest difference in each unit."""
 
     index: int
     count: int
@@ -98,7 +95,7 @@ class Worst:
 
 
 def worst(claim: Claim) -> Worst:
-    """Return the element nearest to failing; for an inconclusive claim, the element with the largest error bar."""
+    """Return the element nearest to failing; for an inconclusive claim, the one with the largest error bar."""
     numerical = np.broadcast_to(claim.budget.numerical, claim.predicted.shape)
     i = int(np.argmax(numerical)) if claim.verdict is Verdict.INCONCLUSIVE else claim.worst
     return Worst(
@@ -147,7 +144,7 @@ def deciding(claims: Sequence[Claim]) -> Claim:
 def in_short(claim: Claim) -> str:
     """Return the number next to a verdict: the error bar, "± 2×10⁻⁹ m", or the excessive difference, "by 3 m".
 
-    For yes-no answers it is "7 of 8"; for agreement without an error bar, "".
+    For yes-no answers it is "7 of 8".
     """
     element = worst(claim)
     if claim.answers:

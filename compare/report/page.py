@@ -73,7 +73,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
 
 
 def environment() -> Environment:
-    """Return the environment that renders the templates."""
+    """Return the environment of the templates."""
     result = Environment(
         loader=PackageLoader("compare.report"),
         autoescape=True,
@@ -126,10 +126,8 @@ KINDS: dict[Evidence, str] = {
     "algebra": "of algebra",
     "implied": "implied by others",
 }
-"""Words for the checks with each kind of evidence."""
 
 GAPS = (State.FAILED, State.MISSING, State.NOT_SIMULATED)
-"""States without a verdict."""
 
 
 def _in_words(totals: Counter[State]) -> str:
@@ -169,13 +167,12 @@ def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
 
 
 def _particular(row: Row, claim: Claim) -> str:
-    """Return the parameters of a claim that the other claims of its row do not share."""
+    """Return the parameters of a claim that other claims of its row do not share."""
     shared = _shared_parameters(row.claims)
     return _parameters({name: value for name, value in claim.parameters.items() if name not in shared})
 
 
 def _common(row: Row) -> dict[str, Any]:
-    """Return the shared parameters of a row's claims, and their sources and notes by engine, as texts."""
     return {
         "parameters": _parameters(_shared_parameters(row.claims)),
         "sources": _by_engine(row, "source"),
@@ -193,7 +190,7 @@ def _shared_parameters(claims: tuple[Claim, ...]) -> dict[str, Any]:
 
 
 def _by_engine(row: Row, attribute: str) -> list[str]:
-    """Return the distinct texts, each after the names of its engines if there are several."""
+    """Return the distinct texts, with the names of their engines if there are several."""
     texts: dict[str, list[str]] = {}
     for claim in row.claims:
         text = getattr(claim, attribute)
@@ -213,7 +210,7 @@ def _parameters(parameters: Mapping[str, Any]) -> str:
 
 
 def _is_answered(study: Study, own: Matrix) -> bool:
-    """Return whether a study has a finding, all its claims agree, and all numbers in the finding were measured."""
+    """Return whether a study's finding may be shown: its claims agree, and all of its numbers were measured."""
     return (
         bool(study.prose.finding)
         and own.agrees
@@ -222,7 +219,7 @@ def _is_answered(study: Study, own: Matrix) -> bool:
 
 
 def _quoting(own: Matrix, text: str) -> Markup:
-    """Return a text with its numbers quoted from the rows ``own``, each with its error and a link to its claim."""
+    """Return a text with quotes from ``own``, each with its error and a link to its claim."""
     found = Markup()
     for literal, words in quotes.parts(text):
         found += _with_code(literal)
@@ -247,13 +244,12 @@ def _with_code(text: str) -> Markup:
 
 
 def _origin(quote: quotes.Quote) -> str:
-    """Return the error of a quoted number, its engine and its claim."""
     error = f"± {error_text(quote.error)}, " if quote.nature == "measured" else ""
     return f"{error}{quote.claim.engine}: {quote.claim.sentence}"
 
 
 def _pictures(run: Run, study: Study) -> list[tuple[str, str]]:
-    """Return name and suffix of the study's pictures in the order of their captions; others come last."""
+    """Return name and suffix of the study's pictures in the order of their captions."""
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []
@@ -263,13 +259,11 @@ def _pictures(run: Run, study: Study) -> list[tuple[str, str]]:
 
 
 def _hero(run: Run) -> tuple[Study, str, str] | None:
-    """Return study, name and suffix of the picture of the first screen; None if it was not drawn."""
     pictures = ((study, *picture) for study in run.studies for picture in _pictures(run, study))
     return next((picture for picture in pictures if picture[1] == HERO), None)
 
 
 def _filters(matrix: Matrix) -> dict[str, list[str]]:
-    """Return the options of the filters: engines, verdicts, kinds of evidence, studies and equations."""
     return {
         "engine": list(
             dict.fromkeys([*matrix.columns, *(name for one in matrix.recorded for name in one.by_engine)])
@@ -296,7 +290,7 @@ def _claim_commands(seed: int | None, row: Row) -> list[str]:
 
 
 def command(what: str, engine: str, seed: int | None = None) -> str:
-    """Return the command that repeats the measurement of a study, or of a claim, with one engine."""
+    """Return the command that repeats the measurement of a study or a claim with one engine."""
     text = f"friction-discs report {what}"
     if engine == THEORY:
         return text
@@ -304,5 +298,4 @@ def command(what: str, engine: str, seed: int | None = None) -> str:
 
 
 def _data(value: float, text: str) -> Markup:
-    """Return a number as printed, with its exact value as data."""
     return Markup('<data value="{}">{}</data>').format(repr(value), text)

@@ -84,7 +84,7 @@ class _Reference:
 
 
 def quote(claims: Iterable[Claim], words: str) -> Quote | None:
-    """Return the number that ``words`` name from the first of ``claims`` that has it; None if none has it."""
+    """Return the number that ``words`` name from the first of ``claims`` that has it, or None."""
     asked = _Reference.of(words)
     for claim in claims:
         if asked.name in claim.named and asked.engine in ("", claim.engine):
@@ -116,7 +116,7 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
 
 
 def parts(text: str) -> Iterator[tuple[str, str | None]]:
-    """Yield pairs of the text before each quote and the words of the quote, then the remaining text and None."""
+    """Yield each text before a quote with the words of the quote, then the remaining text and None."""
     for literal, name, options, _ in Formatter().parse(text):
         yield literal, f"{name}:{options}" if options else name
 

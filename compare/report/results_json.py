@@ -1,7 +1,7 @@
 """``results.json``: the report for programs, described by ``results.schema.json``.
 
-The file contains the verdict of each claim and engine with the numbers of the deciding element. All numbers are in
-separate tables, which ``read_results`` adds.
+It contains the verdict of each claim and engine with the numbers of the deciding element. All numbers are in separate
+tables, which ``read_results`` adds.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ from reference_model.systems import FloatArray
 
 # --- All numbers of each claim as a table: comma-separated values, a row for each element and engine.
 #
-# ``measurement`` counts repeated claims of an engine from 1. Numbers are written in full precision, and as "nan" or
-# "inf". Large tables are compressed (xz); pandas and R read them directly.
+# ``measurement`` counts repeated claims of an engine from 1. Numbers have all digits, or are "nan" or "inf". Large
+# tables are compressed (xz); pandas and R read them directly.
 
 FOLDER = "arrays"
 
@@ -54,19 +54,19 @@ COLUMNS = (
     "numerical_error",
     "size",
 )
-"""Columns of a table; ``element`` counts from 0, ``place`` describes it, ``size`` is empty if the claim has none."""
+"""Columns of a table; ``element`` counts from 0, ``place`` describes it."""
 
 LARGE = 32_768
 """Size in bytes above which a table is compressed."""
 
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
-    """Return the path in the report and the content of each claim's table, by identity."""
+    """Return path and content of each claim's table, by identity."""
     return {row.identity: table(row) for row in matrix.rows if row.claims}
 
 
 def table(row: Row) -> tuple[str, bytes]:
-    """Return the path in the report and the content of a claim's table."""
+    """Return path and content of a claim's table."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(COLUMNS)
@@ -79,7 +79,6 @@ def table(row: Row) -> tuple[str, bytes]:
 
 
 def _elements(claim: Claim) -> Iterator[tuple[object, ...]]:
-    """Yield the columns of each element, starting with ``element``."""
     shape = claim.predicted.shape
     numbers = [
         repeat("")
@@ -119,7 +118,6 @@ def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str
 
 
 def _read(path: Path) -> dict[tuple[str, str], list[dict[str, str]]]:
-    """Return the rows of a table by engine and measurement."""
     raw = path.read_bytes()
     text = (lzma.decompress(raw) if path.suffix == ".xz" else raw).decode()
     found: dict[tuple[str, str], list[dict[str, str]]] = {}
@@ -153,7 +151,7 @@ def _arrays(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> dict[str, A
 # --- The report as one file.
 
 FORMAT, VERSION = "friction-discs results", 1
-"""Name and version of the format; the version rises with incompatible changes."""
+"""Name and version of the format; incompatible changes increase the version."""
 
 FILE = "results.json"
 
@@ -168,11 +166,7 @@ def schema() -> dict[str, Any]:
 def read_results(path: Path) -> dict[str, Any]:
     """Return a report's results with the arrays of each claim, from ``results.json`` or its folder.
 
-    Raises
-    ------
-    ValueError
-        If the file is missing, is not a report or has another version.
-
+    Raises ``ValueError`` if the file is missing, is not a report or has another version.
     """
     file = path / FILE if path.is_dir() else path
     try:
@@ -196,7 +190,7 @@ def read_results(path: Path) -> dict[str, Any]:
 
 
 def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
-    """Return the duration in s of each measurement in the first report of ``folders``; {} without a report."""
+    """Return the duration in s of each measurement in the first report of ``folders``."""
     for folder in folders:
         with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
             content = json.loads((folder / FILE).read_text(encoding="utf-8"))
@@ -210,10 +204,7 @@ def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
 
 
 def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
-    """Return the content of ``results.json``; numbers that JSON lacks are "nan", "inf" and "-inf".
-
-    ``paths`` are the claims' tables by identity.
-    """
+    """Return the content of ``results.json``; ``paths`` are the claims' tables by identity."""
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -274,7 +265,6 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
 
 
 def _verdict(claim: Claim, cell: Cell, measurement: int, identity: str, path: str) -> dict[str, Any]:
-    """Return a claim with its kind of evidence in this report and the path of its numbers."""
     said = _without_arrays(claim)
     more = {
         "measurement": measurement,
@@ -297,7 +287,6 @@ def _without_arrays(claim: Claim) -> dict[str, Any]:
 
 
 def _deciding(claim: Claim) -> dict[str, Any]:
-    """Return the numbers of the deciding element, and the largest difference in each unit."""
     element = worst(claim)
     return {
         "decided_by": as_json(
@@ -320,7 +309,6 @@ def _deciding(claim: Claim) -> dict[str, Any]:
 
 
 def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
-    """Return state, reason for missing claims and duration of one measurement."""
     gap = gap_of(run, study, column)
     return {
         "state": "finished" if gap is None else gap.state.value,

@@ -19,11 +19,11 @@ from compare.run.runner import Run
 from compare.run.store import Drawing
 
 LINES = 4
-"""Number of nesting levels of ``results.json`` with one line per value; each claim gets one line."""
+"""Number of nesting levels of ``results.json`` with one line per value."""
 
 
 def write_report(run: Run, output: Path) -> Matrix:
-    """Write the report of a complete or interrupted run to the folder ``output`` and return its matrix."""
+    """Write the report of a run to the folder ``output`` and return its matrix."""
     verdicts, stamp = matrix(run), platform_stamp()
     output.mkdir(parents=True, exist_ok=True)
     for drawing in run.drawings.values():
@@ -48,7 +48,6 @@ def _pictures(drawing: Drawing) -> dict[str, bytes]:
 
 
 def _lines(content: Any, depth: int) -> str:
-    """Return JSON with one line per value down to ``depth``."""
     if depth == 0 or not content or not isinstance(content, dict | list):
         return json.dumps(content, ensure_ascii=False, allow_nan=False)
     if isinstance(content, list):

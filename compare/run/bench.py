@@ -12,16 +12,16 @@ from compare.run.runner import measured, pace
 from compare.run.workers import Failure, Workers
 
 START_UP = 60.0
-"""Additional time in s for the start of a process, which imports the engine and the study."""
+"""Additional time in s for the start of a process and its imports."""
 
 NO_CLAIM = "-"
 """Selector that fits no claim."""
 
 
 class Bench:
-    """Measure one claim at a time, within the time that the other claims of its study leave.
+    """Measures one claim at a time, within the time that the other claims of its study leave.
 
-    At the quick level, a claim that would take too long is not attempted.
+    The quick level does not attempt a claim that would take too long.
     """
 
     def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
@@ -35,7 +35,7 @@ class Bench:
     def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
         """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure.
 
-        Later claims reuse the motions of earlier claims, because one process measures them all.
+        One process measures all claims, so later ones reuse the motions of earlier ones.
         """
         key = (study.name, engine)
         left = self._limit - self._spent[key]
@@ -57,7 +57,7 @@ class Bench:
         return Findings(not_simulated=longer) if out_of_time and self._quick else found
 
     def _pace_of(self, engine: str) -> float:
-        """Return the wall-clock time for a second of motion, 0 if the engine has no fixed step or no result."""
+        """Return the wall-clock time for a second of motion, 0 without a fixed step or a result."""
         if engine not in self._pace:
             found = self._ask(self._limit + START_UP, engine, pace, engine)
             self._pace[engine] = found if isinstance(found, float) else 0.0

@@ -1,7 +1,7 @@
 """The motions that a study requests, if they do not depend on the answers.
 
-Each claim is measured twice with an engine that records its questions: once with answers of the reference, and once
-with slightly wrong answers. If the questions are equal, every engine would receive them.
+An engine that records its questions gives exact and then slightly wrong answers. If the questions are equal, every
+engine would receive them.
 """
 
 from __future__ import annotations
@@ -25,22 +25,16 @@ from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
-"""Error of the wrong answers relative to each component's largest size; larger than the errors of engines."""
+"""Error of the wrong answers relative to each component's size, larger than those of engines."""
 
 
 @dataclass(frozen=True)
 class Planned:
     """The motions that a study requests.
 
-    Parameters
-    ----------
-    motions : tuple of bytes
-        The questions, as lines for a program.
-    claims : int
-        Number of claims that need no other motions.
-    adaptive : int
-        Number of omitted claims, whose motions depend on the answers.
-
+    - ``motions``: the questions, as lines for a program.
+    - ``claims``: number of claims that need no other motions.
+    - ``adaptive``: number of omitted claims, whose motions depend on the answers.
     """
 
     motions: tuple[bytes, ...]
@@ -52,7 +46,7 @@ class Planned:
 class _Recorder:
     """The ``simulate`` of an engine that records its questions.
 
-    No two instances are equal, so a study never reuses cached results of another instance.
+    No two instances are equal, so a study never reuses results of another one.
     """
 
     answer: Callable[..., Trajectory]
@@ -74,7 +68,7 @@ def planned(study: Study, kinds: tuple[str, ...], seed: int | None = None) -> Pl
     truth = _Truth()
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
-    for part in study.sentences().values():  # claims can be measured separately
+    for part in study.sentences().values():
         exact, off = _Recorder(truth.exact), _Recorder(truth.off)
         found = _measured(study, Engine("plan", exact, kinds, phases=False, seed=seed), part)
         with suppress(Exception):  # a study may raise anything for wrong answers
@@ -92,7 +86,7 @@ def _measured(study: Study, engine: Engine, part: str) -> int:
 
 
 class _Truth:
-    """Cached answers of the reference, without phases because files contain none."""
+    """Cached answers of the reference, without phases."""
 
     def __init__(self) -> None:
         self._known: dict[bytes, Trajectory] = {}

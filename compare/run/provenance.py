@@ -26,13 +26,12 @@ from compare.engines.outside.program import code_below
 # --- Commit, versions and machine of a report.
 
 ROOT = Path(__file__).resolve().parents[2]
-"""Folder of the packages."""
 
 LIBRARIES = ("numpy", "scipy", "exudyn", "numba")
 
 
 def platform_stamp() -> dict[str, str]:
-    """Return versions, operating system, number of cores and date as texts, without names of machines or folders."""
+    """Return versions, operating system, number of cores and date."""
     return {
         "friction-discs": version_of("friction-discs"),
         "commit": commit() or "unknown",
@@ -47,17 +46,17 @@ def platform_stamp() -> dict[str, str]:
 
 
 ENGINES = {"reference": "friction-discs", "plain": "friction-discs", "exudyn": "exudyn"}
-"""Distributions that contain the code of this project's engines."""
+"""Distributions with the code of this project's engines."""
 
 
 def engine_version(name: str, kin: str, own: str) -> str:
-    """Return ``own``, or the version of the engine's distribution; "" if unknown."""
+    """Return ``own``, or the version of the engine's distribution, or ""."""
     source = ENGINES.get(kin or name)
     return own or (version_of(source) if source else "")
 
 
 def commit() -> str:
-    """Return the commit of the code, with "-dirty" if files differ from it; "" if unknown."""
+    """Return the commit of the code, with "-dirty" if files differ from it, or ""."""
     if (ROOT / ".git").exists():
         try:
             found = subprocess.run(
@@ -76,7 +75,7 @@ def commit() -> str:
 
 
 def processor() -> str:
-    """Return the model name of the processor, or else its architecture."""
+    """Return the model of the processor, or its architecture."""
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines():
             if line.startswith("model name"):
@@ -93,7 +92,7 @@ def version_of(name: str) -> str:
 
 
 def exudyn_user_settings() -> str:
-    """Return "on" if Exudyn has already been imported and applied a user's own settings, else "off"."""
+    """Return "on" if Exudyn has been imported and applied a user's own settings, else "off"."""
     found = sys.modules.get("exudyn.misc.overrideSettings")
     return "on" if found is not None and found.Applied() else "off"
 
@@ -101,10 +100,9 @@ def exudyn_user_settings() -> str:
 # --- Files of an engine's code. Modules are located but not imported: foreign code runs only in separate processes.
 
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
-"""Packages of this project."""
 
 SITES = {"site-packages", "dist-packages"}
-"""Folders of installed packages, which are independent of each other."""
+"""Folders of independent installed packages."""
 
 
 def files_of(function: Callable[..., Any]) -> list[Path] | None:
@@ -146,7 +144,7 @@ def _found(package: str, folder: str) -> ModuleSpec | None:
 # --- Digest of all that results depend on: sources, the engine's own files, versions of libraries, type of machine.
 
 SOURCES = {".py", ".c", ".h", ".json", ".csv"}
-"""Suffixes of the project's code and of its data: records of other engines and published numbers."""
+"""Suffixes of the project's code and of its data."""
 
 DRAWING_LIBRARIES = ("matplotlib", "pillow")
 
@@ -183,7 +181,7 @@ def engine_stamp(engine: Engine | None) -> str | None:
 
 @cache
 def _sources(root: Path) -> str:
-    """Return the digest of the packages below ``root``, cached because a process keeps the code it started with."""
+    """Return the digest of the packages, cached because a process keeps its code."""
     paths = (path for name in PACKAGES for path in (root / name).rglob("*") if path.suffix in SOURCES)
     return _digest((path.relative_to(root).as_posix(), path) for path in sorted(paths))
 

@@ -1,4 +1,4 @@
-"""Run studies with engines: in parallel, with failures kept apart, and nothing lost at Ctrl-C."""
+"""Run studies with engines: in parallel, with separate failures, and nothing lost at Ctrl-C."""
 
 from __future__ import annotations
 
@@ -34,31 +34,16 @@ Progress = Callable[[int, int, str, float], None]
 class Run:
     """The requested measurements and their results so far.
 
-    Parameters
-    ----------
-    studies, engines : tuple
-        Requested studies, and names of the requested engines without "theory".
-    contact_only : tuple of str
-        Names of the engines that take part only in studies of the contact (``Study.contact``).
-    about : tuple of str
-        Descriptions of the engines.
-    errata : tuple of Erratum
-        Errata whose evidence was requested.
-    outcomes : dict
-        Findings or failure for each finished (study, engine or "theory").
-    seconds : dict
-        Duration of each measurement in s.
-    drawings : dict
-        Drawing or failure for each study.
-    evidence : dict
-        Evidence or failure for each erratum, by its index in ``errata``.
-    versions : dict
-        Versions of the engines by name; "" if unknown.
-    seed : int, optional
-        Seed of the units of the motions, see ``Engine.seed``.
-    interrupted : bool
-        True if Ctrl-C ended the run early.
-
+    - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
+    - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
+    - ``about``, ``versions``: descriptions and versions of the engines.
+    - ``errata``: errata whose evidence was requested.
+    - ``outcomes``: findings or failure for each finished (study, engine or "theory").
+    - ``seconds``: duration of each measurement in s.
+    - ``drawings``: drawing or failure for each study.
+    - ``evidence``: evidence or failure for each erratum, by its index in ``errata``.
+    - ``seed``: seed of the units of the motions, see ``Engine.seed``.
+    - ``interrupted``: True if Ctrl-C ended the run early.
     """
 
     studies: tuple[Study, ...]
@@ -98,7 +83,7 @@ class Run:
         return len(self.outcomes) + len(self.drawings) + len(self.evidence)
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of the findings by engine, without empty ones."""
+        """Return the arrays of the findings by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
         return {
             column: outcome.data
@@ -121,28 +106,10 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Parameters
-    ----------
-    studies, engines, errata
-        Studies to measure, engines to measure them with, and errata to check.
-    folder : Path
-        Folder for findings and drawings, written as they arrive. Drawings of equal data are reused from it.
-    jobs : int
-        Number of processes.
-    limit : float, optional
-        Longest duration of a piece of work in s; exceeding it is a failure.
-    resume : bool
-        Reuse findings in ``folder`` with the same digest of code and libraries, see ``compare.run.provenance``.
-    expected : mapping, optional
-        Duration of each measurement in s in an earlier run, see ``Run.seconds``.
-    progress : Progress
-        Called whenever a piece of work begins or ends.
-
-    Returns
-    -------
-    Run
-        The results; after Ctrl-C incomplete, with ``interrupted`` set.
-
+    Findings and drawings are written as they arrive; drawings of equal data are reused. ``jobs`` is the number of
+    processes. A piece of work that takes longer than ``limit`` (s) fails. ``resume`` reuses findings with the same
+    digest of code and libraries. ``expected`` are the durations of an earlier run. ``progress`` is called whenever a
+    piece of work begins or ends. After Ctrl-C the results are incomplete, with ``interrupted`` set.
     """
     result = Run(
         studies,
@@ -165,7 +132,7 @@ def run(
 
 @dataclass
 class _Runner:
-    """Scheduler of the measurements, and of each study's drawing after its last one unless a stored drawing fits."""
+    """Scheduler of the measurements, and of each study's drawing after its last one."""
 
     result: Run
     workers: Workers
@@ -201,7 +168,6 @@ class _Runner:
         self.show([])
 
     def show(self, running: Collection[Hashable]) -> None:
-        """Report the names of the running work, and the remaining time by the durations of an earlier run."""
         result, now = self.result, time.monotonic()
         self.began = {key: self.began.get(key, now) for key in running}
         left: dict[Hashable, float] = {}
@@ -216,7 +182,6 @@ class _Runner:
         self.progress(result.done, total, names, seconds)
 
     def _take(self, done: Done) -> None:
-        """Store a finished piece of work."""
         kind: Any
         name: Any
         kind, name = done.key  # type: ignore[misc]
@@ -257,7 +222,7 @@ QUICK_SEED = 1
 
 
 def seed_of(level: str, seed: int | None) -> int | None:
-    """Return the given ``seed`` of the units of motions, or that of the level "quick" or "full"."""
+    """Return the given ``seed`` of the units of motions, or that of the level."""
     return QUICK_SEED if level == "quick" and seed is None else seed
 
 
@@ -266,8 +231,8 @@ def measured(
 ) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    An engine given by name is imported here, in a process that may hang or crash; ``seed`` is for its units. ``only``
-    selects claims as in ``Study.measure``; empty selects all. Raises ``TypeError`` if the result is not ``Findings``.
+    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
+    ``Study.measure``. Raises ``TypeError`` if the result is not ``Findings``.
     """
     findings: object = None
     if isinstance(engine, str):
@@ -290,7 +255,7 @@ PACE_STEPS = 500
 
 
 def pace(name: str) -> float:
-    """Return the wall-clock time for a second of motion in the engine ``name``; 0 if it has no fixed step."""
+    """Return the wall-clock time for a second of motion in the engine ``name``; 0 without a fixed step."""
     (engine,) = engines([name])
     if engine.step is None:
         return 0.0
@@ -305,7 +270,7 @@ def pace(name: str) -> float:
 
 
 def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
-    """Return the engines of the given names, as ``compare.engines.engines`` does, using one of the ``workers``.
+    """Return the engines of the given names, loaded by the ``workers``.
 
     Raises ``ValueError`` for a name that is unknown or that the process could not load.
     """

@@ -26,19 +26,19 @@ from compare.run.provenance import stamp
 # joblib and diskcache would pickle results, which is neither readable nor safe to share.
 
 LONGEST = 100
-"""Largest number of readable characters of a file name; a program's name may exceed the limit of the file system."""
+"""Largest number of readable characters of a file name, because file systems limit it."""
 
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
 class _Archives:
-    """A folder, made with its first archive, with one archive for each finished piece of work."""
+    """A folder, made with its first archive, with an archive for each finished piece of work."""
 
     folder: Path
 
     def _keep(self, key: tuple[str, ...], stamp: str | None, contents: Mapping[str, bytes]) -> None:
-        """Write an archive; an existing one is always complete. Without a stamp it is never found again."""
+        """Write an archive; without a stamp it is never found again."""
         self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(self._path(key), "wb") as stream, ZipFile(stream, "w", ZIP_DEFLATED) as archive:
             archive.comment = _comment(stamp, len(contents))
@@ -55,17 +55,17 @@ class _Archives:
                 if stamp is None or archive.comment != _comment(stamp, len(paths)):
                     return None
                 return restored({path: archive.read(path) for path in paths})
-        except Exception:  # any error of the libraries in a damaged file: compute the contents again
+        except Exception:  # any error of the libraries in a damaged file
             return None
 
     def _path(self, key: tuple[str, ...]) -> Path:
-        # The digest makes names unique, even on file systems that ignore case; the words are for people.
+        # The digest makes names unique, even on file systems that ignore case.
         words = re.sub(r"[^\w-]", "_", "--".join(key), flags=re.ASCII)[:LONGEST]
         return self.folder / f"{words}--{hashlib.sha256(repr(key).encode()).hexdigest()[:16]}.zip"
 
 
 def _comment(stamp: str | None, files: int) -> bytes:
-    """Return the archive's comment, with the number of files because a damaged table of contents may list fewer."""
+    """Return the archive's comment, with the number of files because a damaged archive may list fewer."""
     return f"{stamp} {files}".encode()
 
 
@@ -92,7 +92,7 @@ class Store(_Archives):
     ) -> tuple[Findings, float] | None:
         """Return the findings and their duration in s; None if they are missing, damaged or have another stamp.
 
-        Claims must have one of the ``identities`` or none, because they become file names of the report.
+        Claims must have one of the ``identities`` or none, because these become file names.
         """
 
         def restored(files: dict[str, bytes]) -> tuple[Findings, float] | None:
@@ -127,7 +127,7 @@ def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
 
 
 def drawing_stamp(data: Mapping[str, Data]) -> str:
-    """Return the digest of all that a drawing depends on: data, code and libraries."""
+    """Return the digest of data, code and libraries."""
     digest = hashlib.sha256()
     for engine, arrays in data.items():
         for name, values in arrays.items():

@@ -29,25 +29,24 @@ from compare.output.outside_text import cause_of_end, printable
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"), "1"
 )
-"""Environment that disables threads of linear algebra, because each core already runs a process."""
+"""Environment without threads of linear algebra, because each core runs a process."""
 
 SAFE_PATH = {"PYTHONSAFEPATH": "1"}
-"""Environment that keeps a new process from importing from the current folder before it receives this one's path."""
+"""Environment that keeps a new process from importing from the current folder too early."""
 
 STANDARD_OUTPUT, STANDARD_ERROR = 1, 2
-"""File descriptors of the standard streams."""
 
 MOST_ERRORS = 100_000
-"""Largest number of characters of a process's standard error that are forwarded at once."""
+"""Largest number of characters of standard error that are forwarded at once."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
-"""Messages of the loader of shared libraries when memory is short."""
+"""Messages of the loader of shared libraries without memory."""
 
 FAREWELL = 1.0
-"""Longest wait, in s, for the exit code of a process whose connection has closed."""
+"""Longest wait in s for the exit code of a process whose connection has closed."""
 
 TICK = 0.005
-"""Interval, in s, between checks of the exit code."""
+"""Interval in s between checks of the exit code."""
 
 
 @dataclass(frozen=True)
@@ -62,18 +61,16 @@ class Failure:
     unfinished: bool = False
 
     def __post_init__(self) -> None:
-        """Make the texts printable, because most of them come from an engine."""
         object.__setattr__(self, "reason", printable(self.reason))
         object.__setattr__(self, "where", tuple(map(printable, self.where)))
 
     def __str__(self) -> str:
-        """Return the reason, followed by the innermost location in brackets."""
         return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
 
 
 @dataclass(frozen=True)
 class Done:
-    """A finished piece of work: ``value`` is what the function returned, or a ``Failure``."""
+    """A finished piece of work with its result or ``Failure``."""
 
     key: Hashable
     value: Any
@@ -91,9 +88,9 @@ class _Work:
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager.
 
-    A piece of work that takes longer than ``limit`` (in s) fails. The limit may change while no work is pending.
-    ``watch`` is called with the keys of the running work whenever they may have changed.
-    Leaving the context kills all processes.
+    A piece of work that takes longer than ``limit`` (s) fails. The limit may change while no work is pending.
+    ``watch`` is called with the keys of the running work when they may have changed. Leaving the context kills all
+    processes.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -124,8 +121,8 @@ class Workers:
     ) -> None:
         """Append ``function(*arguments)`` to the queue, or prepend it if ``first``.
 
-        A process that has worked for an ``owner``, for example a foreign engine, never works for another owner,
-        because foreign code may have changed its modules.
+        A process that has worked for an ``owner``, such as a foreign engine, never works for another one, because
+        foreign code may have changed its modules.
         """
         work = _Work(key, function, arguments, owner)
         if first:
@@ -156,7 +153,7 @@ class Workers:
             self._queue.remove(work)
             try:
                 message = pickle.dumps((work.function, work.arguments))
-            except Exception as error:  # whatever an object's own pickling raises
+            except Exception as error:  # pickling may raise anything
                 reason = f"cannot be sent to another process ({error}); use functions of a module"
                 yield Done(work.key, Failure(reason), 0.0)
                 continue
@@ -192,14 +189,13 @@ class Workers:
 
 
 class _Worker:
-    """A process and the connection to it; ``key`` identifies its current work and is None while it is idle.
+    """A process and the connection to it; ``key`` identifies its current work, None while it is idle.
 
-    ``started`` is the time, in s of the monotonic clock, at which it received the work. The process writes its
-    temporary files to the folder ``temporary``.
+    It received the work at ``started``, in s of the monotonic clock, and writes temporary files to ``temporary``.
     """
 
     def __init__(self, temporary: str) -> None:
-        context = multiprocessing.get_context("spawn")  # the same on every platform, no inherited state
+        context = multiprocessing.get_context("spawn")  # no inherited state
         self.connection, other_end = context.Pipe()
         self.key: Hashable | None = None
         self.owner = ""
@@ -215,7 +211,7 @@ class _Worker:
 
     def start(self, key: Hashable, message: bytes, owner: str) -> None:
         self.key, self.owner, self.started = key, owner, time.monotonic()
-        with suppress(BrokenPipeError):  # result() reports that the process has ended
+        with suppress(BrokenPipeError):  # result() reports the end of the process
             self.connection.send_bytes(message)
 
     def result(self) -> Done:
@@ -236,7 +232,7 @@ class _Worker:
         self.dead = True
         if self._process.pid is not None and hasattr(os, "killpg"):
             with suppress(ProcessLookupError, PermissionError):  # it leads no group yet, or no longer
-                os.killpg(self._process.pid, signal.SIGKILL)  # includes processes started by an engine
+                os.killpg(self._process.pid, signal.SIGKILL)  # includes processes of an engine
         self._process.kill()  # compiled code may ignore weaker signals
         self._process.join()
         self._errors.close()
@@ -245,7 +241,7 @@ class _Worker:
     def _exit_code(self) -> int | None:
         """Return the exit code of the process, None if it has none after ``FAREWELL``.
 
-        ``join`` could block forever, because a process that closes all its descriptors appears to have ended.
+        ``join`` could block forever, because a process without open descriptors appears to have ended.
         """
         deadline = time.monotonic() + FAREWELL
         while self._process.exitcode is None and time.monotonic() < deadline:
@@ -254,7 +250,7 @@ class _Worker:
 
 
 class _Errors:
-    """The standard error of a process, which may hold the only reason why it ended, even during start-up."""
+    """The standard error of a process, which may hold the only reason why it ended."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115
@@ -262,7 +258,7 @@ class _Errors:
 
     @contextmanager
     def written(self) -> Iterator[None]:
-        """Capture the standard error of processes started in this context; on Windows they share this one's."""
+        """Capture the standard error of processes started in this context, except on Windows."""
         try:
             own = os.dup(STANDARD_ERROR)
         except OSError:  # closed by the caller
@@ -283,11 +279,10 @@ class _Errors:
         self._file.close()
 
     def forward(self) -> str:
-        """Write new text to the standard error of this process, and return it."""
         size = os.fstat(self._file.fileno()).st_size
         if size == self._forwarded:
             return ""
-        # Both processes share the file position, so reading must not move it.
+        # Reading must not move the shared file position.
         new = os.pread(self._file.fileno(), size - self._forwarded, self._forwarded)
         self._forwarded += len(new)
         text = printable(new.decode(errors="replace"), MOST_ERRORS)
@@ -298,7 +293,7 @@ class _Errors:
 
 
 def _serve(connection: Connection) -> None:
-    """Process work until the other end of the connection is closed."""
+    """Process work until the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
@@ -320,12 +315,12 @@ def _serve(connection: Connection) -> None:
             connection.send_bytes(answer)
     except EOFError:
         pass
-    except OSError:  # an engine has closed the connection, and standard streams perhaps
+    except OSError:  # an engine has closed the connection
         os._exit(1)
 
 
 def _end_with_parent() -> None:
-    """End this process, even while it works, when its parent process has ended."""
+    """End this process when its parent process has ended."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         wait([parent.sentinel])
@@ -348,19 +343,19 @@ def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
 def failure(error: BaseException) -> Failure:
     """Return the message of an exception and its traceback, innermost location last."""
     lines = printable(error).strip().splitlines()
-    # ValueError and RuntimeError carry sentences; the message of a KeyError, for example, needs its name
+    # ValueError and RuntimeError carry sentences; others need their names
     named = not isinstance(error, (ValueError, RuntimeError)) or not lines
     reason = ": ".join(([type(error).__name__] if named else []) + lines[:1])
     if lacks_memory(error):
         reason = f"not enough memory ({reason})"
     frames = traceback.extract_tb(error.__traceback__)
-    # file names only, because a report must not reveal the folders of its machine
+    # file names only, because a report must not reveal folders
     where = tuple(f"{Path(frame.filename).name}:{frame.lineno} in {frame.name}" for frame in frames)
     return Failure(reason, tuple(line for line in where if not line.startswith("workers.py:")))
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Return whether an exception or one of its causes reports a lack of memory, also while loading a library."""
+    """Return whether an exception or one of its causes reports a lack of memory."""
     while error is not None:
         if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
             return True

@@ -1,6 +1,6 @@
 """Groups of arrays in Zarr version 3, which xarray writes at once or region by region.
 
-Every piece has a crc32c checksum, so reading a truncated or corrupted piece raises an error.
+Every piece has a crc32c checksum, so reading a damaged piece raises an error.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from compare.sweep.files import Files, StoreError, store_errors
 from compare.sweep.plan import Numbers
 from compare.sweep.quantities import RESULTS
 
-DESCRIPTION = "zarr.json"  # file name of the description of a group or an array
+DESCRIPTION = "zarr.json"
 
 FORMAT: dict[str, Any] = {"zarr_format": 3, "consolidated": False}
 """Arguments for Zarr; consolidated metadata would become outdated when a group grows."""
@@ -32,19 +32,16 @@ CODECS = (BloscCodec(cname="lz4"), Crc32cCodec())
 
 TYPES = {"float64", "uint8", "int64", "string"}
 CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
-"""Data types and chains of codecs that sweeps write."""
+"""Allowed data types with their codecs."""
 
 MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
-"""Fill values by type.
-
-No result has such a value: Zarr may omit a piece that contains nothing else, and an omitted piece counts as missing.
-"""
+"""Fill values by type; no result has such a value, because Zarr may omit a piece that contains nothing else."""
 
 CHECKSUM = "checksum"
 
 
 class Large(NamedTuple):
-    """An array that is written region by region: dimensions, shape, shape of its pieces, type and attributes."""
+    """An array that is written region by region."""
 
     dimensions: tuple[str, ...]
     shape: tuple[int, ...]
@@ -57,8 +54,8 @@ class Large(NamedTuple):
 class Group:
     """A group of a store, which any process may open.
 
-    ``description`` is the digest of the store's description, because another machine may have another store at the
-    same path.
+    ``description`` is the digest of the store's description, because another machine may have another store at that
+    path.
     """
 
     files: Files
@@ -89,13 +86,13 @@ class Group:
     def add(self, dataset: xr.Dataset) -> None:
         """Write all variables of a dataset into the group."""
         texts = [name for name, values in dataset.variables.items() if values.dtype.kind == "U"]
-        # strings of any length, because Zarr 3 has no standard data type for NumPy's fixed-length strings
+        # Zarr 3 has no standard data type for NumPy's fixed-length strings
         dataset = dataset.assign({name: dataset[name].astype(object) for name in texts})
         encoding = {name: {"compressors": CODECS} for name in dataset.variables}
         dataset.to_zarr(self.files.url, mode="a", encoding=encoding, write_empty_chunks=True, **self._place)
 
     def write(self, values: Mapping[str, NDArray[Any]], region: Mapping[str, slice]) -> None:
-        """Write a region of arrays; their first dimensions are the keys of ``region`` in this order.
+        """Write a region of arrays, whose first dimensions are the ordered keys of ``region``.
 
         Raises :class:`StoreError` if it cannot be written, or if this is a different store.
         """
@@ -123,10 +120,9 @@ class Group:
         self.files.write({f"{self.name}/{DESCRIPTION}": _seal(self._described())})
 
     def is_intact(self, names: Sequence[str] = ()) -> bool | None:
-        """Return whether the group matches its seal, and all pieces of the arrays ``names`` (default: of all) exist.
+        """Return whether the group matches its seal, and the arrays ``names`` (default: all) are readable.
 
-        Pieces must be readable. The result is None for a group without a seal, which is unfinished; a corrupted
-        description counts as damage.
+        The result is None for an unfinished group, which has no seal.
         """
         seal = self.files.read(f"{self.name}/{DESCRIPTION}")
         with suppress(ValueError, KeyError, TypeError):
@@ -173,10 +169,7 @@ def _seal(described: Mapping[str, bytes]) -> bytes:
 
 
 def is_ours(description: bytes) -> bool:
-    """Return whether an array has a data type and codecs that sweeps write.
-
-    Other codecs, such as "pickle", could run foreign code.
-    """
+    """Return whether sweeps write such arrays; other codecs, such as "pickle", could run foreign code."""
     try:
         found = json.loads(description)
         chain = [codec["name"] for codec in found["codecs"]]
@@ -187,13 +180,13 @@ def is_ours(description: bytes) -> bool:
 
 
 def group_content(attributes: Mapping[str, Any]) -> bytes:
-    """Return the description of a group as the contents of its file."""
+    """Return the contents of the file that describes a group."""
     content = {"zarr_format": 3, "node_type": "group", "attributes": attributes}
     return json.dumps(content, sort_keys=True).encode()
 
 
 def description_of(files: Files) -> str:
-    """Return the digest of the description of a store."""
+    """Return the digest of a store's description."""
     return digest_of(files.read(DESCRIPTION) or b"")
 
 
@@ -214,7 +207,7 @@ def digest_of(content: bytes) -> str:
 
 @dataclass(frozen=True)
 class Chunks:
-    """The chunks of a round of ``count`` trajectories, ``size`` in each except the last."""
+    """The chunks of a round of ``count`` trajectories, at most ``size`` in each."""
 
     group: Group
     count: int
@@ -228,17 +221,17 @@ class Chunks:
         return slice(chunk * self.size, min((chunk + 1) * self.size, self.count))
 
     def read(self, name: str, where: int | slice) -> NDArray[Any]:
-        """Return a result of trajectories of the round."""
+        """Return a result of trajectories."""
         return np.asarray(self.group.array(name)[where])
 
     def write(self, chunk: int, results: Mapping[str, NDArray[Any]]) -> None:
-        """Write the results of a chunk; raise ``StoreError`` if this fails."""
+        """Write the results of a chunk."""
         self.group.write(results, {"trajectory": self.where(chunk)})
 
     def there(self) -> list[int]:
-        """Return the chunks with a complete set of files."""
+        """Return the chunks with all files."""
         files = set(self.group.files.names(self.group.name))
-        keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}  # one for each dimension
+        keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}
         return [
             chunk
             for chunk in range(len(self))
@@ -251,7 +244,7 @@ class Chunks:
 
 
 class Round:
-    """The trajectories ``numbers`` of a round; ``done`` marks its complete, readable chunks."""
+    """The trajectories ``numbers`` of a round; ``done`` marks its readable chunks."""
 
     def __init__(self, chunks: Chunks, numbers: Numbers) -> None:
         self.chunks, self.numbers = chunks, numbers
@@ -263,5 +256,5 @@ class Round:
 
     @property
     def ends(self) -> Any:
-        """Ends of the trajectories, as an array that is read on demand."""
+        """Ends of the trajectories, read on demand."""
         return self.chunks.group.array("end")

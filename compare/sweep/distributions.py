@@ -16,7 +16,7 @@ from compare.sweep.quantities import parameters, units
 from reference_model.systems import FloatArray, System, finite_number
 
 LEAST_UNIFORM = 2.0**-54
-"""Replacement for 0 among random numbers in [0, 1), because the normal quantile of 0 is infinite."""
+"""Replacement for the random number 0, whose normal quantile is infinite."""
 
 
 class _Kind(NamedTuple):
@@ -124,8 +124,8 @@ class Uncertain:
 
     @cached_property
     def distribution(self) -> Any:
-        """The distribution as an object of SciPy."""
-        from scipy import stats  # slow import that most sweeps do not need
+        """SciPy's distribution."""
+        from scipy import stats  # slow import
 
         return KINDS[self.kind].frozen(stats, *self.numbers)
 

@@ -40,9 +40,9 @@ COLOURS = {
 }
 
 MOST_PIXELS = 2000
-"""Largest number of pixels along each axis of an image; for more points, every second or third is shown."""
+"""Largest number of pixels along each axis of an image; points beyond it are skipped."""
 
-MOST_DOTS = 20_000  # largest number of random starts in a figure
+MOST_DOTS = 20_000
 
 MOST_DRAWS = 1 << 20
 """Largest number of draws in the distribution of a radius; the first draws are a random sample."""
@@ -70,7 +70,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
 
 
 def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
-    """Return the figures of a sweep by name; ``theory`` contains the formulas' results for maps and continuations."""
+    """Return the figures of a sweep by name; ``theory`` contains the results of formulas."""
     draw: dict[type[Plan], Callable[..., Figure]] = {
         Basin: basin,
         RandomBasin: random_basin,
@@ -122,7 +122,7 @@ def random_basin(plan: RandomBasin, result: xr.Dataset) -> Figure:
 
 
 def legend(figure: Figure, result: xr.Dataset) -> None:
-    """Draw a legend of the ends that occur, with their shares if the result contains them."""
+    """Draw a legend of the ends that occur, with known shares."""
     from matplotlib.patches import Patch
 
     handles = []
@@ -134,7 +134,7 @@ def legend(figure: Figure, result: xr.Dataset) -> None:
 
 
 def shares_of(result: xr.Dataset) -> Iterator[tuple[EndState, str, list[float]]]:
-    """Yield the ends that occur, in words, with share and bounds in %; without them if the result has none."""
+    """Yield the ends that occur, in words, with share and bounds in %, if known."""
     names = ("share", "share_low", "share_high")
     there = "share" in result and result["share"].ndim == 1
     for end in EndState:
@@ -175,7 +175,7 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
 
 
 def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
-    """Draw the theory's curves with a dash pattern for each meaning, and white outlines for dark backgrounds."""
+    """Draw the theory's curves with a dash pattern for each meaning and white outlines."""
     from matplotlib.patheffects import withStroke
 
     meanings = [str(meaning) for meaning in curves["curve"].values]
@@ -236,7 +236,7 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
 
 
 def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
-    """Draw the shares of the motions, and their radii together with those of formulas and continuation."""
+    """Draw the shares of the motions, and their radii with those of formulas and continuation."""
     figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
     values = plan.x.values
     for j, end in enumerate(result["motion_end"].values):
@@ -270,7 +270,6 @@ def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -
 
 
 def _image(axes: Axes, plan: Basin | Map, values: Any, **look: Any) -> Any:
-    """Draw values on the grid of ``plan`` as pixels around its points."""
     every = tuple(slice(None, None, -(-points // MOST_PIXELS)) for points in values.shape)
     x, y = plan.x.values[every[1]], plan.y.values[every[0]]
     half_x, half_y = 0.5 * (x[1] - x[0]), 0.5 * (y[1] - y[0])

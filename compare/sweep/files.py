@@ -19,15 +19,15 @@ from compare.output.text_files import replacing
 OPTIONS: dict[str, dict[str, Any]] = {
     "file": {"auto_mkdir": True},
     "s3": {
-        # a cached listing would lack files that other workers have written since
+        # a cached listing would lack files of other workers
         "use_listings_cache": False,
-        # files are small, so parallel parts would only cost a second request for the size
+        # parallel parts of small files would only cost a second request
         "max_concurrency": 1,
         # survive an outage of half a minute
         "config_kwargs": {"retries": {"mode": "standard", "max_attempts": 10}},
     },
 }
-"""Options of fsspec's file systems by protocol."""
+"""Options of fsspec by protocol."""
 
 
 class StoreError(RuntimeError):
@@ -38,14 +38,14 @@ class StoreError(RuntimeError):
 class Files:
     """Files below ``url``, a local folder or an fsspec URL such as "s3://bucket/name".
 
-    Names are relative, with "/". Instances can be sent to other processes.
+    Names are relative, with "/".
     """
 
     url: str
 
     @classmethod
     def at(cls, place: str | Path) -> Files:
-        """Return the files at a URL or in a folder, which may be relative to the current folder."""
+        """Return the files at a URL or in a folder."""
         return cls(str(place) if is_remote(place) else os.path.abspath(place))
 
     @cached_property
@@ -109,7 +109,7 @@ class Files:
             return sorted(path[len(root) + 1 :] for path in system.find(f"{root}/{folder}"))
 
     def inside(self, folder: str = "") -> list[str]:
-        """Return the names of the files and folders directly in a folder, relative to it."""
+        """Return the names of the files and folders directly in a folder."""
         system, root = self._system
         path = f"{root}/{folder}".rstrip("/")
         with store_errors(self.url, "read from"):
@@ -146,7 +146,7 @@ def store_errors(url: str, action: str = "write to") -> Iterator[None]:
 
 # --- A small finished store as one ZIP archive, which Zarr opens directly
 
-PARTIAL = ".partial"  # suffix of files that Zarr was writing when its process was killed
+PARTIAL = ".partial"  # suffix of files that Zarr left when its process was killed
 
 
 def pack(folder: Path, archive: Path) -> None:

@@ -1,7 +1,7 @@
 """Plans of sweeps: initial state and parameters of each trajectory by its number.
 
-A plan is data that can be sent to other processes and written as JSON. A refined basin has a round of trajectories
-for each step of the refinement; other plans have one round.
+A plan can be sent to other processes and written as JSON. A refined basin has a round of trajectories for each step
+of the refinement; other plans have one round.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from compare.sweep.quantities import Axis, components, parameters
 from compare.sweep.refinement import refined
 from reference_model.systems import FloatArray, System
 
-Numbers: TypeAlias = range | IntArray  # numbers of trajectories
+Numbers: TypeAlias = range | IntArray
 
 Rounds: TypeAlias = Generator[Numbers, Ends, Any]
-"""Yields the numbers of a round and receives the ends of these trajectories; a refined basin returns its grid."""
+"""Yields the numbers of a round and receives their ends; a refined basin returns its grid."""
 
 Trajectories: TypeAlias = tuple[FloatArray, dict[str, FloatArray]]
 """Initial states of shape (n, 4 or 6) and the swept parameters, each of shape (n,)."""
 
-BASES = 2  # number of independent samples for the sensitivities
+BASES = 2  # independent samples for the sensitivities
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,7 @@ class Plan(ABC):
 
     @abstractmethod
     def trajectories(self, numbers: Numbers) -> Trajectories:
-        """Return initial states and parameters of trajectories; each depends only on its own number."""
+        """Return initial states and parameters; each trajectory depends only on its own number."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ class Basin(Plan):
         return refined((self.y.points, self.x.points), self.coarse)
 
     def trajectories(self, numbers: Numbers) -> Trajectories:
-        """Return the starts; parameters do not differ."""
+        """Return the starts."""
         y, x = np.divmod(np.asarray(numbers), self.x.points)
         values = {self.x.name: self.x.values[x], self.y.name: self.y.values[y]}
         return _changed(self.system, self.start, values, len(numbers))
@@ -82,7 +82,7 @@ class Basin(Plan):
 
 @dataclass(frozen=True, kw_only=True)
 class RandomBasin(Plan):
-    """Uniformly distributed starts in a plane; see :class:`Basin`. The axes' numbers of points are not used."""
+    """Uniformly distributed starts in the plane of a :class:`Basin`."""
 
     kind = "random basin"
 
@@ -96,7 +96,7 @@ class RandomBasin(Plan):
         yield range(self.samples)
 
     def trajectories(self, numbers: Numbers) -> Trajectories:
-        """Return the starts; parameters do not differ."""
+        """Return the starts."""
         uniform = _rows(self.seed, np.asarray(numbers), 2)
         values = {
             axis.name: axis.low + (axis.high - axis.low) * column
@@ -120,7 +120,7 @@ class Map(Plan):
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Number of starts, of points along y and of points along x."""
+        """Number of starts, of points along y and along x."""
         return len(self.starts), self.y.points, self.x.points
 
     def rounds(self) -> Rounds:
@@ -164,7 +164,7 @@ class Uncertainty(Plan):
         return _changed(self.system, self.start, values, len(numbers))
 
     def values(self, numbers: Numbers) -> dict[str, FloatArray]:
-        """Return the values of the uncertain quantities, each of shape (n,)."""
+        """Return the uncertain quantities, each of shape (n,)."""
         row, place = np.divmod(np.asarray(numbers), self.row)
         uniform = _rows(self.seed, row, BASES * len(self.varied))
         result = {}
@@ -225,7 +225,7 @@ def plan_from_json(content: Mapping[str, Any]) -> Plan:
 
 
 def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:
-    """Return rows of a table of random numbers, shape (n, width); all rows in between are computed too."""
+    """Return rows of a table of random numbers; all rows in between are computed too."""
     first, last = int(np.min(rows)), int(np.max(rows))
     return uniform_rows(seed, first, last - first + 1, width)[rows - first]
 
@@ -233,7 +233,6 @@ def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:
 def _changed(
     system: System, start: Sequence[float], values: dict[str, FloatArray], count: int
 ) -> Trajectories:
-    """Return ``count`` copies of ``start`` with components from ``values``, and the parameters in ``values``."""
     states = np.tile(np.asarray(start, dtype=float), (count, 1))
     for place, name in enumerate(components(system)):
         if name in values:

@@ -1,4 +1,4 @@
-"""Names, units and symbols of the quantities and results of a sweep, and the axes of its planes."""
+"""Names, units and symbols of a sweep's quantities and results, and the axes of its planes."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ RESULTS = {
 
 
 def components(system: System) -> dict[str, str]:
-    """Return the components of the initial state with their units."""
+    """Return the components of the initial state with units."""
     return dict(COLUMNS[type(system)])
 
 
 def parameters(system: System) -> dict[str, str]:
-    """Return the parameters that can be swept with their units."""
+    """Return the parameters that can be swept with units."""
     return {field.name: _PARAMETERS[field.name][1] for field in fields(system) if field.name in _PARAMETERS}
 
 

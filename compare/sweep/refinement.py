@@ -1,10 +1,10 @@
 """Refinement of a basin's boundary: only points of a fine grid near the boundary are simulated.
 
-All points of a coarse grid are simulated. A cell is mixed if its corners end differently. Mixed cells are halved and
-their new points simulated; new points of other cells are assumed to end like the corners. If this is wrong, the
-boundary continues into a mixed cell with corners that were not simulated. They are simulated until no such cell
-remains, so *all corners of every mixed cell of the finest grid were simulated*. Structures that lie entirely between
-points of the coarse grid are not detected.
+A cell of the coarse grid is mixed if its corners end differently. Mixed cells are halved and their new points
+simulated; new points of other cells are assumed to end like the corners. If this is wrong, the boundary continues
+into a mixed cell with corners that were not simulated. They are simulated until no such cell remains, so *all corners
+of every mixed cell of the finest grid were simulated*. Structures entirely between points of the coarse grid are not
+detected.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Grid:
         return self.numbers(lines, corner & ~self.simulated[np.ix_(*lines)])
 
     def halved(self, lines: Lines, finer: Lines) -> IntArray:
-        """Return the new points of mixed cells; assign the ends of the corners to the new points of other cells."""
+        """Return the new points of mixed cells; give other new points the ends of their corners."""
         coarse = self.ends[np.ix_(*lines)]
         cells = mixed(coarse)
         # A point on a line belongs to the cells on both sides of it.
@@ -71,8 +71,8 @@ class Grid:
 def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Grid]:
     """Yield the points to simulate in each round, numbered y·(points of x) + x; receive their ends.
 
-    The finest grid has the ``shape`` (y, x). The first grid has at least ``coarse`` points along each axis. The
-    finished grid is returned.
+    The finest grid has the ``shape`` (y, x), the first at least ``coarse`` points along each axis. Returns the finest
+    grid.
     """
     grid = Grid(shape)
     stride = first_stride(shape, coarse)
@@ -91,7 +91,7 @@ def refined(shape: tuple[int, int], coarse: int) -> Generator[IntArray, Ends, Gr
 
 
 def first_stride(shape: tuple[int, int], coarse: int) -> int:
-    """Return the largest power of two with at least ``coarse`` points along each axis, or 1."""
+    """Return the largest stride, a power of two, that leaves ``coarse`` points along each axis, or 1."""
     stride = 1
     while (min(shape) - 1) // (2 * stride) + 1 >= coarse:
         stride *= 2
@@ -99,7 +99,7 @@ def first_stride(shape: tuple[int, int], coarse: int) -> int:
 
 
 def _cells(lines: IntArray, finer: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the cells between ``lines`` before and behind each finer line."""
+    """Return the cells before and behind each finer line."""
     last = len(lines) - 2
     before = np.clip(np.searchsorted(lines, finer, side="left") - 1, 0, last)
     behind = np.clip(np.searchsorted(lines, finer, side="right") - 1, 0, last)

@@ -3,9 +3,8 @@
 - ``round-0``, ``round-1``, ...: trajectories, written region by region (:mod:`compare.sweep.arrays`).
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
-A group is valid once it is sealed. The attributes of the store contain the plan, the digest of the code and their
-checksum. Damaged groups and chunks are recomputed. A finished store of few trajectories in a local folder becomes one
-file.
+A group is valid once it is sealed. Attributes contain the plan, the digest of the code and their checksum. Damaged
+groups and chunks are recomputed. A small finished store in a local folder becomes one file.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_jso
 from compare.sweep.quantities import RESULTS, components
 
 SMALL = 1_000_000  # least number of trajectories of a finished store that remains a folder
-MOST_NAMED = 10  # largest number of chunks that a message lists
+MOST_NAMED = 10
 ROUND = "round-{}"
 
 
@@ -52,7 +51,7 @@ class SweepStore:
 
     def __init__(self, files: Files, plan: Plan, chunk: int, stamp: str, place: str = "") -> None:
         self.files, self.plan, self.chunk, self.stamp = files, plan, chunk, stamp
-        self.broken: list[str] = []  # descriptions of damaged groups and chunks
+        self.broken: list[str] = []  # damaged groups and chunks, in words
         self._place = place or files.url
         self._whole: set[str] = set()
         self._description = description_of(files)
@@ -66,7 +65,7 @@ class SweepStore:
 
     @classmethod
     def create(cls, path: str | Path, plan: Plan, chunk: int) -> SweepStore:
-        """Create a store; raise ``FileExistsError`` if one exists or another process is first."""
+        """Create a store; raise ``FileExistsError`` if one exists."""
         files = Files.at(path)
         if not is_free(files):
             raise FileExistsError(files.url)
@@ -84,7 +83,7 @@ class SweepStore:
 
     @classmethod
     def open(cls, path: str | Path) -> SweepStore:
-        """Open a store; raise ``ValueError`` if it is not the store of a sweep, or its description is damaged."""
+        """Open a store; raise ``ValueError`` if it is damaged or not of a sweep."""
         files, folder = Files.at(path), None
         archive, place = archive_of(files.url), files.url
         try:  # not with Zarr, which fails if any group is damaged
@@ -117,7 +116,7 @@ class SweepStore:
                 pack(Path(self.files.url), archive)
 
     def tidy(self) -> None:
-        """Remove the folders of a packed store; this object cannot be read afterwards."""
+        """Remove the folders of a packed store, which makes this object useless."""
         archive = archive_of(self._place)
         if archive is not None and archive.exists():
             shutil.rmtree(self._place, ignore_errors=True)
@@ -125,7 +124,7 @@ class SweepStore:
             self._unpacked.cleanup()
 
     def round(self, i: int, numbers: Numbers) -> Round:
-        """Return round ``i`` of the trajectories ``numbers``; create it if :meth:`look` does not find it."""
+        """Return round ``i`` of the trajectories ``numbers``; create it if necessary."""
         if found := self.look(i, numbers):
             return found
         group = self.begin(ROUND.format(i), self._template(len(numbers)))
@@ -140,7 +139,7 @@ class SweepStore:
         return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def note_damaged(self, i: int, chunks: list[int], count: int) -> None:
-        """Add damaged ``chunks`` of the ``count`` chunks of round ``i`` to ``broken``."""
+        """Add damaged ``chunks`` of round ``i`` to ``broken``."""
         if chunks:
             shown = ", ".join(map(str, chunks[:MOST_NAMED]))
             more = f" and {len(chunks) - MOST_NAMED} more" if len(chunks) > MOST_NAMED else ""
@@ -152,7 +151,7 @@ class SweepStore:
         self.end(self.begin(name, {}), dataset)
 
     def begin(self, name: str, arrays: Mapping[str, Large]) -> Group:
-        """Begin a group of arrays that workers write, and replace an older group; :meth:`end` completes it."""
+        """Replace a group by one that workers write; :meth:`end` completes it."""
         self.files.remove(name)
         group = self._group(name)
         with store_errors(self.files.url):

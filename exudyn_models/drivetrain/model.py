@@ -1,8 +1,8 @@
 """A dry clutch in its drivetrain, built of public parts: the paper's disc between an engine and a vehicle.
 
 Engine and flywheel press on both facings of the clutch disc. The disc sits on the gearbox's input shaft, which is
-elastic in radial direction and whose axis may be offset from the engine's. A torsional spring and damper connect the
-disc to the gearbox and the vehicle.
+radially elastic and may be offset from the engine's axis. A torsional spring and damper connect the disc to the
+gearbox and the vehicle.
 """
 
 from __future__ import annotations
@@ -69,21 +69,10 @@ class DrivetrainMotion:
 class DrivetrainModel:
     """A drivetrain in Exudyn, assembled.
 
-    Parameters
-    ----------
-    container, mbs : SystemContainer, MainSystem
-        ``container`` owns ``mbs`` and must live as long.
-    engine, disc, vehicle
-        Nodes of the three bodies.
-    friction
-        The clutch. ``friction.change(normal_load=...)`` engages it.
-    support
-        Support of the disc on its shaft.
-    sensors : tuple of SensorIndex
-        Sensors of coordinates and velocities of engine, disc and vehicle.
-    balance
-        Returns the energy balance after a run.
-
+    ``container`` owns ``mbs`` and must live as long. ``engine``, ``disc`` and ``vehicle`` are the nodes of the
+    bodies, and ``sensors`` record their coordinates and velocities. ``friction`` is the clutch, which
+    ``friction.change(normal_load=...)`` engages. ``support`` holds the disc on its shaft. ``balance`` returns the
+    energy balance after a run.
     """
 
     container: Any
@@ -107,9 +96,7 @@ class DrivetrainModel:
         """Return the motion from the start to ``until`` (s), sampled every ``sample_every`` s.
 
         It is computed by DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad,
-        m/s, rad/s and ``ENERGY_UNIT``.
-
-        Raises ``SimulationError`` if Exudyn fails or a state is not finite.
+        m/s, rad/s and ``ENERGY_UNIT``. Raises ``SimulationError`` if Exudyn fails or a state is not finite.
         """
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
@@ -150,23 +137,9 @@ def build_drivetrain(
 ) -> DrivetrainModel:
     """Build a drivetrain whose disc initially turns with the gearbox about the shaft's axis.
 
-    Raises ``ValueError`` if a number is out of range.
-
-    Parameters
-    ----------
-    drivetrain
-        Parameters of the drivetrain.
-    normal_load : float or callable
-        Load as in ``add_ring_friction``; all facings carry it.
-    regularisation
-        ε in m/s, > 0.
-    engine_speed, gearbox_speed
-        Initial speeds in rad/s.
-    engine_torque, vehicle_torque
-        Torques on engine and vehicle.
-    shaft_torque
-        Initial torque of the torsional spring in N m.
-
+    ``normal_load`` is that of ``add_ring_friction``; all facings carry it. ``regularisation`` is ε > 0 in m/s. The
+    initial speeds are in rad/s, and ``shaft_torque``, in N m, is the initial torque of the torsional spring. Raises
+    ``ValueError`` if a number is out of range.
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -251,8 +224,6 @@ def _add_balance(
     torsion: Any,
     torsional_damping: float,
 ) -> Callable[[], EnergyBalance]:
-    """Add the energy balance for the works of the torques; return the function that reads it."""
-
     def torsional_heat(mbs: Any, t: float) -> float:
         rate = mbs.GetObjectOutput(torsion, exu.OutputVariableType.Velocity)
         return float(torsional_damping * rate * rate)
@@ -271,10 +242,7 @@ def _add_balance(
 
 
 def _add_torque(mbs: Any, node: Any, torque: Torque) -> Power:
-    """Apply a torque to the node of a rotor; return its power."""
-
     def now(mbs: Any, t: float) -> tuple[float, float]:
-        """Return torque and speed."""
         angle = float(mbs.GetNodeOutput(node, ANGLE))
         speed = float(mbs.GetNodeOutput(node, SPEED))
         return torque(t, angle, speed), speed

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 from reference_model.systems import finite_number
 
 Torque: TypeAlias = Callable[[float, float, float], float]
-"""Takes time (s), angle (rad) and speed (rad/s) of a shaft; returns a torque in N m."""
+"""Function of time (s), angle (rad) and speed (rad/s) of a shaft; returns a torque in N m."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +121,7 @@ PASSENGER_CAR = Drivetrain(
 - Torsional spring: 17 N m per degree.
 - Radial support, assumed: a steel shaft of 18 mm over a free length of 0.31 m, which gives a natural frequency of
   2865 rpm; 5 % of critical damping; 0.5 mm clearance in the pilot bearing; 0.2 mm between the axes; an unbalance of
-  18 g mm. Instability of the radial mode of clutch discs in engagement is known: Proceedings of the IMechE, Part C
+  18 g mm. The radial mode of clutch discs can become unstable in engagement: Proceedings of the IMechE, Part C
   (2020), doi 10.1177/0954406220927065.
 """
 

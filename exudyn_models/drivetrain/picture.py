@@ -1,7 +1,7 @@
 """A three-dimensional picture of a drivetrain by Exudyn's ray tracer, which needs no display.
 
-The clutch cover is cut open to show the disc between it and the flywheel. Radial motion is enlarged, because a tenth
-of a millimetre would be invisible.
+The clutch cover is cut open to show the disc. Radial motion is enlarged, because a tenth of a millimetre would be
+invisible.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from exudyn_models.drivetrain.parameters import Drivetrain
 from exudyn_models.solver.items import items
 from reference_model.systems import FloatArray
 
-graphics: Any = exudyn.graphics  # its type hints do not fit its own calls
+graphics: Any = exudyn.graphics  # its type hints reject valid calls
 
 Image = NDArray[np.uint8]
 
@@ -31,10 +31,10 @@ IRON, STEEL = (0.40, 0.43, 0.48, 1.0), (0.72, 0.74, 0.78, 1.0)
 LINING, BRASS = (0.80, 0.42, 0.16, 1.0), (0.95, 0.75, 0.25, 1.0)
 
 SHAFT = 0.11
-"""Radius of the shaft over that of the disc."""
+"""Ratio of the radius of the shaft to that of the disc."""
 
 BEARING = 1.5
-"""Distance of the shaft's bearing from the disc over the radius of the disc."""
+"""Ratio of the distance between bearing and disc to the radius of the disc."""
 
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 """Orientation of the model: engine in the back on the right, gearbox in front on the left."""
@@ -55,19 +55,8 @@ def draw_drivetrain(
 ) -> Image:
     """Return a picture of flywheel, clutch disc and shaft, shape (height, width, 3).
 
-    Parameters
-    ----------
-    drivetrain
-        Parameters of the drivetrain.
-    engine_angle
-        Angle of the engine in rad.
-    disc : three floats
-        x, y in m and the angle in rad of the disc.
-    magnification
-        Factor for x and y, the offset and the clearance of the shaft.
-    size : two ints
-        Width and height in pixels.
-
+    ``engine_angle`` is in rad; ``disc`` contains x, y in m and the angle in rad. ``magnification`` multiplies x and
+    y, the offset and the clearance of the shaft. ``size`` is width and height in pixels.
     """
     outer = drivetrain.outer_radius
     x, y, angle = np.asarray(disc, dtype=float).tolist()
@@ -92,7 +81,7 @@ def draw_drivetrain(
 def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any, Any]:
     """Return the parts on the engine and on the disc, shaft and bearing, which take most of a picture's time.
 
-    The shaft has the length that it has without tilt.
+    The shaft has its length without tilt.
     """
     outer, inner, shaft = drivetrain.outer_radius, drivetrain.inner_radius, SHAFT * drivetrain.outer_radius
     on_engine = (

@@ -28,7 +28,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from reference_model.systems import FloatArray
 
-to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe if the array is shorter than the given length
+to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe for a shorter array
 
 
 @compiled
@@ -42,15 +42,15 @@ def friction_derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
     """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
 
-    They are weighted sums of the derivatives with respect to coordinates and velocities. Also returns the generalised
-    forces on both nodes, shape (n,), the disc's radius in m, P in m/s and S in rad/s.
+    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces,
+    shape (n,), the disc's radius in m, P in m/s and S in rad/s.
     """
     to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(turned[1], turned[0])
     force = friction_of_slip(ux, uy, spin, angle, contact)
     _, _, by_slip = derivatives_by_slip(ux, uy, spin, angle, contact)
-    # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; P does not change if slip and disc are rotated together.
+    # Friction is −μN·∂P/∂(u, S), times P/ε if viscous; rotating slip and disc together does not change P.
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
@@ -82,11 +82,10 @@ def derivatives_on_nodes(
     by_slip: FloatArray,
     slope: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return derivatives on the nodes of friction that is given over the slip, and the forces on the nodes.
+    """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The first results are those of ``friction_derivatives_on_nodes``. ``to_slip`` and ``turned`` are results of
-    ``slip_and_place``. ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape (3, 4), by slip and angle. The
-    gradient of P is ``slope`` times the force.
+    The first results are those of ``friction_derivatives_on_nodes``. ``force`` (F_x, F_y, M) has the derivatives
+    ``by_slip``, shape (3, 4), by slip and angle; the gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
     ux, uy, _ = slip_of_nodes(to_slip, velocities)
@@ -128,10 +127,10 @@ def derivatives_on_nodes(
 def force_on_any(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on both nodes, in a user function's signature after two arguments.
+    """Return the generalised forces on both nodes.
 
-    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. If the
-    friction force is not constant it is given by ``law``, and the contact contains 1 N in its place.
+    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. ``law``
+    gives a friction force that is not constant; the contact then contains 1 N. The other arguments are Exudyn's.
     """
     result: Floats = to_tuple(_forces(parameters, None, law, t, q, q_t), len(q))
     return result
@@ -141,7 +140,7 @@ def force_on_any(
 def force_on_mounted(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
     forces = _forces(parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE], law, t, q, q_t)
     result: Floats = to_tuple(forces, len(q))
     return result
@@ -161,14 +160,14 @@ def _forces(
         speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
         friction = friction_force_under(law, contact[3], t, radius, speed, spin)
         fx, fy, moment = friction * fx, friction * fy, friction * moment
-    for k in range(len(q)):  # overwrites the velocities, which are no longer needed
+    for k in range(len(q)):
         velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
     return velocities
 
 
 @compiled
 def slip_of_nodes(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
-    """Return their product; for such a small one a library would take longer."""
+    """Return their product, faster than a library for such small arrays."""
     ux = uy = spin = 0.0
     for k in range(len(velocities)):
         ux += to_slip[0, k] * velocities[k]
@@ -188,7 +187,7 @@ def jacobian_on_any(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (n, n)."""
+    """Return the derivatives of the negative forces, shape (n, n)."""
     contact, kinds, coordinates, velocities = _state(parameters, None, q, q_t)
     return friction_derivatives_on_nodes(
         kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
@@ -206,7 +205,7 @@ def jacobian_on_mounted(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the same for a contact with ``Mounts``, whose numbers come before all other ``parameters``."""
+    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
     rest, mounts = parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE]
     contact, kinds, coordinates, velocities = _state(rest, mounts, q, q_t)
     return friction_derivatives_on_nodes(
@@ -235,7 +234,7 @@ def slip_in_step(
     end: FloatArray,
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
-    """Return P (m/s) at both ends of a step and of the change in between, and S (rad/s) and radius (m) at the end."""
+    """Return P (m/s) at both ends of a step and of the change in between, and S and radius at the end."""
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = slip_of_nodes(to_slip, end_rates)

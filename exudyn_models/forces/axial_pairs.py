@@ -1,12 +1,11 @@
 """Friction about one axis: regularised between rotors, or with exact stick between any bodies.
 
-The whole contact slips in circumferential direction, and force and slip of the centre are zero. With the mean radius
-r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P < ε. Points share this equally. If load and
-coefficient are constant, no compiled code is needed.
+The slip of the centre is zero. With the mean radius r of the contact P = r·|S|, and M = −μN·r·sign(S), times P/ε if P
+< ε. Points share this equally. Constant load and coefficient need no compiled code.
 
 A contact with exact stick is sliding, locked or open. The moment of a sliding contact does not depend on the sign of
-the slip, so the equations of motion are smooth even across zero slip. A constraint holds both spins together while
-the contact is locked, and its multiplier is the moment of friction. ``stick.switching`` finds the times of changes.
+the slip, so the equations stay smooth across zero slip. While the contact is locked, a constraint holds the spins
+together; its multiplier is the moment of friction. ``stick.switching`` finds the times of changes.
 """
 
 from __future__ import annotations
@@ -30,10 +29,10 @@ from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, s
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
-"""Least capacity in one direction, relative to the other, so that rounding errors do not release a one-way clutch."""
+"""Least capacity in one direction, relative to the other, so that rounding does not release a one-way clutch."""
 
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
-"""``Kinds`` of bodies that turn about one axis in one direction."""
+"""``Kinds`` of bodies that turn about one axis."""
 
 
 def on_one_axis(kinds: Kinds, factors: LoadAndCoefficient) -> bool:
@@ -62,16 +61,16 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     ) -> FloatArray:
         spin = q_t[0] if grounded else q_t[1] - q_t[0]
         by_spin = velocity_factor * _slope(factors, t, spin)
-        # Exudyn expects derivatives of the left-hand side.
+        # Exudyn expects derivatives of the negative force.
         return -by_spin * (np.ones((1, 1)) if grounded else np.array([[1.0, -1.0], [-1.0, 1.0]]))
 
     return force, jacobian
 
 
 def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, float] | None:
-    """Return the sliding moment μN·r in N m and the relative spin ε/r in rad/s. Below it the moment is proportional.
+    """Return the sliding moment μN·r in N m, and the relative spin ε/r in rad/s below which it is proportional.
 
-    None if the bodies are not on one axis, if load or coefficient is a function, or if r is zero.
+    None unless load and coefficient are numbers, r > 0, and the bodies are on one axis.
     """
     if factors.contact is None or not on_one_axis(kinds, factors):
         return None
@@ -81,7 +80,7 @@ def constant_law(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[float, floa
 
 def _constant(grounded: bool, contact: Contact) -> Any:
     radius = mean_radius(contact)
-    creep = radius / contact[3]  # P/ε over |S|
+    creep = radius / contact[3]
     limit = contact[2] * radius
 
     def on_ground(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
@@ -100,7 +99,7 @@ def _constant(grounded: bool, contact: Contact) -> Any:
 def force_on_ground(
     parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the moment on a rotor as a user function for Exudyn; ``parameters`` are mean radius (m) and ε (m/s)."""
+    """Return the moment on a rotor; ``parameters`` are mean radius (m) and ε (m/s)."""
     return (_moment(parameters, law, t, q_t[0]),)
 
 
@@ -108,7 +107,7 @@ def force_on_ground(
 def force_on_rotor(
     parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the moments on both rotors, as ``force_on_ground``."""
+    """Return the moments on both rotors."""
     of_disc = _moment(parameters, law, t, q_t[1] - q_t[0])
     return -of_disc, of_disc
 
@@ -122,7 +121,6 @@ def _moment(parameters: Floats, law: Law, t: float, spin: float) -> float:
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:
-    """Return the derivative of M by S, in N m s."""
     contact = factors.geometry
     radius, epsilon = mean_radius(contact), contact[3]
     speed = radius * abs(spin)
@@ -138,12 +136,10 @@ class Mode(IntEnum):
     """Mode of a contact, numbered as in Modelica's clutches."""
 
     BACKWARD = -1
-    """Slides with the disc slower than the master."""
     LOCKED = 0
     FORWARD = 1
-    """Slides with the disc faster than the master."""
     OPEN = 2
-    """Transmits nothing because load or coefficient is zero."""
+    """Transmits nothing, because load or coefficient is zero."""
 
 
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
@@ -153,20 +149,11 @@ SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
 
-    Parameters
-    ----------
-    reference : array of shape (n,)
-        Reference coordinates of the nodes of master and disc.
-    static_ratio : float
-        Static over sliding friction, >= 1.
-    locks : tuple of int
-        Object numbers of the constraints that lock the contact, one for each direction of slip.
-    running : bool
-        Whether ``solve_dynamic`` runs, which is the only solver that switches modes.
-    idle : bool
-        Whether the contact rests although it is in a mode of sliding, because locked contacts and joints hold it. Its
-        share of the load is then not determined. On one axis it takes all that it can hold.
-
+    ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static over
+    sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
+    ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
+    mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
+    axis it is all that they can hold.
     """
 
     kinds: Kinds
@@ -180,18 +167,18 @@ class AxialStick:
 
     @property
     def visible_mode(self) -> Mode:
-        """Mode as a sensor shows it."""
+        """Mode that a sensor shows."""
         return Mode.LOCKED if self.idle or self.mode is None else self.mode
 
     @cached_property
     def _rotors(self) -> Sequence[float] | None:
-        """Gradient of the slip between rotors, which does not depend on the coordinates; None for other bodies."""
+        """Constant gradient of the slip between rotors; None for other bodies."""
         if self.kinds not in ON_ONE_AXIS:
             return None
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return S's derivatives with respect to the nodes' velocities, at coordinates without reference values."""
+        """Return the derivatives of S by the nodes' velocities, at coordinates without reference values."""
         if self._rotors is not None:
             return self._rotors
         return self._gradient_at(self.reference + q)
@@ -209,19 +196,19 @@ class AxialStick:
 
     @cached_property
     def mean_radius(self) -> float:
-        """P over |S| of a disc that turns in place, in m."""
+        """P/|S| of a disc that turns in place, in m."""
         return mean_radius(self.factors.geometry)
 
     def sliding_moment(self, t: float, spin: float) -> float:
-        """Return the magnitude of the moment in N m at the time t (s) and the relative spin (rad/s)."""
+        """Return the magnitude of the moment in N m."""
         return self.mean_radius * self.factors.friction_force(t, 0.0, self.mean_radius * abs(spin), spin)
 
     def limits(self, t: float) -> tuple[float, float]:
-        """Return the largest moments in N m of a locked contact against sliding forward and backward, at t (s).
+        """Return the largest moments in N m of a locked contact against sliding forward and backward.
 
-        They differ if the coefficient does, as in a one-way clutch.
+        They differ in a one-way clutch.
         """
-        if self.factors.contact is not None:  # constant, asked for after every step
+        if self.factors.contact is not None:  # constant; every step needs it
             limit = self.static_ratio * self.mean_radius * self.factors.contact[2]
             return limit, limit
         forward = self.static_ratio * self.sliding_moment(t, AT_REST)
@@ -231,7 +218,7 @@ class AxialStick:
 
     @property
     def constant_forces(self) -> FloatArray | None:
-        """Moments on the nodes in N m in the present mode, or None if they change with time or motion."""
+        """Moments on the nodes in N m in the present mode, or None if they vary."""
         if self.factors.contact is None or self._rotors is None:
             return None
         return self.moment(0.0, 0.0) * np.array(self._rotors)
@@ -242,33 +229,33 @@ class AxialStick:
         return self.mode in SLIDING
 
     def moment(self, t: float, spin: float) -> float:
-        """Return the moment in N m on the disc, but for that of the constraint while the contact is locked."""
+        """Return the moment in N m on the disc, without that of the constraint."""
         if not self.slides:
             return 0.0
         direction = int(self.mode or 0)
         return -direction * self.sliding_moment(t, direction * max(direction * spin, AT_REST))
 
     def held_moment(self, mbs: Any) -> float:
-        """Return the moment in N m that the constraint exerts on the disc in the current motion."""
+        """Return the moment in N m of the constraint on the disc."""
         return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
         return np.array([0.0, 0.0, moment])
 
     def capacity_share(self, mbs: Any, t: float) -> float:
-        """Return the moment over the largest one: 1 while the contact slides, 0 while it is open."""
+        """Return moment over capacity: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
             return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
         return 1.0 if self.slides else 0.0
 
     def unused(self, limits: tuple[float, float], held: float) -> float:
-        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) on the disc leaves."""
+        """Return the share of the ``limits`` (N m) that a moment ``held`` (N m) leaves."""
         return 1.0 - abs(held) / max(limits[held > 0.0], FREE * max(limits))
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> list[float]:
-        """Return the moments on the nodes, as the user function of the connector."""
+        """Return the moments on the nodes (user function of the connector)."""
         if not self.running:
             raise ValueError(
                 "a contact without regularisation sticks exactly, which needs exudyn_models.solve_dynamic; "
@@ -290,7 +277,7 @@ class AxialStick:
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        """Return the derivatives of minus the moments on the nodes, as the user function of the connector."""
+        """Return the derivatives of minus the moments (user function of the connector)."""
         gradient = np.array(self.gradient(q))
         slope = 0.0
         if self.factors.depends_on_motion and self.slides:

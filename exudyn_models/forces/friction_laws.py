@@ -8,13 +8,12 @@ Near rest the laws are regularised so that they are *exact* as soon as all slip 
 release would leave an error of ε^0.8; here all errors are of first order in ε.
 
 - *The contact as a whole* is viscous for P < ε: force and moment are those for the same direction of (u, S) at P = ε,
-  times P/ε. Since these lie on the limit surface of Coulomb friction, a disc creeps with P < ε if and only if Coulomb
-  friction could hold it.
+  times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.
 - *One of several points* is regularised when it passes through rest, because its friction alone could jump. Below δ
   its own friction is viscous. While its slip v is below 4δ/3 the friction of the others is that for a centre of
   rotation closer to the point: for their slip minus v if v < δ, and minus v·(4 − 3v/δ) beyond. So the force of the
-  point grows from zero to its share of μN, while the others act as if the disc pivots about it, which again gives a
-  point of the limit surface. δ, see ``laws/places``, ensures that at P = ε no two points are slower than 4δ/3.
+  point grows from zero to its share of μN, while the others act as if the disc pivots about it. δ, see
+  ``laws/places``, ensures that at P = ε no two points are slower than 4δ/3.
 """
 
 from __future__ import annotations
@@ -35,20 +34,20 @@ from exudyn_models.forces.slip_potential import (
 from reference_model.systems import FloatArray
 
 CONTINUOUS = 0
-"""Number of contact points that represents the continuous ring or annulus in compiled code."""
+"""Number of contact points that stands for a continuous ring or annulus."""
 
 NONE_HELD = -1
-"""Index of a point that represents none."""
+"""Index that stands for no point."""
 
 Contact = tuple[float, int, float, float, int, float]
 """R in m, number of points, μN in N, ε in m/s, the held point or ``NONE_HELD``, and the inner radius in m.
 
-The inner radius is R, except for an annulus, whose outer radius is R. The number of points of an annulus is
-``CONTINUOUS`` or, under a nonuniform pressure, the negative result of ``density_of``. For points R is the largest
-distance from the centre, and the last number is the result of ``table_of``.
+For an annulus R is the outer radius, and the number of points is ``CONTINUOUS`` or, under a nonuniform pressure, the
+negative result of ``density_of``. For points R is the largest distance from the centre, and the last number is the
+result of ``table_of``.
 
-The friction of the held point is viscous at any slip, which models a point that rests while the disc pivots about it.
-Without the kink of its law at δ its friction is linear and cannot disturb Newton's method.
+The held point rests while the disc pivots about it. Its friction is viscous at any slip, because the kink of its law
+at δ would disturb Newton's method.
 """
 
 CONTACT_SIZE = 6
@@ -57,13 +56,13 @@ CONTACT_SIZE = 6
 
 @compiled
 def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
-    """Return the ``Contact`` at the start of ``parameters``, and the rest of them."""
+    """Return the ``Contact`` at the start of ``parameters``, and the rest."""
     radius, points, friction, epsilon, held, inner = parameters[:CONTACT_SIZE]
     return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
 
 
 def mean_radius(contact: Contact) -> float:
-    """Return r in m, P over |S| of a disc that turns in place."""
+    """Return r = P/|S| in m of a disc that turns in place."""
     outer, points, _, _, _, inner = contact
     if points > CONTINUOUS:
         x, y, shares = places_in(inner).T
@@ -76,11 +75,11 @@ def mean_radius(contact: Contact) -> float:
 SECANT = 0.3
 """Share of the secant in the derivatives of points that creep as a whole.
 
-There F is of degree 1 in the slip, F = K·slip with the secant K. Newton's method starts from the slip that the disc
-would have without acceleration, thousands of times its creep. With the derivative alone it cycles for one load in ten
-on six points, and one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations.
-On three feet with unequal shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13 of 100.
-The solver then takes a smaller step.
+There F = K·slip with the secant K, which depends on the direction only. Newton's method starts from the slip without
+acceleration, thousands of times the creep. With the derivative alone it cycles for one load in ten on six points, and
+one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet with unequal
+shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13 of 100; the solver then takes a
+smaller step.
 """
 
 
@@ -98,7 +97,7 @@ def ring_friction(
     """Return force and moment on the disc and moment on the master: F_x, F_y (N), M, M_master (N m).
 
     ``dx, dy`` (m) and ``dvx, dvy`` (m/s) are position and velocity of the disc relative to the master's node,
-    ``angle`` (rad) is φ, and the spins are in rad/s. The force on the master is −F.
+    ``angle`` (rad) is φ, and the spins are in rad/s.
     """
     radius, _, friction, epsilon, _, _ = contact
     ux = dvx + master_spin * dy  # slip of the disc's centre
@@ -137,7 +136,7 @@ def friction_of_slip(
 
 @compiled
 def slip_potential_of_contact(ux: float, uy: float, spin: float, angle: float, contact: Contact) -> float:
-    """Return the slip potential P, the mean slip speed in m/s, for the arguments of ``friction_of_slip``."""
+    """Return the slip potential P, the mean slip speed in m/s."""
     radius, points, _, _, _, inner = contact
     if points <= CONTINUOUS:
         return slip_potential_of_circles(math.sqrt(ux * ux + uy * uy), abs(spin), inner, radius, points)
@@ -189,13 +188,13 @@ def _force_of_points(
 
 @compiled
 def _length(vector: complex) -> float:
-    """Return |v| without the overflow protection of abs(), which would nearly double the cost of a point."""
+    """Return |v| faster than abs(), without its overflow protection."""
     return math.sqrt(vector.real * vector.real + vector.imag * vector.imag)
 
 
 @compiled
 def _yielding(speed: float, delta: float, held: int) -> tuple[float, bool]:
-    """Return the share of the slowest point's slip that the others lose, and whether its own friction is viscous."""
+    """Return the share of the slowest point's slip that the others lose, and whether its friction is viscous."""
     if held != NONE_HELD or speed <= delta:
         return 1.0, True
     return max(0.0, (BEND - speed / delta) / (BEND - 1.0)), False
@@ -212,9 +211,9 @@ def ring_friction_derivatives(
     disc_spin: float,
     contact: Contact,
 ) -> FloatArray:
-    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
+    """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
 
-    For points that creep as a whole they contain a ``SECANT`` share, which makes Newton's method converge.
+    If points creep as a whole, these contain a ``SECANT`` share, so that Newton's method converges.
     """
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
@@ -241,7 +240,7 @@ def ring_friction_derivatives(
 def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return F_x, F_y and the derivatives of (F_x, F_y, M) with respect to (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
     if contact[1] <= CONTINUOUS:
         return _derivatives_of_circles(ux, uy, spin, contact)
     return _derivatives_of_points(ux, uy, spin, angle, contact)
@@ -256,7 +255,6 @@ def _derivatives_of_points(
     mean, by_mean, slow = _potential_of_points(ux, uy, spin, angle, contact)
     creeps = mean < epsilon
     creep = mean / epsilon if creeps else 1.0
-    # The slip of the slowest point that the others lose, and its derivatives.
     _, _, slow_slip, by_slow = _slip_of_point(ux, uy, spin, angle, slow, table)
     drawn, viscous = _yielding(abs(slow_slip), delta * creep, held)
     loss = drawn * slow_slip
@@ -305,7 +303,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its derivatives with respect to u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
+    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
     _, points, _, _, held, table = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)
@@ -324,7 +322,7 @@ def _potential_of_points(
 def _slip_of_point(
     ux: float, uy: float, spin: float, angle: float, point: int, table: float
 ) -> tuple[complex, float, complex, tuple[complex, complex, complex, complex]]:
-    """Return arm, share and slip of a point, and the slip's gradient with respect to (u_x, u_y, φ̇ − ω, φ)."""
+    """Return arm, share and slip of a point, and the slip's gradient by (u_x, u_y, φ̇ − ω, φ)."""
     place, share = place_at(table, point)
     arm = place * complex(math.cos(angle), math.sin(angle))
     return arm, share, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)
@@ -334,11 +332,11 @@ def _slip_of_point(
 def _derivatives_of_circles(
     ux: float, uy: float, spin: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Like ``derivatives_by_slip``, for circles, where nothing depends on the angle."""
+    """Like ``derivatives_by_slip``, for circles."""
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the direction of the slip to come; this is one without rotation.
+    # At rest the slope depends on the slip to come; this one is without rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)

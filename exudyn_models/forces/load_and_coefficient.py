@@ -1,4 +1,4 @@
-"""Normal load and friction coefficient of a contact, numbers or functions, whose product is the friction force."""
+"""Normal load and friction coefficient of a contact, whose product is the friction force."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from exudyn_models.forces.laws.product import LAW, Law, friction_force_under, la
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
-"""A load or coefficient; a function takes any of ``ARGUMENTS``, by name."""
+"""A load or coefficient; a function takes any of ``ARGUMENTS``."""
 
 Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
 """A coefficient, which may also be a table for ``curve_of_table``."""
 
 DIFFERENCE = 1e-5
-"""Relative step of the central differences for the derivatives of μN with respect to the motion."""
+"""Relative step of the central differences of μN by the motion."""
 
 SLOWEST = 1e-9
 """Slip speed in m/s below which this step stays constant."""
@@ -33,15 +33,11 @@ AT_REST = 1e-200
 
 
 class LoadAndCoefficient:
-    """Friction coefficient μ and normal load N of a contact, which may be changed between runs.
+    """Friction coefficient μ and normal load N (in N) of a contact, which may be changed between runs.
 
-    ``friction_coefficient`` is a number >= 0, a table over P or a function of any of ``ARGUMENTS``, and
-    ``normal_load``, in N, a number >= 0 or such a function. ``static_ratio`` >= 1 is static over sliding friction,
-    see ``peak_over_sliding``. Each of the ``plates`` >= 1, equal contacts, carries N. The μN of ``contact`` is
-    ignored.
-
-    Raises ``ValueError`` if a number is out of range or a function takes other arguments; in a run if a function
-    returns an invalid number.
+    They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static over sliding
+    friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a function takes
+    other arguments; in a run, if a function returns an invalid number.
     """
 
     def __init__(
@@ -88,13 +84,13 @@ class LoadAndCoefficient:
         )
 
     def contact_at(self, t: float) -> Contact:
-        """Return the contact with μN at the time t (s), or with 1 N if that depends on the motion."""
+        """Return the contact with μN at the time t (s), or with 1 N if μN depends on the motion."""
         if self.depends_on_motion:
             return self.geometry
         return _with(self.geometry, self.friction_force(t, math.nan, math.nan, math.nan))
 
     def friction_force(self, t: float, radius: float, slip_speed: float, relative_spin: float) -> float:
-        """Return the friction force μN in N of all plates, at a time in s and for a motion as in ``ARGUMENTS``."""
+        """Return the friction force μN in N of all plates for a motion as in ``ARGUMENTS``."""
         if self.contact is not None:
             return self.contact[2]
         motion = t, radius, slip_speed, relative_spin
@@ -113,7 +109,7 @@ class LoadAndCoefficient:
         )
         result = np.zeros(3)
         for i, (name, scale) in enumerate(zip(motion, scales, strict=True)):
-            if name in self._reads and (name != "radius" or radius > 0.0):  # on the axis it has no derivative
+            if name in self._reads and (name != "radius" or radius > 0.0):  # no derivative on the axis
                 low, high = motion[name] - DIFFERENCE * scale, motion[name] + DIFFERENCE * scale
                 if motion[name] >= 0.0:  # the coefficient may jump at rest
                     low = max(AT_REST, low)
@@ -136,7 +132,6 @@ def _of_python() -> Callable[..., Any]:
 
 
 def _coefficient(value: Coefficient) -> float | LawFunction | FloatArray:
-    """Return a coefficient as a number, a function, or the pieces of a curve."""
     name = "friction_coefficient"
     if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim > 0):
         return curve_of_table(name, value)

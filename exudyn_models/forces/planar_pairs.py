@@ -1,6 +1,6 @@
 """Friction of a planar disc on the ground, a rotor or a planar master, in closed form at a third of the cost.
 
-The arguments are those of the functions for any pair, in ``any_pair``.
+The arguments are those of the functions in ``any_pair``.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def force_on_ground(
 def force_on_rotor(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on a rotor and a planar disc."""
+    """Return the forces on a rotor and a planar disc."""
     fx, fy, moment, master_moment = _friction(_on_rotor(parameters, q, q_t), parameters, law, t)
     return master_moment, fx, fy, moment
 
@@ -45,7 +45,7 @@ def force_on_rotor(
 def force_on_planar(
     parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
 ) -> Floats:
-    """Return the generalised forces on a planar master and a planar disc."""
+    """Return the forces on a planar master and a planar disc."""
     fx, fy, moment, master_moment = _friction(_on_planar(parameters, q, q_t), parameters, law, t)
     return -fx, -fy, master_moment, fx, fy, moment
 
@@ -61,7 +61,7 @@ def jacobian_on_ground(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (3, 3)."""
+    """Return the derivatives of the negative forces, shape (3, 3)."""
     contact, _ = contact_of(parameters)
     derivatives = ring_friction_derivatives(*_on_ground(parameters, q, q_t), contact)
     # The ground is a planar master without coordinates.
@@ -79,7 +79,7 @@ def jacobian_on_rotor(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (4, 4)."""
+    """Return the derivatives of the negative forces, shape (4, 4)."""
     contact, _ = contact_of(parameters)
     derivatives = ring_friction_derivatives(*_on_rotor(parameters, q, q_t), contact)
     # A rotor is a planar master without x and y.
@@ -97,7 +97,7 @@ def jacobian_on_planar(
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the left-hand side, where the force has a minus sign, shape (6, 6)."""
+    """Return the derivatives of the negative forces, shape (6, 6)."""
     contact, _ = contact_of(parameters)
     derivatives = ring_friction_derivatives(*_on_planar(parameters, q, q_t), contact)
     return _over_both_nodes(derivatives, position_factor, velocity_factor)
@@ -108,17 +108,15 @@ LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
     (ROTOR, PLANAR, None): (force_on_rotor, jacobian_on_rotor),
     (PLANAR, PLANAR, None): (force_on_planar, jacobian_on_planar),
 }
-"""Force and Jacobian of these pairs."""
 
 Relative = tuple[float, float, float, float, float, float, float]
-"""Relative motion for the kernel: dx, dy, angle, dvx, dvy and both spins."""
+"""Relative motion: dx, dy, angle, dvx, dvy and both spins."""
 
 
 @compiled
 def _friction(
     motion: Relative, parameters: Floats, law: Law | None, t: float
 ) -> tuple[float, float, float, float]:
-    """Return force and moment on the disc and moment on the master; ``law`` gives μN if it is not constant."""
     contact, _ = contact_of(parameters)
     if law is None:
         return ring_friction(*motion, contact)
@@ -152,10 +150,7 @@ def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
 
 @compiled
 def _over_both_nodes(derivatives: FloatArray, position_factor: float, velocity_factor: float) -> FloatArray:
-    """Return minus the derivatives of the forces on two planar nodes with respect to their coordinates, shape (6, 6).
-
-    ``derivatives`` are those of (F_x, F_y, M, M_master) by ``Relative``, shape (4, 7).
-    """
+    """Return minus the derivatives on two planar nodes from those of (F_x, F_y, M, M_master) by ``Relative``."""
     by_nodes = np.zeros((4, 6))
     for i in range(4):
         dx, dy, angle, dvx, dvy, master_spin, disc_spin = derivatives[i]

@@ -1,9 +1,8 @@
 """Springs that may harden, a stop and a damper between a base and a disc, as user functions for Exudyn.
 
 The force at the deflection w is −K·w − β·ẇ with the secant stiffness K = C + C₃·d² + C_s·(1 − gap/d), d = |w|, the
-last term only beyond the gap. w and ẇ are relative to the base: ẇ is the slip J(q)·q̇ of ``slip_kinematics``, and Jᵀ
-applies the full reaction to the base. For a base that only turns about the z-axis the forces are written out, which
-is cheaper.
+last term only beyond the gap. ẇ is the slip J(q)·q̇ of ``slip_kinematics``, and Jᵀ applies the full reaction to the
+base. Closed forms for a base that only turns about the z-axis cost less.
 """
 
 from __future__ import annotations
@@ -33,7 +32,7 @@ Offset = tuple[float, float]
 """Position in m of the relaxed springs, in the axes of the base and from its node."""
 
 ON_GROUND, ON_ROTOR = SIZES[PLANAR], TRANSLATIONS[PLANAR]
-"""Numbers of fixed coordinates of a planar base, which the model does not contain: a rotor has fixed x and y."""
+"""Numbers of fixed coordinates of a planar base that stands for the ground or a rotor."""
 
 
 def support_functions(
@@ -41,8 +40,8 @@ def support_functions(
 ) -> tuple[ForceFunction, JacobianFunction]:
     """Return force and Jacobian of a support on the nodes of base and disc.
 
-    ``reference`` contains the reference coordinates of both, shape (n,). The first ``hidden`` of them are zero and
-    not part of the model: ``ON_GROUND``, ``ON_ROTOR`` or 0.
+    ``reference`` contains the reference coordinates of both, shape (n,). The model omits the first ``hidden``, which
+    are zero.
     """
     if kinds[0] == PLANAR and kinds[2] is None:
         force = _force_on_flat_base(hidden, reference, offset, law)
@@ -52,7 +51,6 @@ def support_functions(
 
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    """Return the force for a base that only turns about the z-axis; its first ``hidden`` coordinates are zero."""
     xb, yb, angle, x, y, *tilts = reference.tolist()
     parameters = [*law, *offset, x - xb, y - yb, angle]
     size = len(reference) - hidden
@@ -75,7 +73,6 @@ def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law:
 
 
 def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> JacobianFunction:
-    """Return the Jacobian over all coordinates of base and disc except the first ``hidden``, which are zero."""
     zeros = np.zeros(len(reference))
 
     def jacobian(
@@ -91,14 +88,14 @@ def _jacobian(hidden: int, kinds: Kinds, reference: FloatArray, offset: Offset, 
         coordinates[hidden:] += q
         velocities[hidden:] = q_t
         derivatives: FloatArray = derivatives_on_nodes(kinds, coordinates, velocities, *factors, offset, law)
-        return -derivatives[hidden:, hidden:]  # Exudyn expects derivatives of the left-hand side
+        return -derivatives[hidden:, hidden:]  # Exudyn expects derivatives of the negative force
 
     return jacobian
 
 
 @compiled
 def secant_stiffness(square: float, law: Law) -> float:
-    """Return the force of springs and stop over the deflection d, in N/m, from d²."""
+    """Return the force of springs and stop divided by the deflection d, in N/m, from d²."""
     stiffness, hardening, gap, stop, _ = law
     result = stiffness + hardening * square
     if square > gap * gap:
@@ -108,7 +105,7 @@ def secant_stiffness(square: float, law: Law) -> float:
 
 @compiled
 def secant_slope(square: float, law: Law) -> float:
-    """Return twice the derivative of ``secant_stiffness`` with respect to d², in N/m³."""
+    """Return twice the derivative of ``secant_stiffness`` by d², in N/m³."""
     _, hardening, gap, stop, _ = law
     result = 2.0 * hardening
     if square > gap * gap:
@@ -118,19 +115,19 @@ def secant_slope(square: float, law: Law) -> float:
 
 @compiled
 def elastic_energy(square: float, law: Law) -> float:
-    """Return the energy in J of springs and stop at the deflection d, from d²."""
+    """Return the energy in J of springs and stop from d²."""
     stiffness, hardening, gap, stop, _ = law
     beyond = max(0.0, math.sqrt(square) - gap)
     return (stiffness * square + hardening * square * square / 2.0 + stop * beyond * beyond) / 2.0
 
 
 Parameters = Sequence[float]
-"""A ``Law``, an ``Offset``, and the reference values of the disc's relative position and of the base's angle."""
+"""A ``Law``, an ``Offset``, and reference values of the disc's relative position and the base's angle."""
 
 
 @compiled
 def force_on_ground(parameters: Parameters, q: Sequence[float], q_t: Sequence[float]) -> tuple[float, float]:
-    """Return the force on a disc (N) from its coordinates and their rates."""
+    """Return the force on a disc (N)."""
     fx, fy, _ = _in_the_plane(parameters, q[0], q[1], q_t[0], q_t[1], 0.0, 0.0)
     return fx, fy
 
@@ -160,8 +157,7 @@ def _in_the_plane(
 ) -> tuple[float, float, float]:
     """Return force on the disc (N) and moment on the base (N m), in global axes.
 
-    Takes position (m) and velocity (m/s) of the disc relative to the base, and the base's angle (rad) and spin
-    (rad/s).
+    Position (m) and velocity (m/s) are relative to the base; angle (rad) and spin (rad/s) are the base's.
     """
     stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
     x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)

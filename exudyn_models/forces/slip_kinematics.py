@@ -2,11 +2,10 @@
 
 The slip u of the disc's centre over the master, in the master body's axes, and the relative spin S about the master's
 axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so the generalised forces on both
-nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum for
-any orientation, and the derivatives of the forces follow from those of J.
+nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum.
 
-A contact may sit anywhere on its bodies. ``Mounts`` place it, and the lever from the disc's node to the contact then
-enters J. Without mounts the contact is that of the nodes themselves, which is cheaper.
+``Mounts`` place a contact anywhere on its bodies; the lever from the disc's node to the contact then enters J.
+Without mounts the contact is at the nodes, which is cheaper.
 
 J consists of sums, products, sines and cosines, whose derivatives follow exactly from a step along the imaginary axis
 (Squire & Trapp, SIAM Review 40 (1998) 110).
@@ -38,7 +37,7 @@ KINDS = {
 SPATIAL = (ROTATION_VECTOR, TAIT_BRYAN, EULER_PARAMETERS)
 
 TRANSLATIONS = (0, 2, 3, 3, 0, 3)
-"""Number of position coordinates of each kind, which precede those of the rotation."""
+"""Number of position coordinates of each kind, which precede the rotation."""
 
 SIZES = (1, 3, 6, 6, 0, 7)
 """Number of coordinates of each kind; the ground has none."""
@@ -46,10 +45,9 @@ SIZES = (1, 3, 6, 6, 0, 7)
 IMAGINARY_STEP = 1e-30
 
 ROUNDING = 1e-12
-"""Largest lever in m that counts as a rounding error of mounts on one axis."""
+"""Largest lever in m that counts as a rounding error."""
 
 MOUNT_SIZE = 24
-"""Number of components of the mount on one body."""
 
 MOUNTS_SIZE = 2 * MOUNT_SIZE
 
@@ -63,7 +61,7 @@ and the ground rests in it. The second is the frame of the contact in the axes o
 Kinds = tuple[int, int, Mounts | None]
 """Kinds of the nodes of master and disc, and the mounts of the contact; None if its frames are those of the nodes.
 
-Rotors and the ground then turn about and have the global z axis through the origin.
+Rotors and the ground then have the global z axis through the origin.
 """
 
 Floats = Sequence[float]
@@ -84,9 +82,8 @@ def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple
     """Return J, shape (3, n), the axes of the contact on the master, and angle and place of the disc in these axes.
 
     The angle, as cosine and sine, is that of the x axis of the contact on the disc, or of its y axis if its x axis
-    lies along the master's z axis. The place is x and y (m) of the contact on the disc from that on the master.
-    ``coordinates`` are those of master and disc including reference values, n in all, in m and rad. A planar body
-    turns about an axis parallel to the global z axis.
+    lies along the master's z axis. The place is x and y (m) of the contact. ``coordinates``, in m and rad, are those
+    of master and disc including reference values, n in all.
     """
     master, disc, mounts = kinds
     return _slip_and_place(master, disc, mounts, coordinates)
@@ -139,10 +136,7 @@ def _mounted(
     axes: Axes,
     turning: tuple[Vector, Vector, Vector, Vector],
 ) -> tuple[Vector, Vector, Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return positions of a node and of the contact on its body, the contact's axes, and how ω depends on the rates.
-
-    The numbers of the body's mount begin at ``mounts[mount]``. All others come from ``frame``.
-    """
+    """Return positions of a node and of the contact, the contact's axes, and how ω depends on the rates."""
     if TRANSLATIONS[kind] == 0:  # a rotor or the ground
         fixed = _axes_at(mounts, mount + 3)
         place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])
@@ -165,7 +159,6 @@ def _axes_at(mounts: Mounts, at: int) -> Axes:
 
 @compiled
 def _turned(vector: Vector, axes: Axes) -> Vector:
-    """Return the global components of a vector from those in ``axes``."""
     a, b, c = vector
     x, y, z = axes
     return a * x[0] + b * y[0] + c * z[0], a * x[1] + b * y[1] + c * z[1], a * x[2] + b * y[2] + c * z[2]
@@ -226,9 +219,9 @@ def _rotated_by_vector(x: Any, y: Any, z: Any) -> Axes:
 def _rotated_by_euler_parameters(
     p: Any, x: Any, y: Any, z: Any
 ) -> tuple[Axes, tuple[Vector, Vector, Vector, Vector]]:
-    """Return the axes and the contributions of each rate to ω = 2·(p·v̇ − ṗ·v + v×v̇), with v = (x, y, z).
+    """Return the axes and the contribution of each rate to ω = 2·(p·v̇ − ṗ·v + v×v̇), with v = (x, y, z).
 
-    Both are Exudyn's, quadratic and linear in parameters whose norm is 1 up to the error of Newton's method.
+    As in Exudyn, both are polynomials in the parameters, whose norm is 1 up to the error of Newton's method.
     """
     pp, xx, yy, zz = p * p, x * x, y * y, z * z
     axes = (
@@ -242,7 +235,7 @@ def _rotated_by_euler_parameters(
 
 @compiled
 def _lever(start: Vector, end: Vector, axis: Vector) -> Vector:
-    """Return the cross product of the difference of two positions and an axis."""
+    """Return (end − start) × axis."""
     x, y, z = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     return y * axis[2] - z * axis[1], z * axis[0] - x * axis[2], x * axis[1] - y * axis[0]
 

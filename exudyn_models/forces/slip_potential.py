@@ -1,15 +1,13 @@
 """The slip potential P of circular contacts: a ring in closed form, and an annulus as an average of rings.
 
-P is the mean slip speed over the contact; friction is −μN times its gradient, see ``friction_laws``.
-
-A circle of radius r whose centre slips with U and which turns with S relative to its counterpart has a rim speed W =
-r·|S|. Its P(U, W) is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
+A circle of radius r whose centre slips with U and whose relative spin is S has the rim speed W = r·|S|. Its mean slip
+speed P(U, W) is a complete elliptic integral, computed by an arithmetic-geometric mean without cancellation.
 
 For an annulus P is the mean over its rings, weighted by the pressure, by Gauss's rule over the radius. The slopes of
 P have a kink (r − r₀)·ln|r − r₀| at r₀ = U/|S|, where a point is at rest. The rule is split there, and a substitution
-r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. So the error of n rings per side falls like n^(−12),
-and that of the curvatures, which contain ln|r − r₀|, like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the
-largest values. If r₀ is outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
+r = r₀ + (r₁ − r₀)·t³ on either side clusters its rings at r₀. The error of n rings per side falls like n^(−12), and
+that of the curvatures like n^(−6). With 12 rings the errors are 4e-10 and 5e-7 of the largest values. If r₀ is
+outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
 """
 
 from __future__ import annotations
@@ -25,15 +23,13 @@ from reference_model.systems import FloatArray
 NEAREST = 1e-15
 """Relative distance from U = W below which the slope of the ring's friction stays constant.
 
-The slope is infinite at U = W, like a logarithm. At this distance it is a secant over an interval that a step cannot
-resolve.
+The slope is infinite at U = W, like a logarithm, so it becomes a secant over an interval that no step resolves.
 """
 
 RINGS = 12
 """Number of rings of an annulus on either side of r₀."""
 
 CLUSTERING = 3
-"""Exponent of the substitution that clusters the rings at r₀."""
 
 FARTHEST = 4.0
 """Largest r₀ over the outer radius; beyond it the position of r₀ makes no difference."""
@@ -47,7 +43,7 @@ def slip_potential_gradient(
 ) -> tuple[float, float]:
     """Return ∂P/∂U and ∂P/∂|S| (in m) of a contact between the radii ``inner`` <= ``outer`` (m), equal for a ring.
 
-    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. The ``density`` of pressure is that of ``density_of``.
+    U >= 0 in m/s and |S| >= 0 in rad/s are not both zero. ``density`` is the code of ``density_of``.
     """
     if inner == outer:
         by_speed, by_rim = ring_potential_slopes(speed, outer * spin)
@@ -100,7 +96,7 @@ def _resting_radius(speed: float, spin: float, outer: float) -> float:
 
 @compiled
 def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return t at the start and the other end minus r₀ (0 if empty), for the parts inside and outside r₀."""
+    """Return t at the start, and the other end minus r₀ (0 if empty), inside and outside r₀."""
     below, above = inner - resting, outer - resting
     inside = (0.0, 0.0) if below >= 0.0 else (max(0.0, above / below) ** (1.0 / CLUSTERING), below)
     outside = (0.0, 0.0) if above <= 0.0 else (max(0.0, below / above) ** (1.0 / CLUSTERING), above)
@@ -109,7 +105,6 @@ def _sides(resting: float, inner: float, outer: float) -> tuple[tuple[float, flo
 
 @compiled
 def _ring(i: int, resting: float, start: float, length: float) -> tuple[float, float]:
-    """Return radius and width in m of a ring of one of the ``_sides``."""
     t = start + (1.0 - start) * (0.5 + 0.5 * _POINTS[i])
     width = 0.5 * (1.0 - start) * _WEIGHTS[i] * CLUSTERING * t ** (CLUSTERING - 1)
     return resting + length * t**CLUSTERING, abs(length) * width
@@ -149,7 +144,6 @@ def ring_potential_curvatures(speed: float, rim: float) -> tuple[float, float, f
 
 @compiled
 def _slopes(larger: float, smaller: float) -> tuple[float, float]:
-    """Return the derivatives of P with respect to its larger and its smaller argument."""
     ratio = smaller / larger
     complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − k² without cancellation
     if complement == 0.0:
@@ -161,7 +155,6 @@ def _slopes(larger: float, smaller: float) -> tuple[float, float]:
 
 @compiled
 def _mean(ratio: float, complement: float) -> tuple[float, float]:
-    """Return A and T of ``ring_potential_slopes`` for k and 1 − k² > 0."""
     m = ratio * ratio
     b = math.sqrt(complement)
     a = 0.5 * (1.0 + b)
@@ -169,10 +162,10 @@ def _mean(ratio: float, complement: float) -> tuple[float, float]:
     share = 0.25 / a
     c = m * share  # (1 − b₀)/2 without cancellation
     t = c * share
-    if c > 1e-5:  # the next c is less than the square of this one, and enters as a square
+    if c > 1e-5:  # the next c is at most this c²
         weight, total = 1.0, 0.0
         while c > 1e-5:
-            c = 0.5 * (a - b)  # its rounding error is small compared with the earlier terms
+            c = 0.5 * (a - b)  # small rounding error compared with the earlier terms
             a, b = 0.5 * (a + b), math.sqrt(a * b)
             weight *= 2.0
             total += weight * c * c
@@ -191,7 +184,7 @@ def slip_potential_of_circles(speed: float, spin: float, inner: float, outer: fl
 
 @compiled
 def ring_potentials(speeds: FloatArray, rims: FloatArray) -> FloatArray:
-    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, all of shape (n,)."""
+    """Return P(U, |W|) of a ring in m/s for ``speeds`` U >= 0 and ``rims`` W of either sign, shape (n,)."""
     result = np.zeros(len(speeds))
     for i in range(len(speeds)):
         result[i] = slip_potential_of_circles(speeds[i], abs(rims[i]), 1.0, 1.0, 0)

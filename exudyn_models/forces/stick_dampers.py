@@ -1,8 +1,7 @@
 """Equivalent dampers of a sticking contact between its two bodies.
 
 With x = (u, S), the slip of the disc's centre and the relative spin, regularised friction near rest is −(μN/ε)·P·∇P
-with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact, with
-equality if the disc only translates or only rotates. For points xᵀ·V·x is the mean of all squares of the slip. So
+with the mean slip speed P(x). P² is at most xᵀ·V·x with V = diag(1, 1, r²), r the mean radius of the contact. So
 friction resists slip at most like a damper (μN/ε)·V. With x = J·q̇ of ``slip_and_place`` it is the damper D =
 (μN/ε)·Jᵀ·V·J between two bodies.
 
@@ -45,7 +44,7 @@ class StickDampers:
     def at(self, t: float, coordinates: FloatArray) -> FloatArray:
         """Return D and the damper of each point that can stick alone, shape (1 + points, n, n).
 
-        They hold at the time t (s) and the nodes' ``coordinates`` relative to the reference, shape (n,).
+        ``coordinates``, shape (n,), are those of the nodes at the time t (s), without reference values.
         """
         place = self.reference + coordinates
         to_slip, _, (cosine, sine), (x, y) = slip_and_place_of_nodes(self.kinds, place)
@@ -59,7 +58,7 @@ class StickDampers:
 def slip_dampers(contact: Contact, angle: float) -> FloatArray:
     """Return V/ε in s/m and s m, and the same for each point that sticks alone, shape (1 + points, 3, 3).
 
-    ``angle`` (rad) is that of the disc's first point relative to the master.
+    ``angle`` (rad) is that of the disc's first point.
     """
     _, points, _, epsilon, held, table = contact
     if points <= CONTINUOUS:
@@ -67,7 +66,7 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
     x, y, loads = places_in(table).T
     arms = np.exp(1j * angle) * (x + 1j * y)
-    maps = np.zeros((points, 2, 3))  # maps (u, S) to the slip of each point
+    maps = np.zeros((points, 2, 3))
     maps[:, 0, 0] = maps[:, 1, 1] = 1.0
     maps[:, 0, 2], maps[:, 1, 2] = -arms.imag, arms.real
     shares = maps.transpose(0, 2, 1) @ maps * loads[:, np.newaxis, np.newaxis]

@@ -1,8 +1,7 @@
 """Force and Jacobian of a friction contact as user functions for Exudyn.
 
-Exudyn calls compiled code like Python, and compiled code evaluates functions for load and coefficient itself. The
-Jacobian for a friction force that depends on the motion is assembled in Python. Two rotors on one axis with a
-constant friction force need no compiled code.
+Python assembles the Jacobian of a friction force that depends on the motion; the rest is compiled. Rotors on one axis
+with a constant friction force need no compiled code.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def force_and_jacobian(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return both functions, for the present load and coefficient and the nodes' ``reference`` coordinates."""
+    """Return both functions for the nodes' ``reference`` coordinates."""
     if on_one_axis(kinds, factors):
         return functions_on_axis(kinds, factors)
     return _compiled_functions(kinds, reference, factors)
@@ -58,7 +57,7 @@ def _compiled_functions(
     if factors.depends_on_motion:
         return bound, _jacobian_by_motion(kinds, reference, factors)
 
-    @cache  # compiled when first needed, which explicit solvers never do
+    @cache  # compiled when first needed; explicit solvers never need it
     def derive() -> Callable[..., Any]:
         return taking_lists(jacobian, numbers, None, None, None, size, size, float, float)
 
@@ -89,6 +88,6 @@ def _jacobian_by_motion(kinds: Kinds, reference: FloatArray, factors: LoadAndCoe
         )
         derivatives *= factors.friction_force(t, *motion)
         derivatives += np.outer(forces, factors.friction_force_slopes(t, *motion) @ motion_derivatives)
-        return np.asarray(-derivatives)  # Exudyn expects derivatives of the left-hand side
+        return np.asarray(-derivatives)  # Exudyn expects derivatives of the negative force
 
     return jacobian

@@ -29,30 +29,29 @@ It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
-"""Extension of the viscous part of the friction law in the model of a creeping system, as a factor."""
+"""Factor that extends the viscous part of the friction law of a creeping system."""
 
 CREEP_ANGLE = 0.15
-"""Rotation of the ground in rad per step of creep: the second-order error of h is (ωh)²/12, 0.2 % of the creep."""
+"""Rotation of the ground in rad per step of creep: the error of a step h is (ωh)²/12, 0.2 % of the creep."""
 
 SLOW = 100.0
-"""Smallest ratio of slow to fast relaxation time for steps of creep that resolve the slow one."""
+"""Smallest ratio of slow to fast relaxation time for steps that resolve the slow one."""
 
 STEPS_OF_RELAXATION = 20.0
 """Steps of creep per slow relaxation time."""
 
 Part = int | frozenset[int]
-"""Creeping part of a contact: ``WHOLE``, or some of several points, as the argument ``held`` of ``add``."""
+"""Creeping part of a contact: ``WHOLE``, or some of several points."""
 
 Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 
 
 @dataclass(frozen=True)
 class Friction:
-    """A kind of friction between two discs, in the units and the axes of a run.
+    """Friction between two discs, in the units and the axes of a run.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping``, like ``RegularisedContact.creeping``,
-    returns the part of the contact that creeps and may be modelled with unlimited viscosity. For single points the
-    argument ``held`` of ``add`` makes such a model.
+    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` returns the creeping part of the contact,
+    which may be modelled with unlimited viscosity (single points by the argument ``held`` of ``add``).
     """
 
     add: Callable[..., Any]
@@ -68,7 +67,7 @@ RING_FRICTION = Friction(add_ring_friction, RegularisedContact.creeping)
 
 @dataclass(frozen=True)
 class SlipSolver:
-    """The solver for slip: integrator, step and tolerance as in ``solver_run.solve``."""
+    """Integrator, step and tolerance for slip, as in ``solver_run.solve``."""
 
     integrator: str
     step: float
@@ -86,12 +85,12 @@ def solve_in_turns(
     """Solve up to the last of ``times``, shape (n,), with ``solver`` in slip and generalised-α in creep.
 
     In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
-    almost rests, and its creep changes as the ground turns. So steps of a fraction of a turn have an error of a small
-    fraction of the creep, and the creep is the error of the regularisation itself.
+    almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep, which is itself
+    the error of the regularisation.
 
-    A creeping part, the whole contact or one of several points, feels only the viscous part of the law. Meanwhile the
-    model extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
-    between two steps, as soon as a different part creeps, or none.
+    A creeping part, the whole contact or one of several points, feels only the viscous part of the law. The model
+    extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
+    between two steps.
 
     All numbers are in units that make the motion of order one; ``seconds`` is the unit of time in s, for messages.
     """
@@ -122,10 +121,7 @@ class _Turns:
     count: StepCount
 
     def slip(self, state: FloatArray, start: float, first_step: float) -> tuple[Steps, Part | None]:
-        """Solve from ``state`` until something has settled to creep, and record the run.
-
-        Return the steps and the creeping part, or None if this part of the run ends before.
-        """
+        """Solve from ``state`` until something creeps; return the steps and the creeping part."""
         watch = _Slip(self)
         run = solve(
             build_model(
@@ -144,10 +140,10 @@ class _Turns:
         return run, watch.settled
 
     def creep(self, before: Steps, part: Part, began: float) -> tuple[Steps, Part | None]:
-        """Solve from the last of the steps ``before`` while ``part`` creeps, and record the run.
+        """Solve from the last of the steps ``before`` while ``part`` creeps, since ``began``.
 
-        Return the steps, and ``part`` if it still creeps. ``began`` is the start of its creep. A release starts so
-        gently that the steps before it become smaller.
+        Return the steps, and ``part`` if it still creeps. Steps before a release become smaller, because it starts
+        gently.
         """
         state, start = before.states[-1], float(before.times[-1])
         step, until = self._creep_step(before, part, began)
@@ -184,10 +180,10 @@ class _Turns:
             balanced = balanced or len(run.times) > 1  # only after a step of creep
 
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
-        """Return the index of the last step before smaller steps are needed; None if they are not.
+        """Return the index of the last step before smaller steps are needed, or None.
 
-        They are needed for a release at ``crossing``, and where the load comes so close to the friction limit that
-        the error of the creep, (ωh)²/12 of it, decides whether and when the limit is exceeded.
+        A release at ``crossing`` needs them, and a load so close to the friction limit that the error of the creep
+        decides whether it exceeds the limit.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -206,7 +202,6 @@ class _Turns:
         return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
 
     def _creep_step(self, before: Steps, part: Part, began: float) -> tuple[float, float]:
-        """Return the step for creep from the last of the steps ``before``, and the end of its validity."""
         system, end = self.contact.system, self.count.end
         state, start = before.states[-1], float(before.times[-1])
         speed = abs(system.disc_speed)
@@ -237,11 +232,10 @@ class _Turns:
         )
 
     def _end_of_creep(self, run: Steps, part: Part) -> float | None:
-        """Return the first time in ``run`` when another part than ``part`` creeps; None if there is none."""
+        """Return the first time in ``run`` when another part creeps, or None."""
         seen, states_at = self.contact.in_master_axes, creep_between(run)
 
         def first_other(times: FloatArray) -> int | None:
-            """Return the index of the first of ``times`` when another part creeps."""
             states = enumerate(states_at(times).tolist())
             return next((i for i, state in states if self.friction.creeping(seen, state) != part), None)
 
@@ -266,17 +260,17 @@ CROSSING = 1e-9
 """Error of the end of creep, in steps."""
 
 GRAZING = 1e-6
-"""(ωh)² of the steps that decide whether and when friction cannot hold a load: its error is 1e-7 of the load."""
+"""(ωh)² of the steps that decide whether friction can hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""Ratio of the steps before and after a reduction for a release; there may be several reductions."""
+"""Ratio of the steps before and after a reduction for a release."""
 
 PARTS = 16
-"""Number of checks per step of creep that is close to its end."""
+"""Number of checks in a step close to the end of creep."""
 
 
 def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.intp]:
-    """Return the indices of the maxima of creep above ``above``·ε among the steps, possibly including the ends."""
+    """Return the indices of maxima of creep above ``above``·ε."""
     ratio = np.pad(contact.slip_ratios(run.states)[:, WHOLE], 1, mode="constant", constant_values=-np.inf)
     return np.flatnonzero((ratio[1:-1] > above) & (ratio[1:-1] >= ratio[:-2]) & (ratio[1:-1] > ratio[2:]))
 
@@ -290,7 +284,7 @@ def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
 
 
 class _Slip:
-    """Watches whether slip has settled to creep, and ends a run in time to measure the pace."""
+    """Watches whether slip has settled to creep, and measures its pace."""
 
     def __init__(self, motion: _Turns) -> None:
         self.motion, self.settled = motion, None
@@ -332,11 +326,7 @@ class _Creep:
 
 
 def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
-    """Return the step for a disc on points that pivots about one of them, from the last of ``steps``.
-
-    The direction of its centre about the point turns, the ground turns with the speed of the master, and the slip P
-    changes in a time P/|dP/dt|.
-    """
+    """Return the step for a disc that pivots about a point."""
     system, epsilon = contact.system, contact.epsilon
     ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]
     rate = contact.slip_ratio_rates(steps.states[-1], steps.accelerations[-1])[WHOLE]
@@ -349,9 +339,6 @@ def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
 
 
 def _newton_tolerance(system: System) -> float:
-    """Return the tolerance of Newton's method for the residual while ``system`` creeps.
-
-    A moment counts as a force at R, or at 1 if that is smaller.
-    """
+    """Return the tolerated residual during creep; a moment counts as a force at R, or at 1 if that is smaller."""
     lever = min(1.0, system.contact_radius) if isinstance(system, DiscOnDisc) else 1.0
     return CREEP_NEWTON_TOLERANCE * system.friction_force * lever

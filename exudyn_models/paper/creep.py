@@ -14,36 +14,36 @@ from exudyn_models.forces.slip_potential import ring_potential_slopes, ring_pote
 from reference_model.systems import DiscOnDisc, FloatArray, Place, System
 
 WHOLE = 0
-"""Column of the contact as a whole; columns of single points follow, if there are any."""
+"""Column of the contact as a whole; columns of single points follow."""
 
 RELAXATIONS = 40.0
-"""Number of relaxation times until slip has settled to its creep; the rest is exp(−t/relaxation time)."""
+"""Number of relaxation times until slip has settled to its creep."""
 
 
 @dataclass(frozen=True)
 class RegularisedContact:
-    """The contact of a system under the regularised law, viscous below the slip speed ε > 0 in its unit of speed."""
+    """The contact of a system under the regularised law, viscous below the slip speed ε > 0."""
 
     system: System
     epsilon: float
 
     @cached_property
     def point_epsilon(self) -> float:
-        """δ, the slip speed below which the friction of one of several points is viscous."""
+        """Slip speed δ below which the friction of one of several points is viscous."""
         return point_regularisation(self.epsilon, self._places)
 
     @cached_property
     def in_master_axes(self) -> RegularisedContact:
-        """The contact in axes that turn with the master disc, which rests there."""
+        """The contact in axes that turn with the master disc."""
         return replace(self, system=replace(self.system, disc_speed=0.0))
 
     @cached_property
     def relaxation_times(self) -> tuple[float, float]:
         """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
-        Slip of a pin is resisted with μN/ε per m/s, that of a disc or its rim on a continuous ring with at least half
-        of it, and that of one resting point of n with 1/n of it. The inertia of the rim, J/R², may be far larger than
-        the mass. Without friction both times are infinite.
+        The resistance per m/s is μN/ε for a pin, at least half of it for a disc or its rim on a continuous ring, and
+        1/n of it for one resting point of n. The inertia of the rim, J/R², may be far larger than the mass. Without
+        friction both times are infinite.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -57,12 +57,11 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s that slip below ε needs to settle to its creep, except for slow relaxations."""
+        """Time in s that slip below ε needs to settle to its creep."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
     def _places(self) -> tuple[Place, ...]:
-        """Places and shares of the points of a disc; empty for a pin or the continuous ring."""
         if not isinstance(self.system, DiscOnDisc) or self.system.contact_points is None:
             return ()
         return ring_places(self.system.contact_radius, self.system.contact_points)
@@ -74,7 +73,7 @@ class RegularisedContact:
     def slip_ratios(self, states: FloatArray) -> FloatArray:
         """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
 
-        The first column is the (mean) slip speed of the contact over ε, the others are those of the points over δ.
+        The first column is the mean slip speed over ε, the others are those of the points over δ.
         """
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         if not isinstance(system, DiscOnDisc):
@@ -109,8 +108,8 @@ class RegularisedContact:
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
         """Return the load at rest over the friction limit, shape (n,), for a system that creeps as a whole.
 
-        The viscous friction of the creep, P/ε of the limit, lacks the forces that change and damp the creep. Along
-        the slip, which is normal to the limit surface, these are the power that goes into both over μN·P.
+        It is the viscous friction, P/ε of the limit, plus the forces that change and damp the creep. Along the slip,
+        which is normal to the limit surface, these are the power that goes into both over μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)
@@ -127,12 +126,12 @@ class RegularisedContact:
         return np.asarray(ratios + power / limit)
 
     def creeping(self, state: list[float]) -> int | None:
-        """Return the column of ``slip_ratios`` that is below 1, or None; ``WHOLE`` if several are."""
+        """Return the column of ``slip_ratios`` that is below 1, ``WHOLE`` if several are, or None."""
         system, size = self.system, len(state) // 2
         x, y, vx, vy = state[0], state[1], state[size], state[size + 1]
         speed = math.hypot(vx + system.disc_speed * y, vy - system.disc_speed * x)
         if isinstance(system, DiscOnDisc):
-            # Usually a bound suffices: the mean over a ring is at least the slip of the centre or of the rim, and no
+            # A bound usually suffices: the mean over a ring is at least the slip of the centre or of the rim, and no
             # point slips less than their difference.
             rim = abs(system.contact_radius * (state[5] - system.disc_speed))
             speed = max(speed, rim) if system.contact_points is None else abs(speed - rim)

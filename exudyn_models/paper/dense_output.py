@@ -12,10 +12,9 @@ from reference_model.systems import FloatArray
 
 
 def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
-    """Return the function of times (s) that gives the states of a creeping body, shape (len(times), 2d).
+    """Return a function that gives the states of a creeping body at times (s), shape (len(times), 2d).
 
-    Its velocities are cubic Hermite interpolants of the solver's velocities and accelerations. In a short step the
-    creep is so small that rounding of positions would spoil it.
+    Velocities are cubic Hermite interpolants, because rounding of positions would spoil the creep in short steps.
     """
     velocities = _velocities(steps)
 
@@ -27,7 +26,7 @@ def creep_between(steps: Steps) -> Callable[[FloatArray], FloatArray]:
 
 
 def creep_until(steps: Steps, time: float) -> Steps:
-    """Return ``steps`` of a creeping body up to ``time`` (s), which lies after the first of them."""
+    """Return ``steps`` of a creeping body up to ``time`` (s)."""
     before = int(np.searchsorted(steps.times, time))
     return Steps(
         np.append(steps.times[:before], time),
@@ -47,8 +46,7 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     """Return the states at ``times`` (s), shape (len(times), 2d).
 
     Between two steps each coordinate is the quintic polynomial with the positions, velocities and accelerations of
-    both ends, and velocities are its derivative. Its error is h⁶/46080 times the sixth derivative, below the error of
-    the step. At a step the result is the solver's state.
+    both ends. Its error is h⁶/46080 times the sixth derivative, below the error of the step.
     """
     index = np.clip(np.searchsorted(steps.times, times, side="right") - 1, 0, max(len(steps.times) - 2, 0))
     after = np.minimum(index + 1, len(steps.times) - 1)
@@ -59,7 +57,6 @@ def states_at(steps: Steps, times: FloatArray) -> FloatArray:
     p0, p1 = steps.states[index, :size], steps.states[after, :size]
     v0, v1 = h * steps.states[index, size:], h * steps.states[after, size:]
     a0, a1 = h * h * steps.accelerations[index], h * h * steps.accelerations[after]
-    # Residuals of the Taylor polynomial from the left end.
     dp = p1 - p0 - v0 - a0 / 2.0
     dv = v1 - v0 - a0
     da = a1 - a0

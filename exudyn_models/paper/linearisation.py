@@ -21,16 +21,8 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
     disc on points. They are the λ of (λ²M + λD + K)v = 0, with the derivatives −K and −D of the forces by coordinates
     and velocities. Exudyn's own ``ComputeODE2Eigenvalues`` includes the master disc and other free motions.
 
-    Parameters
-    ----------
-    state : array of shape (4,) or (6,)
-        State as in ``simulate``, usually an equilibrium.
-
-    Raises
-    ------
-    ValueError
-        If the state does not fit the system, or if the contact or a point of it is at rest.
-
+    ``state``, shape (4,) or (6,) as in ``simulate``, is usually an equilibrium. Raises ``ValueError`` if it does not
+    fit the system, or if the contact or a point of it is at rest.
     """
     start = checked_state(system, state)
     contact = RegularisedContact(system, REGULARISATION)

@@ -16,8 +16,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 MASTER_INERTIA = 1e30
 """Inertia in kg m² of the master disc, a body whose speed no contact torque can change.
 
-A torque of 1 N m changes ω by 1e-30 rad/s per second, so ω stays constant to the last bit. A constraint would work
-with implicit solvers only; explicit ones silently ignore it.
+A torque of 1 N m changes ω by 1e-30 rad/s per second. Explicit solvers would silently ignore a constraint.
 """
 
 
@@ -31,9 +30,8 @@ def build_model(
 ) -> Model:
     """Build ``system`` in ``initial_state``, shape (4,) or (6,), with the contact that ``friction`` adds.
 
-    The model consists of a rigid body on springs and dampers to a support at (X0, 0), a master disc that turns about
-    (0, 0) with ω, and ring friction between the two, with radius 0 for a pin. A disc has a torsional damper to its
-    shaft. Connectors with zero friction or damping are omitted.
+    A body on springs and dampers to a support at (X0, 0) touches a master disc that turns about (0, 0) with ω. A disc
+    has a torsional damper to its shaft. Connectors with zero friction or damping are omitted.
 
     ``initial_state`` refers to axes that turn with ``axes_speed`` (rad/s); the ground turns backwards in them.
     """
@@ -67,7 +65,7 @@ def build_model(
 
 
 def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axes_speed: float) -> Any:
-    """Add a planar body on springs and dampers to a support at (X0, 0); return its ``NodeIndex``.
+    """Add a planar body on springs and dampers to a support at (X0, 0).
 
     In turning axes the ground with its support is a body that turns backwards.
     """
@@ -80,7 +78,7 @@ def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axe
             initialVelocities=velocity + turn,
         )
     )
-    # The moment of inertia of a pin's body is arbitrary, because nothing turns it.
+    # The inertia of a pin is arbitrary, because nothing turns it.
     inertia = system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
     mbs.AddObject(items.ObjectRigidBody2D(nodeNumber=node, mass=system.mass, inertia=inertia))
     add_radial_support(
@@ -100,7 +98,7 @@ def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axe
 
 
 def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
-    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r on a body, for axes that turn with ``speed``."""
+    """Add the Coriolis force −2m·ω×v and the centrifugal force mω²·r, for axes that turn with ``speed``."""
     coriolis = 2.0 * mass * speed
     mbs.AddObject(
         items.ObjectGenericODE2(
@@ -115,7 +113,7 @@ def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
 def _add_shaft(mbs: Any, node: Any, disc: DiscOnDisc, axes_speed: float) -> None:
     """Add the torsional damper between ``disc`` and a shaft that turns at Ω, with the moment b(Ω − φ̇).
 
-    The shaft is the ground's coordinate, and Ω, relative to the axes, is the damper's velocity offset.
+    Ω, relative to the axes, is the velocity offset of a damper to the ground.
     """
     mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamperExt(

@@ -32,8 +32,8 @@ def simulate_with_native_contact(
 ) -> Trajectory:
     """Return the motion like ``simulate``, with Exudyn's built-in contact of a pin or of a disc on points.
 
-    A disc on points is released gently, like t², and its stick phase ends when its slip reaches ε, late by about √ε.
-    Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
+    A disc on points is released gently, like t², so its stick phase, which ends when its slip reaches ε, ends late by
+    about √ε. Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -44,10 +44,7 @@ def simulate_with_native_contact(
 
 
 def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:
-    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None.
-
-    A disc that is hardly held creeps with some of its points faster than δ, under Coulomb friction.
-    """
+    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None."""
     part, system = contact.creeping(state), contact.system
     if part is None or not isinstance(system, DiscOnDisc):
         return part
@@ -66,7 +63,7 @@ def _add_friction(
 ) -> Any:
     """Add friction whose points are viscous below δ, as in the law of ``add_ring_friction`` with ε.
 
-    ``held`` points stay viscous anyway, because Exudyn keeps to one branch of the law within a step.
+    Exudyn keeps to one branch of the law within a step, so ``held`` makes no difference.
     """
     _, places, _ = checked_contact(
         regularisation, contact["contact_radius"], contact.get("contact_points") or 1

@@ -27,9 +27,9 @@ class Units:
     def of(cls, system: System, state: FloatArray) -> Units:
         """Return the units for the motion of ``system`` from ``state``, shape (4,) or (6,).
 
-        Time is scaled by the faster of springs and master disc; without them by a stop, by the dampers, or by how
-        fast friction stops the slip. Length is scaled by the position of the centre and the distances that its speed
-        and friction cover in the unit of time, because a fast spin must not hide its motion.
+        The faster of springs and master disc scales time; without them a stop, the dampers, or how fast friction
+        stops the slip. The position of the centre and the distances that its speed and friction cover in the unit of
+        time scale length; a fast spin must not hide the motion of the centre.
         """
         velocities = system.state_size // 2
         push = system.friction_force / system.mass
@@ -76,6 +76,6 @@ class Units:
         return replace(system, **changes)
 
     def of_states(self, size: int) -> FloatArray:
-        """Return the units of the ``size`` components of a state, in m and m/s, rad and rad/s."""
+        """Return the units of the ``size`` components of a state."""
         places = [self.length, self.length, 1.0][: size // 2]
         return np.array([*places, *(place / self.time for place in places)])

@@ -16,7 +16,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 NOTHING = -1
-"""Marker for a contact without a creeping part."""
+"""Marks a contact without a creeping part."""
 
 
 def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, ...]:
@@ -66,7 +66,6 @@ def _leave_what_is_held(
     load: FloatArray,
     creeping: NDArray[np.int_],
 ) -> None:
-    """Change ``creeping`` at all steps to the parts that friction holds, from stick to its release."""
     released = 0
     for first, beyond in _runs(creeping):
         if creeping[first] == NOTHING:
@@ -86,14 +85,14 @@ def _leave_what_is_held(
 
 
 NEIGHBOURS = 100
-"""Steps that are kept at both ends of a run with nothing new; the time of rest depends on a few of them."""
+"""Number of steps kept at both ends of a uniform run; the time of rest depends on a few of them."""
 
 
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
     """Return which ``steps`` are needed to find the phases, shape (n,).
 
-    In each run of steps with the same creeping part, or none, these are the ends, the largest slip, the last step
-    whose load friction can hold, and the step that is held most clearly.
+    These are the ends of each uniform run, its largest slip, the last step whose load friction can hold, and the step
+    that it holds most clearly.
     """
     ratios, creeping = _creeping_parts(contact, steps)
     load = contact.load_ratios(steps.states, steps.accelerations)
@@ -110,7 +109,6 @@ def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.boo
 
 
 def _creeping_parts(contact: RegularisedContact, steps: Steps) -> tuple[FloatArray, NDArray[np.int_]]:
-    """Return the slip ratios, and for each step the column of the part that creeps, or ``NOTHING``."""
     ratios = contact.slip_ratios(steps.states)
     below = ratios < 1.0
     return ratios, np.where(below.any(axis=1), np.argmax(below, axis=1), NOTHING)
@@ -129,10 +127,7 @@ def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
 def _time_of_rest(
     contact: RegularisedContact, steps: Steps, ratio: FloatArray, part: int, left: int
 ) -> float:
-    """Return the time when the slip of ``part`` would reach zero at its rate at step ``left``.
-
-    ``ratio`` is its slip ratio. If it does not fall, the contact rests from the next step on.
-    """
+    """Return when the slip of ``part`` would be zero at its present rate, or the next step if it does not fall."""
     start, end = steps.times[left], steps.times[left + 1]
     rates = contact.slip_ratio_rates(steps.states[left], steps.accelerations[left])
     falls = rates[part] < 0.0 and ratio[left] > ratio[left + 1]
@@ -152,16 +147,13 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
 
 
 def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
-    """Return the time of the last change of sign of ``excess``, the excess of load, between two steps."""
+    """Return the time of the last sign change of ``excess``."""
     held = np.flatnonzero(excess[first:beyond] < 0.0)
     return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
 
 
 def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
-    """Return when ``values`` cross zero between steps ``left`` and ``left + 1``.
-
-    The end of the step if they do not.
-    """
+    """Return when ``values`` cross zero after step ``left``, or the end of that step."""
     if values[left] >= 0.0 or values[left + 1] <= 0.0:
         return float(times[left + 1])
     share = values[left] / (values[left] - values[left + 1])

@@ -1,4 +1,4 @@
-"""The recorded states of a running motion, and the steps that determine its phases."""
+"""The recorded states of a motion, and the steps that determine its phases."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
 
 MOST_KEPT = 50_000
-"""Largest number of stored steps; if there are more, those without information about phases are dropped."""
+"""Largest number of stored steps; beyond it, steps without information about phases are dropped."""
 
 
 class Recording:
@@ -49,7 +49,6 @@ class Recording:
 
 
 def _joined(runs: list[Steps]) -> Steps:
-    """Join consecutive runs; each starts with the final state of the previous one."""
     first, *rest = runs
     return Steps(
         np.concatenate([first.times, *(run.times[1:] for run in rest)]),

@@ -18,10 +18,10 @@ from reference_model.systems import DiscOnDisc, FloatArray, System
 class Scales:
     """Scales of a run.
 
-    ``time`` is that of ``time_scale``; ``motion``, in m and m/s, is the scale of DOPRI5's error: 1, or the size of
-    the motion if that is larger; ``angle_rounding`` is the rounding error in rad of the angle of a disc after the
-    span, 0 for a pin; ``force`` > 0 is the scale of the residual of Newton's method: the forces on the body in N or
-    the moments in N m, whichever are smaller.
+    ``time`` is that of ``time_scale``; ``motion``, in m and m/s, the scale of DOPRI5's error: at least 1, or the size
+    of the motion; ``angle_rounding`` the rounding error in rad of the angle of a disc after the span, 0 for a pin;
+    ``force`` > 0 the scale of Newton's residual: the forces on the body in N or the moments in N m, whichever are
+    smaller.
     """
 
     time: float
@@ -62,7 +62,7 @@ def hardened_stiffness(system: System, state: FloatArray) -> float:
 
 
 def support_energy(system: System, state: FloatArray) -> float:
-    """Return the energy in J of the centre's motion and of its support, relative to the relaxed position."""
+    """Return the energy in J of the centre's motion and of its support."""
     position, velocity = (complex(*half[:2]) for half in state.reshape(2, -1).tolist())
     return system.mass * abs(velocity) ** 2 / 2.0 + elastic_energy(
         abs(position - system.offset) ** 2, _law_of(system)

@@ -36,13 +36,13 @@ REGULARISATION_PER_TOLERANCE = 100.0
 """Ratio of ε, in the motion's own unit of speed, to the tolerance (study in ``benchmarks/exudyn_contact.py``)."""
 
 STEP_TOLERANCE = 1e-2
-"""Tolerance of DOPRI5 over the requested one, because errors of thousands of steps accumulate."""
+"""Ratio of DOPRI5's tolerance to the requested one, because errors of thousands of steps accumulate."""
 
 DISC_STEP_TOLERANCE = 1e-3
-"""The same for a disc: at U = W the ring's friction has an infinite slope, and the spin remembers the error."""
+"""The same for a disc: at U = W the ring's friction has an infinite slope, and the spin keeps the error."""
 
 STOP_STEP_TOLERANCE = 1e-4
-"""The same for a support with a stop: its force has a kink, which a bouncing motion passes many times."""
+"""The same for a support with a stop: a bouncing motion passes the kink of its force many times."""
 
 SMALLEST_STEP_TOLERANCE = 1e-13
 """Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate, and the step collapses."""
@@ -51,12 +51,11 @@ LARGEST_STEP = 6.0
 """Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
-"""Tolerance of Newton's method for the residual, relative to the forces at the start."""
+"""Tolerance of Newton's residual, relative to the forces at the start."""
 
 Solver = Literal["explicit", "implicit"]
 
 METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit": "Exudyn generalised-α"}
-"""Name of each solver in a result."""
 
 
 def simulate(
@@ -87,9 +86,9 @@ def simulate(
         because μN over √(mass·stiffness) then counts as the speed, however slow the motion.
     solver : "explicit" or "implicit"
         "explicit" is DOPRI5, with generalised-α while the contact, or one of several points, sticks, where the
-        regularised law is stiff. In axes that turn with the master disc stick takes some 40 steps per turn; pivoting
-        about a point takes steps ~ √ε. "implicit" is generalised-α throughout: second order, with steps ~ √tolerance
-        and an error proportional to the tolerance but about a thousand times larger.
+        regularised law is stiff. Stick takes some 40 steps per turn, pivoting about a point steps ~ √ε. "implicit" is
+        generalised-α throughout: second order, with steps ~ √tolerance and an error proportional to the tolerance but
+        about a thousand times larger.
     friction
         Adds the friction between the discs to the model, which is built in the motion's own units.
 
@@ -145,8 +144,8 @@ class Run:
     """A motion to compute from time 0 on, in units that make it of order one.
 
     Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. Contact, with its ε,
-    state, times and scales are in these units. ``tolerance`` is nan for fixed steps, and ``began`` is the start of
-    the computation by ``time.perf_counter``.
+    state, times and scales are in these units. ``tolerance`` is nan for fixed steps; ``began`` is the start by
+    ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

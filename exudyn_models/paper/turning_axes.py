@@ -1,4 +1,4 @@
-"""Rotating axes about the master disc's axis. A sticking body rests in axes that turn with the disc."""
+"""Axes that turn about the master disc's axis. A sticking body rests in axes that turn with the disc."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Axes:
         return np.asarray(self._added(np.zeros(1), state[None, :], -self.speed)[0])
 
     def fixed_states(self, times: FloatArray, states: FloatArray) -> FloatArray:
-        """Transform ``states``, shape (n, 4 or 6), at ``times``, shape (n,), from these axes to fixed ones."""
+        """Transform ``states``, shape (n, 4 or 6), at ``times``, shape (n,), to fixed axes."""
         return self._added(self.speed * (times - self.since), states, self.speed)
 
     def fixed_steps(self, steps: Steps) -> Steps:
-        """Transform ``steps`` from these axes to fixed ones."""
+        """Transform ``steps`` to fixed axes."""
         z, v, a = (_complex(part) for part in (*np.split(steps.states, 2, axis=1), steps.accelerations))
         turn = np.exp(1j * self.speed * (steps.times - self.since))
         accelerations = steps.accelerations.copy()
@@ -40,7 +40,7 @@ class Axes:
         )
 
     def _added(self, angles: FloatArray, states: FloatArray, speed: float) -> FloatArray:
-        """Return ``states`` with a rotation through ``angles``, shape (n,), at ``speed`` (rad/s) added."""
+        """Return ``states`` with an added rotation through ``angles``, shape (n,), at ``speed`` (rad/s)."""
         positions, velocities = (part.copy() for part in np.split(states, 2, axis=1))
         turn = np.exp(1j * angles)
         z, v = turn * _complex(positions), turn * _complex(velocities)

@@ -1,11 +1,11 @@
 """Connectors over the nodes of *both* bodies, which apply the full reaction to both.
 
-In general it is a massless ``ObjectGenericODE2``, which returns generalised forces on all coordinates of its nodes. A
-force F on the disc comes with the force −F and the moment −d×F on a master at the distance d. Exudyn's marker
-connectors omit that moment, which violates conservation of angular momentum for two free bodies.
+In general this is a massless ``ObjectGenericODE2``. A force F on the disc comes with −F and the moment −d×F on a
+master at the distance d. Exudyn's marker connectors omit that moment, so they violate conservation of angular
+momentum.
 
-Between rotors on one axis there is no such moment. Under a constant load ``ObjectConnectorCoordinateSpringDamperExt``
-then has the law of ``axial_pairs``, and takes a fraction of the time of a Python function.
+Rotors on one axis have no such moment. Under a constant load they use ``ObjectConnectorCoordinateSpringDamperExt``
+with the law of ``axial_pairs``, which takes a fraction of the time of a Python function.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def add_connector(
 ) -> Any:
     """Add a connector over ``nodes``; return its ``ObjectIndex``.
 
-    ``force`` returns the forces on all coordinates of the nodes. ``jacobian`` returns the sum of the derivatives of
-    the *negative* forces with respect to coordinates and velocities, each multiplied by the factor passed to it.
+    ``force`` returns the forces on all coordinates. ``jacobian`` returns the sum of the derivatives of the *negative*
+    forces by coordinates and by velocities, each multiplied by the factor passed to it.
     """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(
@@ -42,7 +42,7 @@ def add_connector(
 
 
 def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> Any:
-    """Add the connector of a contact over ``nodes`` and register the contact; return its ``ObjectIndex``."""
+    """Add and register the connector of a contact over ``nodes``; return its ``ObjectIndex``."""
     register(mbs, contact)
     if not contact.built_in:
         return add_connector(
@@ -74,11 +74,10 @@ def renew_friction(mbs: Any, item: Any, contact: Contact) -> None:
 
 
 def _resistance(force: ForceFunction, size: int) -> Callable[..., float]:
-    """Return the moment against the relative spin as a user function for Exudyn's spring-damper."""
     others = [0.0] * (size - 1)
     return lambda mbs, t, item, twist, spin, *_: -force(mbs, t, item, [*others, twist], [*others, spin])[-1]
 
 
 def rotor_markers(mbs: Any, nodes: Sequence[Any]) -> list[Any]:
-    """Add markers of the angles of two rotors, or of the ground and one rotor; return their ``MarkerIndex``."""
+    """Add markers of the angles of two rotors, or of the ground and one rotor."""
     return [coordinate_marker(mbs, node) for node in ((None, *nodes) if len(nodes) == 1 else nodes)]

@@ -1,4 +1,4 @@
-"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts in Exudyn's style, by its registry."""
+"""``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts as functions in Exudyn's style."""
 
 from __future__ import annotations
 
@@ -37,9 +37,8 @@ def MainSystemCreateRingFriction(
 ) -> RingFriction:
     """Add friction between two bodies, master and disc; return its handle, which contains the connector's ``item``.
 
-    ``bodyNumbers`` contains master and disc, each an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or
-    None, is a master at rest. All other arguments are those of ``add_ring_friction``: radii in m, N in N, ε in m/s.
-    Raises ``ValueError`` as that function, or if there are not two bodies.
+    Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. An Exudyn ground, or None, is a master at
+    rest. All other arguments and errors are those of ``add_ring_friction``.
     """
     master, disc = _two_bodies(bodyNumbers)
     return add_ring_friction(
@@ -74,13 +73,10 @@ def MainSystemCreateRadialSupport(
     stopStiffness: float = 0.0,
     offset: Sequence[float] = (0.0, 0.0),
 ) -> RadialSupport:
-    """Add springs, a stop and a damper from a base to a disc.
+    """Add springs, a stop and a damper from a base to a disc; return the handle with the connector's ``item``.
 
-    Return the handle, which contains the connector's ``item``.
-
-    ``bodyNumbers`` contains base and disc, each an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an
-    Exudyn ground, or None. All other arguments are those of ``add_radial_support``: N/m, N s/m, N/m³, m. Raises
-    ``ValueError`` as that function, or if there are not two bodies.
+    Each of ``bodyNumbers`` is an ObjectIndex, a NodeIndex or a MarkerIndex. The base may be an Exudyn ground, or
+    None. All other arguments and errors are those of ``add_radial_support``.
     """
     base, disc = _two_bodies(bodyNumbers)
     return add_radial_support(

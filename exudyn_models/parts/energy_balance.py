@@ -1,7 +1,7 @@
 """The energy balance of a model, which checks any run without a reference solution.
 
-In every correct run energy gains equal losses plus the change of the stored energy, for any bodies and force laws.
-The solver integrates powers to works along with all other coordinates, so works are as accurate as the motion.
+For any bodies and force laws, gains equal losses plus the change of the stored energy. The solver integrates powers
+to works along with all other coordinates, so works are as accurate as the motion.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, positive_number
 
 Power: TypeAlias = Callable[[Any, float], float]
-"""Takes the ``mbs`` and the time in s; returns a power in W of the current motion."""
+"""Function of ``mbs`` and time (s) that returns a power in W of the current motion."""
 
 Energy: TypeAlias = Callable[[Any], float]
-"""Takes the ``mbs``; returns an energy in J of the current motion."""
+"""Function of ``mbs`` that returns an energy in J of the current motion."""
 
 
 CLOSED = 1e-6
@@ -37,15 +37,8 @@ ROUNDING = 1e-14
 class EnergyBalance:
     """Energies of a model at the output times of its sensors, in J and of shape (n,).
 
-    Parameters
-    ----------
-    times : array
-        Times in s.
-    gains, losses : dict of arrays
-        Energy supplied by each source and removed by each sink since the start.
-    stored : array
-        Kinetic energy plus energy of the springs, as absolute values.
-
+    ``gains`` and ``losses`` are the energies supplied by each source and removed by each sink since the start.
+    ``stored`` is the kinetic energy plus the energy of the springs.
     """
 
     times: FloatArray
@@ -63,7 +56,7 @@ class EnergyBalance:
 
     @property
     def turnover(self) -> float:
-        """Energy turned over: the largest of all works and changes of stored energy."""
+        """Largest of all works and changes of stored energy."""
         parts = [*self.gains.values(), *self.losses.values(), self.stored - self.stored[0]]
         return float(max(np.max(np.abs(part)) for part in parts))
 
@@ -91,9 +84,8 @@ def add_energy_balance(
 ) -> Callable[[], EnergyBalance]:
     """Add an energy balance to ``mbs``; return a function that reads it after a run.
 
-    The function issues a ``RuntimeWarning`` if the residual exceeds 1e-6 of the energy turned over. The kinetic
-    energy of all bodies is included automatically. Use ``spring_energy`` for native connectors with an output
-    ``PotentialEnergy``.
+    It issues a ``RuntimeWarning`` if the residual exceeds 1e-6 of the energy turned over. The kinetic energy of all
+    bodies is included automatically. Use ``spring_energy`` for native connectors with an output ``PotentialEnergy``.
 
     Parameters
     ----------
@@ -110,7 +102,7 @@ def add_energy_balance(
     ------
     ValueError
         If ``unit`` is not > 0, a name is both a gain and a loss, or a ``spring_energy`` refers to an object without
-        potential energy. The last check needs a model that can be assembled; otherwise the run reports it.
+        potential energy.
 
     """
     unit = positive_number("unit", unit, "J")
@@ -138,7 +130,6 @@ def add_energy_balance(
 
 
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
-    """Add the works of ``powers`` as coordinates in ``unit`` (J); return the ``SensorIndex`` for all of them."""
     powers = list(named.values())
 
     def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
@@ -150,7 +141,6 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
-    """Add a sensor of the kinetic energy of all bodies plus the ``stored`` energies; return its ``SensorIndex``."""
     bodies: list[int] = []
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
@@ -175,7 +165,7 @@ class _SpringEnergy:
 
 
 def _check_springs(mbs: Any, springs: Sequence[_SpringEnergy]) -> None:
-    """Raise ``ValueError`` if one of ``springs`` has no energy, unless the model is still incomplete."""
+    """Raise ``ValueError`` if a spring has no energy, unless the model is still incomplete."""
     for spring in springs:
         try:
             kind = mbs.GetObject(spring.connector)["objectType"]

@@ -41,22 +41,15 @@ BACKWARD, LOCKED, FORWARD, OPEN = -1.0, 0.0, 1.0, 2.0
 """Values of the sensor ``"mode"``, as in Modelica's clutches."""
 
 BAND = 0.01
-"""Relative half-width of the band around the capacity that leaves ``"mode"`` unchanged."""
+"""Relative half-width of the band around the capacity where the sensor ``"mode"`` keeps its value."""
 
 
 @dataclass(frozen=True, eq=False)
 class RingFriction:
     """Handle of a friction contact added by ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    item : ObjectIndex
-        Index of the connector.
-    nodes : tuple of NodeIndex
-        Nodes of the master, unless it is the ground, and of the disc.
-
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the master, unless it is the
+    ground, and of the disc.
     """
 
     mbs: Any
@@ -67,11 +60,10 @@ class RingFriction:
 
     @property
     def compiled(self) -> bool:
-        """True if load and coefficient are computed without Python functions.
+        """True if load and coefficient are numbers, tables or numba functions (``@numba.njit``).
 
-        This requires that coefficient and load are numbers, tables or numba functions (``@numba.njit``), which keep
-        the values that outer names had when they were compiled. Any other function is called from compiled code too,
-        at its own cost.
+        Then no Python function is called in a run, and outer names in numba functions keep their values from
+        compilation.
         """
         return self._contact.factors.compiled
 
@@ -88,11 +80,7 @@ class RingFriction:
     ) -> None:
         """Replace coefficient or load from now on, as in ``add_ring_friction``; None keeps the present one.
 
-        Raises
-        ------
-        ValueError
-            If a number is out of range; both then stay unchanged.
-
+        Raises ``ValueError`` if a number is out of range; both then stay unchanged.
         """
         factors = self._contact.factors
         if self._thermal is not None and friction_coefficient is not None:
@@ -120,15 +108,14 @@ class RingFriction:
         - ``"relative_spin"``: S = φ̇ − ω in rad/s.
         - ``"capacity_share"``: share of the friction capacity in use: 1 in slip, P/ε in creep, and 0 without
           friction.
-        - ``"mode"``: 0 locked; 1 slipping with the disc faster than the master, or sideways; −1 slipping with the
-          disc slower; 2 open, without load. The capacity distinguishes locked from slipping, not the size of the
-          slip: a contact that creeps at nearly full capacity is locked. Within ``BAND`` of full capacity the mode
+        - ``"mode"``: 0 locked, also in creep below capacity; 1 slipping with the disc faster than the master, or
+          sideways; −1 slipping with the disc slower; 2 open, without load. Within ``BAND`` of full capacity the mode
           stays that of the previous evaluation, so that it does not flicker.
         - ``"power"``: heating power of friction, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
-        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file. Raises ``ValueError`` for any other quantity.
+        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
+        Raises ``ValueError`` for any other quantity.
         """
         if quantity not in get_args(Quantity):
             raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
@@ -142,7 +129,7 @@ class RingFriction:
     def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
         asked, mode = False, _Mode()
 
-        # Slip is computed without the load, so that a load may depend on a sensor of slip.
+        # Slip needs no load, so that a load may depend on a sensor of slip.
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
             nonlocal asked
             slip, angle, radius, axes = self._slip(mbs, configuration)
@@ -185,7 +172,7 @@ class RingFriction:
         return values
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return the heating power of friction in W, in the form that ``add_energy_balance`` expects."""
+        """Return the heating power of friction in W, for ``add_energy_balance``."""
         get_coordinates, get_velocities, first, second = self._access
         values = get_velocities()
         velocities = values[first].tolist()
@@ -200,9 +187,8 @@ class RingFriction:
         forces = self._contact.functions["force"](mbs, t, 0, coordinates, velocities)
         return -float(sum(map(mul, forces, velocities)))
 
-    @cached_property  # looking them up costs as much as calling them
+    @cached_property  # a look-up costs as much as a call
     def _access(self) -> tuple[Any, Any, slice, slice | None]:
-        """Functions for coordinates, if needed, and velocities of the assembled model, and slices of the nodes."""
         data = self.mbs.systemData
         on_axis = on_one_axis(self._contact.kinds, self._contact.factors)
         first, second, *_ = *self._places, None
@@ -217,13 +203,12 @@ class RingFriction:
         return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
-        """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius, all in the master's axes, and these axes."""
+        """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius in the master's axes, and these axes."""
         coordinates, velocities = self._motion(mbs, configuration)
         to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(self._contact.kinds, coordinates)
         return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
-        """Return coordinates, including reference values, and velocities of both nodes, shape (n,) each."""
         data = mbs.systemData
         q, q_t = (
             np.concatenate(
@@ -233,16 +218,15 @@ class RingFriction:
         )
         return self._contact.reference + q, q_t
 
-    @cached_property  # later nodes are added behind them
+    @cached_property  # nodes added later do not change it
     def _places(self) -> list[Any]:
-        """Slices of the nodes' coordinates among those of the assembled model."""
         item = present_item(self.mbs, self._contact, self.item)
         places = np.array(self.mbs.systemData.GetObjectLTGODE2(item))
         runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
         return [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
-        """Return P/ε, up to 1 the share of the capacity in use, or None without friction."""
+        """Return P/ε, or None without friction."""
         contact, spin = self._contact.factors.geometry, float(slip[2])
         speed: float = potential_of(float(slip[0]), float(slip[1]), spin, angle, contact)
         if self._contact.factors.friction_force(t, radius, speed, spin) == 0.0:
@@ -261,7 +245,7 @@ class RingFriction:
 
 
 class _Mode:
-    """The mode of a contact, with a memory of earlier times of the same run."""
+    """Mode of a contact, with a memory of earlier times of the run."""
 
     def __init__(self) -> None:
         self._time, self._slips = math.inf, False

@@ -1,8 +1,8 @@
 """Nodes of the two bodies of a contact, and its place and axes on them.
 
-A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. Here
-they become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so the
-closed forms for planar bodies and for rotors on one axis apply.
+A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. They
+become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so that closed
+forms apply.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ SAME = 1e-12
 """Largest difference in m, or of unit vectors, between lines that count as one axis."""
 
 PARALLEL = 1e-9
-"""Largest sine of the angle between fixed axes that count as parallel, and error of a rotation matrix."""
+"""Largest sine of the angle between axes that count as parallel, and error of a rotation matrix."""
 
 
 @dataclass(frozen=True, eq=False)
 class Side:
     """One body of a contact, by the ``name`` of its argument; ``node`` is None for the ground.
 
-    ``start``, shape (3,), and ``axes``, shape (3, 3), are the fixed frame of a rotor or the ground, with its axes as
-    columns; ``place`` and ``rotation`` are the frame of the contact on the body.
+    ``start``, shape (3,), and ``axes``, shape (3, 3), with columns, are the fixed frame of a rotor or the ground;
+    ``place`` and ``rotation`` are the frame of the contact on the body.
     """
 
     name: str
@@ -86,7 +86,7 @@ def checked_sides(
     rotations: Sequence[Any] = (None, None),
     master: str = "master",
 ) -> tuple[Side, Side]:
-    """Return both sides of a contact. Only the first, called ``master``, may be the ground.
+    """Return both sides of a contact; only the first, called ``master``, may be the ground.
 
     Raises ``ValueError`` if a node is not allowed, both are the same, or one of the ``rotations`` is not a rotation
     matrix.
@@ -103,14 +103,13 @@ def checked_sides(
 def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
     """Return the nodes, without the ground, and the kinds and mounts for compiled code."""
     nodes = (disc.node,) if master.node is None else (master.node, disc.node)
-    # The place of a rotor along its axis only matters to a master that tilts.
+    # The place of a rotor along its axis matters only to a master that tilts.
     at_nodes = master.is_at_node and disc.is_at_node and (master.kind in FLAT or disc.start[2] == 0.0)
     plain = at_nodes or _share_an_axis(master, disc)
     return nodes, (master.kind, disc.kind, None if plain else (*master.numbers, *disc.numbers))
 
 
 def _share_an_axis(master: Side, disc: Side) -> bool:
-    """Return whether rotors, or a rotor and the ground, turn about the contact's axis in its direction."""
     if disc.kind != ROTOR or master.kind not in (ROTOR, GROUND):
         return False
     axis = (master.axes @ master.rotation)[:, 2]
@@ -124,7 +123,7 @@ def _share_an_axis(master: Side, disc: Side) -> bool:
 def check_axes(mbs: Any, master: Side, disc: Side) -> None:
     """Raise ``ValueError`` if a body turns across the contact's axis, so that friction does not resist its spin.
 
-    That is any other direction if both bodies turn about fixed axes, and otherwise more than 45° at the start.
+    Fixed axes must be parallel to it; others may deviate by 45° at the start.
     """
     fixed = master.kind in FLAT and disc.kind in FLAT
     axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2]
@@ -142,7 +141,7 @@ def check_axes(mbs: Any, master: Side, disc: Side) -> None:
 
 
 def _axes_and_spin(mbs: Any, side: Side) -> tuple[FloatArray, FloatArray]:
-    """Return the initial axes of a body as columns and its angular velocity, of any size if its axis is fixed."""
+    """Return the initial axes of a body as columns, and its angular velocity (of any length if the axis is fixed)."""
     if side.kind in FLAT:
         return side.axes, side.axes[:, 2]
     entry = mbs.GetNode(side.node)
@@ -158,7 +157,6 @@ def _shown(vector: FloatArray) -> list[float]:
 def _side(
     mbs: Any, name: str, given: Any, allowed: Sequence[int], rotation: Any, *, or_ground: bool = False
 ) -> Side:
-    """Return the side of a contact from a node, a body, a marker or, if allowed, None or a ground."""
     argument, place, turned = f"{name}_node", np.zeros(3), _checked_rotation(f"{name}_rotation", rotation)
     if type(given).__name__ == "MarkerIndex":
         given, place = _marked(argument, mbs, given)
@@ -193,7 +191,6 @@ def _checked_rotation(name: str, rotation: Any) -> FloatArray:
 
 
 def _marked(name: str, mbs: Any, index: Any) -> tuple[Any, FloatArray]:
-    """Return the body or node of a marker, and the place of the marker on it."""
     count = mbs.systemData.NumberOfMarkers()
     if not 0 <= int(index) < count:
         raise ValueError(f"{name} {int(index)} does not exist: this model has {count} markers")
@@ -208,7 +205,6 @@ def _marked(name: str, mbs: Any, index: Any) -> tuple[Any, FloatArray]:
 
 
 def _body(name: str, mbs: Any, index: Any, or_ground: bool) -> Any:
-    """Return Exudyn's dictionary of a body with a node or, if allowed, of a ground."""
     try:
         body = mbs.GetObject(index)
     except exu.ExudynIndexError:
@@ -227,10 +223,7 @@ def _frame_of(body: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def _frame_of_rotor(name: str, mbs: Any, node: Any) -> tuple[FloatArray, FloatArray]:
-    """Return the fixed frame of the bodies of a ``Node1D``, or the global frame if it has none yet.
-
-    Raises ``ValueError`` if a body translates, or if they turn about several axes.
-    """
+    """Return the fixed frame of the bodies of a ``Node1D``, or the global frame if it has none yet."""
     frames = []
     for item in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(item)
@@ -255,7 +248,6 @@ def _frame_of_rotor(name: str, mbs: Any, node: Any) -> tuple[FloatArray, FloatAr
 
 
 def _checked_kind(name: str, mbs: Any, node: Any, allowed: Sequence[int]) -> int:
-    """Return the kind of a node, one of ``KINDS``; raise ``ValueError`` if it is not ``allowed``."""
     try:
         kind = mbs.GetNode(node)["nodeType"]
     except exu.ExudynIndexError:

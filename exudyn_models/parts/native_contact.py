@@ -1,9 +1,8 @@
 """Friction by Exudyn's own sphere-triangle contact instead of a user function, as an independent check.
 
 Spheres on the disc press on one triangle that turns with the master disc. Planar bodies keep their height, so the
-penetration and the normal force are constant. Exudyn's friction is −μN·v/max(|v|, ε) for the slip v of the touching
-points, with the resulting force and moment on both bodies. This is the law of ``add_ring_friction`` for points, in
-independent code.
+normal force is constant. Exudyn's friction −μN·v/max(|v|, ε) of the touching points is the law of
+``add_ring_friction`` for points.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from reference_model.systems import positive_number
 NORMAL_FORCE = 1.0
 """N of all points together, in N. Only the product μN matters, so μ is scaled to give it.
 
-Rounding tilts the normal by about 1e-15, so about 1e-15·N acts sideways. N is small where friction is large, as in
-the model of a creeping disc.
+Rounding tilts the normal, so about 1e-15·N acts sideways. N is small where friction is large, as in the model of a
+creeping disc.
 """
 
 
@@ -44,8 +43,7 @@ def add_native_friction(
     """Add friction like ``add_ring_friction``, by one built-in contact per point; return their ``ObjectIndex``.
 
     The dimensions perpendicular to the plane are arbitrary. They equal those of the triangle, because rounding tilts
-    the normal by the ratio of size to penetration. The remaining rounding error is a slip of 1e-15 times spin times
-    ``reach``.
+    the normal by the ratio of size to penetration. The remaining rounding error is a slip of 1e-15·spin·``reach``.
 
     Parameters
     ----------
@@ -53,14 +51,12 @@ def add_native_friction(
         The model, not yet assembled, with both nodes and their bodies.
     master_node, disc_node : NodeIndex or ObjectIndex
         Master: a rotor, a planar body, or None for the ground. Disc: a planar body.
-    contact_radius : float
-        R in m, >= 0; 0 for a pin.
+    contact_radius, regularisation : float
+        R >= 0 in m, 0 for a pin; ε > 0 in m/s.
     friction_coefficient, normal_load : float
-        μ >= 0, and N >= 0 in N of all points together; only their product matters.
-    regularisation : float
-        ε in m/s, > 0.
+        μ >= 0, and N >= 0 in N of all points together.
     contact_points : int or sequence of (float, float, float)
-        n >= 1 points on the circle, or places and shares of the load. The built-in contact has no whole circle.
+        n >= 1 points on the circle, or places and shares of the load; a whole circle is not supported.
     reach : float
         Largest distance in m, > 0, of a point from the master's node; beyond it a point may leave the triangle.
 
@@ -103,10 +99,7 @@ def _checked_nodes(mbs: Any, master_node: Any, disc_node: Any) -> tuple[Any, Any
 
 
 def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
-    """Add the data node of a contact; return its ``NodeIndex``.
-
-    Exudyn keeps to one branch of the law within a step; in the first step it is that of ``slip_speed`` (m/s).
-    """
+    """Add the data node of a contact; ``slip_speed`` (m/s) selects the first branch of the law."""
     return mbs.AddNode(
         items.NodeGenericData(
             initialCoordinates=[-penetration, slip_speed, 0.0, 0.0], numberOfDataCoordinates=4
@@ -117,10 +110,6 @@ def _slip_data(mbs: Any, penetration: float, slip_speed: float) -> Any:
 def _add_sphere(
     mbs: Any, markers: list[Any], data: Any, size: float, friction_force: float, epsilon: float, share: float
 ) -> Any:
-    """Add the contact of a sphere with its ``share`` of the load on the triangle; return its ``ObjectIndex``.
-
-    The penetration is half of the sphere's radius ``size``. ``friction_force`` is that of all points together, in N.
-    """
     penetration = size / 2.0
     height = penetration - size
     vectors: Any = exu.Vector3DList  # type hints as for items
@@ -143,7 +132,7 @@ def _plane(vector: complex) -> tuple[float, float]:
 
 
 def _marker(mbs: Any, node: Any, arm: complex) -> Any:
-    """Add a marker at ``arm`` (m) of the body of ``node``, or of the ground; return its ``MarkerIndex``."""
+    """Add a marker at ``arm`` (m) of the body of ``node``, or of the ground."""
     if node is None:
         ground = mbs.AddObject(items.ObjectGround())
         return mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[*_plane(arm), 0.0]))
@@ -153,7 +142,6 @@ def _marker(mbs: Any, node: Any, arm: complex) -> Any:
 
 
 def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex) -> float:
-    """Return the initial slip speed in m/s of the point at ``arm`` of the disc over the master."""
     master, _, master_velocity, master_spin = _initial_motion(mbs, master_node)
     disc, angle, disc_velocity, disc_spin = _initial_motion(mbs, disc_node)
     arm *= cmath.exp(1j * angle)
@@ -162,7 +150,7 @@ def _initial_slip_speed(mbs: Any, master_node: Any, disc_node: Any, arm: complex
 
 
 def _initial_motion(mbs: Any, node: Any) -> tuple[complex, float, complex, float]:
-    """Return position (m), angle (rad), velocity (m/s) and spin (rad/s) of a node or of the ground."""
+    """Return position, angle, velocity and spin of a node or of the ground."""
     if node is None:
         return 0j, 0.0, 0j, 0.0
     reference, initial, rates = (

@@ -1,8 +1,8 @@
 """The elastic support of a disc, on the ground or on a body: a spring that may harden, a stop and a damper.
 
 At the deflection w, d = |w|, it pulls the disc back with C·d + C₃·d³ + C_s·max(0, d − gap), and damps with β·ẇ. On a
-body it turns with the body, and w and ẇ are relative to it. So a motion of both as one rigid body causes no force,
-and the damper only dissipates. The full reaction acts on the body, including the moment −d×F.
+body, w and ẇ are relative to the turning body, so a rigid motion of both causes no force. The full reaction acts on
+the body, including the moment −d×F.
 
 A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which takes a tenth of the time of a Python
 function. Any other is a massless ``ObjectGenericODE2``.
@@ -47,15 +47,8 @@ Quantity = Literal["deflection", "force", "stored_energy", "power"]
 class RadialSupport:
     """Handle of a support added by ``add_radial_support``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    item : ObjectIndex
-        Index of the connector.
-    nodes : tuple of NodeIndex
-        Nodes of the base, unless it is the ground, and of the disc.
-
+    ``item`` is the ``ObjectIndex`` of its connector in ``mbs``. ``nodes`` are those of the base, unless it is the
+    ground, and of the disc.
     """
 
     mbs: Any
@@ -67,15 +60,15 @@ class RadialSupport:
     _law: Law = field(repr=False)
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return the heating power of the damper in W, in the form that ``add_energy_balance`` expects."""
-        # On the ground with the global axes, ẇ is the velocity of the disc's node, which costs less.
+        """Return the heating power of the damper in W, for ``add_energy_balance``."""
+        # On the ground with the global axes, ẇ is the node's velocity, which costs less.
         if len(self.nodes) == 1 and self._kinds[2] is None:
             vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
 
     def stored_energy(self, mbs: Any) -> float:
-        """Return the energy of springs and stop in J, in the form that ``add_energy_balance`` expects."""
+        """Return the energy of springs and stop in J, for ``add_energy_balance``."""
         return self._state(mbs)[2]
 
     def add_sensor(self, quantity: Quantity, **options: Any) -> Any:
@@ -86,8 +79,8 @@ class RadialSupport:
         - ``"stored_energy"``: energy of springs and stop, in J.
         - ``"power"``: heating power of the damper, in W.
 
-        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file. Raises ``ValueError`` for any other quantity.
+        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
+        Raises ``ValueError`` for any other quantity.
         """
         quantities = get_args(Quantity)
         if quantity not in quantities:
@@ -130,10 +123,10 @@ def add_radial_support(
 ) -> RadialSupport:
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
-    They act across the z-axis of the base and turn with it, like an elastic shaft. The springs are relaxed if the
-    disc's node is at ``offset``, and equal in all radial directions. They neither hold the disc along the axis nor
-    resist tilting. ``computeMassMatrixInversePerBody`` must stay False unless the support is linear and on the ground
-    with the global axes, because its nodes are shared with their bodies.
+    They act across the z-axis of the base and turn with it, like an elastic shaft, equally in all radial directions.
+    They neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False
+    unless the support is linear and on the ground with the global axes, because its nodes are shared with their
+    bodies.
 
     Parameters
     ----------
@@ -143,16 +136,10 @@ def add_radial_support(
         Body as in ``add_ring_friction``, or None or an ``ObjectGround`` for the ground.
     disc_node : NodeIndex or ObjectIndex or MarkerIndex
         Body with any of these nodes, except a ``Node1D``.
-    stiffness : float
-        C in N/m, >= 0.
-    damping : float
-        β in N s/m, >= 0.
-    hardening : float
-        C₃ in N/m³, >= 0.
-    stop_gap : float
-        Clearance of the stop in m, >= 0.
-    stop_stiffness : float
-        C_s in N/m, >= 0; 0 for no stop.
+    stiffness, damping, hardening : float
+        C in N/m, β in N s/m and C₃ in N/m³, >= 0.
+    stop_gap, stop_stiffness : float
+        Clearance of the stop in m and C_s in N/m, >= 0; C_s = 0 for no stop.
     offset : two floats
         Relaxed position in m, in the axes of the base and from its node or marker. For a ``Node1D`` and the ground,
         from the reference position of the body, or else from the global origin.
@@ -190,9 +177,9 @@ def _checked_law(
 
 
 def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
-    """Return the kinds for compiled code, and how many first coordinates of the base the model does not contain.
+    """Return the kinds for compiled code, and how many first coordinates of the base the model omits.
 
-    If there are no mounts, the ground and a rotor count as planar bodies. Three or two of their coordinates are zero.
+    If there are no mounts, the ground and a rotor count as planar bodies with fixed coordinates.
     """
     base, disc, mounts = kinds
     if mounts is not None or base not in (GROUND, ROTOR):

@@ -1,19 +1,19 @@
 """Dry friction between two bodies on a ring or at points of it: one part for pins, discs and drivetrains.
 
-*Contact.* It is a circle about the disc's node or marker, or points on it that turn with the disc: point i at the
+*Contact.* It is a circle about the disc's node or marker, or n points on it that turn with the disc: point i at the
 angle φ + 2πi/n, each with an equal share of the normal load N. Points may also lie anywhere and carry unequal shares.
 Or the contact is an annulus under a pressure. The law is Coulomb friction above the slip speed ε, viscous below.
 
 *Bodies.* Either node is a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or,
 for implicit solvers, a ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. A ``Node1D`` turns about the
 z-axis of its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a
-master at rest. An index of another model counts as an index in this one. ``computeMassMatrixInversePerBody`` must
-stay False, because nodes are shared with their bodies; otherwise Exudyn raises an error.
+master at rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies;
+otherwise Exudyn raises an error.
 
 The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
 ``rotationMarker1`` of Exudyn's joints; the x-axis on the disc points to the first contact point. The plane of contact
-passes through the disc's node or marker, across this axis. A small tilt of the disc is neglected. The load acts only
+passes through the disc's node or marker, across this axis; a small tilt of the disc is neglected. The load acts only
 through friction and presses nothing together.
 
 *Functions.* Coefficient and load may be functions of any of these arguments, by name and in any order:
@@ -30,8 +30,8 @@ initial velocities of the nodes, so it finds the equilibrium of a disc on a turn
 
 *Exact stick.* Without ε, constraints hold the slip until the load exceeds the static friction. This requires
 ``solve_dynamic`` with an implicit solver. The contact does not creep, and the steps can be as large as the motion
-allows. Switching times have the accuracy of the solver's steps. On one axis a contact that reverses twice within one
-step is not detected.
+allows. Switching times are as accurate as the solver's steps. A contact on one axis that reverses twice within one
+step goes undetected.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ ContactPoints = int | Iterable[Place]
 
 
 class AddFriction(Protocol):
-    """Adds friction between two discs to a model, as ``add_ring_friction`` does."""
+    """Function that adds friction between two discs to a model, as ``add_ring_friction`` does."""
 
     def __call__(
         self,
@@ -109,8 +109,8 @@ def add_ring_friction(
 ) -> RingFriction:
     """Add friction between a master disc and a disc to a model; return a handle with the connector and its sensors.
 
-    The module describes contact, bodies, functions and exact stick. The equations are in ``friction_laws``.
-    Raises ``ValueError`` for an invalid argument or body, or an axis of the contact across that of a body.
+    The module describes contact, bodies, functions and exact stick. The equations are in ``friction_laws``. Raises
+    ``ValueError`` for an invalid argument or body, or an axis of the contact across that of a body.
 
     Parameters
     ----------
@@ -157,7 +157,6 @@ def _with_temperature(coefficient: Coefficient, thermal_node: ThermalNode | None
 def _add_friction(
     mbs: Any, sides: tuple[Side, Side], factors: LoadAndCoefficient, sticks: bool, thermal: ThermalNode | None
 ) -> RingFriction:
-    """Add the connector between two bodies, with constraints if it ``sticks`` exactly, and the heat source."""
     if factors.contact_radius > 0.0:  # a pin exerts no moment
         check_axes(mbs, *sides)
     nodes, kinds = nodes_and_kinds(*sides)
@@ -196,7 +195,6 @@ def _sticking(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) 
 
 
 def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialStick) -> tuple[int, ...]:
-    """Add the inactive constraints on the slip of both nodes, one for each direction; return their object numbers."""
     if not isinstance(stick, PlanarStick):
         lock = items.ObjectConnectorCoordinate(
             name=contact.lock_name(0),
@@ -232,7 +230,6 @@ def _checked_geometry(
     held: int | None,
     pressure: Pressure,
 ) -> Geometry:
-    """Return the contact, with 1 N in place of μN; raise ``ValueError`` if it is invalid."""
     regularisation = UNREGULARISED if regularisation is None else regularisation
     if inner_radius is None and outer_radius is None:
         radius, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
@@ -245,7 +242,7 @@ def _checked_geometry(
         last, radius = _checked_annulus(inner_radius, outer_radius, contact_radius, contact_points)
         points = density_of(pressure, last, radius)
         epsilon = positive_number("regularisation", regularisation, "m/s")
-    if held is not None and held not in range(1, 1 + points):  # a whole circle has none
+    if held is not None and held not in range(1, 1 + points):
         raise ValueError(
             f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
         )
@@ -255,7 +252,7 @@ def _checked_geometry(
 def checked_contact(
     regularisation: float, contact_radius: float | None, contact_points: ContactPoints | None
 ) -> tuple[float, tuple[Place, ...] | None, float]:
-    """Return R, places, None for the whole circle, and ε; raise ``ValueError`` if one is out of range."""
+    """Return R, places (None for the whole circle) and ε; raise ``ValueError`` if one is out of range."""
     epsilon = positive_number("regularisation", regularisation, "m/s")
     if isinstance(contact_points, Iterable):
         places = checked_places("contact_points", contact_points)
@@ -268,7 +265,7 @@ def checked_contact(
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
     if radius == 0.0 and contact_points is None:
-        contact_points = 1  # a pin
+        contact_points = 1
     if contact_points is None:
         return radius, None, epsilon
     if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:

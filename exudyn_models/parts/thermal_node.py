@@ -1,7 +1,7 @@
 """Temperature of a part that friction heats: a heat capacity with a conductance to its surroundings.
 
-C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. The heat lost to the surroundings is a second
-coordinate, so C·(T − T_start) + loss = heat is a linear invariant, which solvers keep to rounding.
+C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. The lost heat is a second coordinate, so that
+solvers keep the linear invariant C·(T − T_start) + loss = heat to rounding.
 """
 
 from __future__ import annotations
@@ -26,15 +26,8 @@ ARGUMENT = "temperature"
 class ThermalNode:
     """Handle of a heat capacity added by ``add_thermal_node``, for ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model.
-    node : NodeIndex
-        Node with two first-order coordinates: T, and the heat in J lost to the surroundings.
-    heat_capacity, conductance, surroundings : float
-        C in J/K, G in W/K and T₀, in the unit of the temperature.
-
+    ``node`` has two first-order coordinates: T, and the heat in J lost to the surroundings. ``heat_capacity`` C is in
+    J/K, ``conductance`` G in W/K, and T₀ of the ``surroundings`` in the unit of the temperature.
     """
 
     mbs: Any
@@ -45,22 +38,21 @@ class ThermalNode:
     _sources: list[Callable[[Any, float], float]] = field(repr=False)
 
     def temperature(self, mbs: Any) -> float:
-        """Return the current T of the assembled model."""
+        """Return T in the current motion of the assembled model."""
         return float(mbs.systemData.GetODE1Coordinates()[self._place])
 
     def stored_energy(self, mbs: Any) -> float:
-        """Return C·(T − T₀) in J, in the form that ``add_energy_balance`` expects."""
+        """Return C·(T − T₀) in J, for ``add_energy_balance``."""
         return self.heat_capacity * (self.temperature(mbs) - self.surroundings)
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return the power lost to the surroundings in W, in the form that ``add_energy_balance`` expects."""
+        """Return the power lost to the surroundings in W, for ``add_energy_balance``."""
         return self.conductance * (self.temperature(mbs) - self.surroundings)
 
     def add_sensor(self, **options: Any) -> Any:
         """Add a sensor of T and of the heat in J lost to the surroundings; return its ``SensorIndex``.
 
-        ``options`` are those of Exudyn's sensors. By default the sensor stores its values for
-        ``mbs.GetSensorStoredData`` and writes no file.
+        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
         """
         return node_sensor(self.mbs, self.node, exu.OutputVariableType.Coordinates, **options)
 
@@ -69,12 +61,12 @@ class ThermalNode:
         self._sources.append(power)
 
     def with_temperature(self, coefficient: Coefficient) -> Coefficient:
-        """Return a friction coefficient with the ``temperature`` inserted, if it is a function that takes it."""
+        """Return a friction coefficient with ``temperature`` inserted, if it is a function that takes it."""
         if not callable(coefficient):
             return coefficient
         try:
             signature = inspect.signature(coefficient)
-        except (TypeError, ValueError):  # a later check of its arguments reports it
+        except (TypeError, ValueError):  # reported by a later check of its arguments
             return coefficient
         if ARGUMENT not in signature.parameters:
             return coefficient
@@ -92,7 +84,7 @@ class ThermalNode:
         )
         return at_temperature
 
-    @cached_property  # later nodes are added behind it
+    @cached_property  # nodes added later do not change it
     def _place(self) -> int:
         return int(self.mbs.systemData.GetNodeLTGODE1(self.node)[0])
 
@@ -105,24 +97,10 @@ def add_thermal_node(
     surroundings: float = 20.0,
     start: float | None = None,
 ) -> ThermalNode:
-    """Add a temperature to ``mbs``; return a handle, the ``thermal_node`` of ``add_ring_friction``.
+    """Add a temperature to ``mbs`` before assembly; return a handle, the ``thermal_node`` of ``add_ring_friction``.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model, not yet assembled.
-    heat_capacity : float
-        C in J/K, > 0.
-    conductance : float
-        G in W/K, >= 0; 0 for no loss.
-    surroundings, start : float
-        T₀ and the initial temperature (default T₀), both in °C or both in K.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-
+    ``heat_capacity`` C > 0 is in J/K, ``conductance`` G >= 0 in W/K. ``surroundings`` T₀ and ``start``, by default
+    T₀, are both in °C or both in K. Raises ``ValueError`` if a number is out of range.
     """
     capacity = positive_number("heat_capacity", heat_capacity, "J/K")
     loss = checked_not_negative("conductance", conductance, " W/K")

@@ -1,4 +1,4 @@
-"""Runs that are interrupted where a load jumps and then continue."""
+"""Runs that stop where a load jumps and then continue."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from exudyn_models.solver.repeated_steps import kept
 from reference_model.systems import finite_number
 
 GAP = 1e-13
-"""Share of the span of a run omitted on either side of a break, so that no step sees both sides."""
+"""Share of the run's duration omitted beside a break, so that no step sees both sides."""
 
 
 def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
@@ -33,10 +33,10 @@ def checked_breaks(breaks: Sequence[float], options: Any) -> list[float]:
 def parts_of_run(
     mbs: Any, settings: Any, breaks: Sequence[float], update_initial_values: bool
 ) -> Generator[bool, None, None]:
-    """Set the ``settings`` for one part of the run after the other; yield whether its end is the next initial state.
+    """Set ``settings`` for each part of the run in turn; yield whether its end is the next initial state.
 
-    Steps are at most as long as those of the whole run. Files and sensors record all parts. After the last part all
-    settings are restored, and the initial values too unless ``update_initial_values``.
+    Files and sensors record all parts. At the end all settings are restored, and the initial values too unless
+    ``update_initial_values``.
     """
     options, outputs = settings.timeIntegration, settings.solution
     start, end, steps = options.startTime, options.endTime, options.numberOfSteps

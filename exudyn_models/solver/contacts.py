@@ -1,7 +1,7 @@
 """The friction contacts of a model.
 
-``add_ring_friction`` stores a ``Contact`` in ``mbs.sys`` under the name of its connector. Object numbers would be
-ambiguous there, because ``mbs.sys`` survives ``mbs.Reset`` and objects can be deleted.
+They are stored in ``mbs.sys`` by the names of their connectors, because objects can be deleted and ``mbs.Reset``
+starts their numbers again.
 """
 
 from __future__ import annotations
@@ -20,11 +20,10 @@ _CONTACTS = "friction contacts"
 
 @dataclass(eq=False)
 class Contact:
-    """A friction contact between two nodes with ``reference`` coordinates, shape (n,).
+    """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
-    ``functions`` contains its "force" and "jacobian" as user functions for Exudyn. ``stick`` is None if the contact
-    is regularised. Its connector is Exudyn's ``ObjectConnectorCoordinateSpringDamperExt`` if it is ``built_in``, and
-    has the ``name`` that ``register`` chooses.
+    ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
+    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
     """
 
     kinds: Kinds
@@ -37,7 +36,7 @@ class Contact:
 
     @property
     def dampers(self) -> StickDampers:
-        """Equivalent dampers of the contact while it sticks by its regularised law."""
+        """Equivalent dampers while a regularised contact sticks."""
         return StickDampers(self.kinds, self.reference, self.factors)
 
     def lock_name(self, direction: int) -> str:
@@ -46,17 +45,17 @@ class Contact:
 
 
 def register(mbs: Any, contact: Contact) -> None:
-    """Store a contact in its model, and choose the name that its connector must have."""
+    """Store a contact in its model, and choose the name of its connector."""
     known = mbs.sys.setdefault(_CONTACTS, {})
     contact.name = f"friction contact {len(known)}"
     known[contact.name] = contact
 
 
 def contacts_of(mbs: Any) -> dict[int, Contact]:
-    """Return all contacts of a model by the present object numbers of their connectors.
+    """Return the contacts of a model by the present object numbers of their connectors.
 
-    Locks of exact stick also get their present numbers. Those of a deleted contact become inactive. Raises
-    ``ValueError`` if a contact has lost its locks.
+    Updates the locks, and deactivates those of deleted contacts. Raises ``ValueError`` if a contact has lost its
+    locks.
     """
     known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
     if not known:
@@ -69,12 +68,9 @@ def contacts_of(mbs: Any) -> dict[int, Contact]:
 
 
 def present_item(mbs: Any, contact: Contact, item: Any) -> Any:
-    """Return the object number of a contact's connector, which was ``item`` when it was added.
-
-    Raises ``ValueError`` if it was deleted.
-    """
+    """Return the object number of a contact's connector, at first ``item``; raise ``ValueError`` if it is gone."""
     count = mbs.systemData.NumberOfObjects()
-    for number in (item, *range(count)):  # mostly the first
+    for number in (item, *range(count)):
         if int(number) < count and mbs.GetObjectParameter(number, "name") == contact.name:
             return number
     raise ValueError(f"{contact.name!r} was deleted: it cannot be changed or measured")

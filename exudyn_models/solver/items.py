@@ -1,4 +1,4 @@
-"""Exudyn's items, and those that several parts of a model need."""
+"""Exudyn's items, and functions that add frequent ones."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 import exudyn.itemInterface
 
-items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+items: Any = exudyn.itemInterface  # its type hints reject valid calls
 
 IN_MEMORY: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
-"""Options of a sensor that stores its values for ``mbs.GetSensorStoredData`` and writes no file."""
+"""Options of a sensor that stores its values in memory only."""
 
 
 def add_rotor(mbs: Any, inertia: float, speed: float, angle: float = 0.0) -> Any:
-    """Add a rotor on the global z-axis with an inertia in kg m²; return its ``NodeIndex``."""
+    """Add a rotor (inertia in kg m²) on the global z-axis; return its ``NodeIndex``."""
     node = mbs.AddNode(
         items.Node1D(referenceCoordinates=[0.0], initialCoordinates=[angle], initialVelocities=[speed])
     )
@@ -23,20 +23,20 @@ def add_rotor(mbs: Any, inertia: float, speed: float, angle: float = 0.0) -> Any
 
 
 def coordinate_marker(mbs: Any, node: Any, coordinate: int = 0) -> Any:
-    """Add a marker of one coordinate of a node, or of the ground if it is None; return its ``MarkerIndex``."""
+    """Add a marker of a coordinate of a node; None is the ground."""
     node = mbs.AddNode(items.NodePointGround()) if node is None else node
     return mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
 
 
 def node_sensor(mbs: Any, node: Any, variable: Any, **options: Any) -> Any:
-    """Add a sensor of an output variable of a node; return its ``SensorIndex``."""
+    """Add a sensor of a node."""
     return mbs.AddSensor(
         items.SensorNode(nodeNumber=node, outputVariableType=variable, **IN_MEMORY | options)
     )
 
 
 def add_integrals(mbs: Any, rates: Callable[..., list[float]], start: Sequence[float]) -> Any:
-    """Add first-order coordinates with their ``rates``, a user function; return their ``NodeIndex``."""
+    """Add first-order coordinates with the user function ``rates``; return their ``NodeIndex``."""
     node = mbs.AddNode(
         items.NodeGenericODE1(
             referenceCoordinates=[0.0] * len(start),

@@ -1,8 +1,7 @@
 """Detection of load jumps in an implicit run, by the powers of its energy balance.
 
-Coulomb friction itself causes no jump of a power, because slip is zero where a contact begins or ends stick. So a
-power that jumps between two steps, but hardly changes in the steps before and after, indicates a load that jumps, or
-something that the steps do not resolve. Either way the error of that step is a share of the jump.
+Coulomb friction causes no jump of a power, because the slip is zero where stick begins or ends. A power that jumps in
+one step, but hardly changes in the neighbouring steps, indicates a load jump or motion that the steps do not resolve.
 """
 
 from __future__ import annotations
@@ -18,26 +17,26 @@ from reference_model.systems import FloatArray
 _NAMES = "names_of_powers"
 
 NEIGHBOURS = 2
-"""Number of steps before and after a jump that it is compared with."""
+"""Number of steps on each side that a jump is compared with."""
 
 STEEPER = 5.0
-"""Smallest ratio of a jump to the neighbouring changes, and of their slopes; a curve reaches about 2."""
+"""Smallest ratio of a jump to neighbouring changes, and of their slopes; a smooth curve reaches about 2."""
 
 LEAST = 0.02
-"""Smallest jump that is reported, as a share of the largest of all powers of the run."""
+"""Smallest reported jump, as a share of the largest power of the run."""
 
 
 def watch_powers(rates: Callable[..., Any], names: Sequence[str], unit: float = 1.0) -> None:
-    """Register the results of ``rates``, a first-order user function, as powers in ``unit`` W to be checked."""
+    """Register the results of ``rates`` as powers in ``unit`` W to be checked."""
     setattr(rates, _NAMES, tuple((name, unit) for name in names))
 
 
 TOGETHER = 4096
-"""Number of steps that are checked together, which costs almost nothing."""
+"""Number of steps that are checked together."""
 
 
 class JumpCheck:
-    """Checks the powers of an assembled model in an implicit run, and warns at its end."""
+    """Checks the powers of a model in an implicit run."""
 
     def __init__(self, mbs: Any) -> None:
         self._names, self._units, self._places = _powers(mbs)
@@ -47,7 +46,7 @@ class JumpCheck:
         self._jumps: list[tuple[float, float, int, float]] = []
 
     def look(self, t: float, rates: FloatArray) -> None:
-        """Record all ``rates`` of the model at the start or after a step, at the time t (s)."""
+        """Record all ``rates`` of the model at the time t (s)."""
         if not self._names:
             return
         self._times.append(t)
@@ -56,7 +55,6 @@ class JumpCheck:
             self._find()
 
     def _find(self) -> None:
-        """Search the recorded steps for jumps, except the last ones, which start the next search."""
         times, powers = np.array(self._times), self._units * np.array(self._rates)[:, self._places]
         del self._times[: -2 * NEIGHBOURS - 1], self._rates[: -2 * NEIGHBOURS - 1]
         self._largest = max(self._largest, float(np.abs(powers).max()))
@@ -79,7 +77,7 @@ class JumpCheck:
             )
 
     def warn(self) -> None:
-        """Warn about the largest jump found, if any."""
+        """Warn about the largest jump, if any."""
         if self._times:
             self._find()
         jumps = [jump for jump in self._jumps if jump[3] > LEAST * self._largest]
@@ -98,7 +96,7 @@ class JumpCheck:
 
 
 def _powers(mbs: Any) -> tuple[list[str], FloatArray, list[int]]:
-    """Return names and units (W) of the registered powers, and their indices among the rates."""
+    """Return names, units (W) and indices of the registered powers."""
     found: list[tuple[str, float]] = []
     places: list[int] = []
     objects = mbs.systemData.NumberOfObjects() if mbs.systemData.ODE1Size() else 0

@@ -1,4 +1,4 @@
-"""Mass, stiffness and damping matrices of an assembled model, by Exudyn's derivatives."""
+"""Mass, stiffness and damping matrices of an assembled model, from Exudyn's derivatives."""
 
 from __future__ import annotations
 
@@ -14,10 +14,9 @@ from reference_model.systems import FloatArray
 
 
 def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
-    """Return A of d(x, ẋ)/dt = A·(x, ẋ), for small motions about the initial values of an assembled model.
+    """Return A of d(x, ẋ)/dt = A·(x, ẋ) for small motions about the initial values of an assembled model.
 
-    x are its second-order coordinates, or those in ``own``. User functions for loads that read the motion themselves
-    are evaluated at that state only.
+    x are its second-order coordinates, or those in ``own``. Loads that read the motion themselves count as constant.
     """
     mass, stiffness, damping = (part[own, own] for part in matrices_of_model(mbs))
     lower = -np.linalg.solve(mass, np.hstack((stiffness, damping)))
@@ -26,9 +25,9 @@ def state_matrix(mbs: Any, own: slice = slice(None)) -> FloatArray:
 
 
 def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return M, K and D of small motions M·ẍ + D·ẋ + K·x = 0 about the initial values at the time t in s.
+    """Return M, K and D of M·ẍ + D·ẋ + K·x = 0 for small motions about the initial values at the time t in s.
 
-    They cover all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
+    x are all second-order coordinates of the assembled ``mbs``. Sensors record nothing.
     """
     size = mbs.systemData.ODE2Size()
     with _mass_and_solver(mbs, t) as (mass, solver):
@@ -43,8 +42,7 @@ def matrices_of_model(mbs: Any, t: float = 0.0) -> tuple[FloatArray, FloatArray,
 
 @contextmanager
 def _mass_and_solver(mbs: Any, t: float) -> Iterator[tuple[FloatArray, Any]]:
-    """Yield the mass matrix, and a solver that evaluates the model at its initial values and the time t (s)."""
-    solver: Any = exu.MainSolverStatic()  # its Jacobian contains no terms of time integration
+    solver: Any = exu.MainSolverStatic()  # without terms of time integration in its Jacobian
     settings = exu.SimulationSettings()
     settings.solution.file.write = settings.solution.sensors.active = False
     settings.staticSolver.loadStepStart = t
@@ -57,13 +55,11 @@ def _mass_and_solver(mbs: Any, t: float) -> Iterator[tuple[FloatArray, Any]]:
 
 
 def singular_mass(mbs: Any) -> str:
-    """Return a message about coordinates of an assembled model without mass, or ""."""
+    """Return a message about coordinates without mass, or ""."""
     with _mass_and_solver(mbs, 0.0) as (mass, _):
         pass
     for node in range(mbs.systemData.NumberOfNodes()):
-        if (
-            mbs.GetNode(node)["nodeType"] == "RigidBodyEP"
-        ):  # a constraint, in place of inertia, fixes the norm
+        if mbs.GetNode(node)["nodeType"] == "RigidBodyEP":  # a constraint, not inertia, fixes the norm
             first = mbs.GetNodeODE2Index(node) + 3
             rotation = mass[first : first + 4, first : first + 4]
             rotation += rotation.any() * np.eye(4)
@@ -75,7 +71,6 @@ def singular_mass(mbs: Any) -> str:
 
 
 def _nodes_of(mbs: Any, coordinates: Any) -> list[tuple[int, int]]:
-    """Return node and local index of each of a model's second-order coordinates."""
     starts = [
         (mbs.GetNodeODE2Index(node), node)
         for node in range(mbs.systemData.NumberOfNodes())

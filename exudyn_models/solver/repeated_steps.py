@@ -1,9 +1,8 @@
 """Restoration of states that Exudyn's implicit solvers leave changed when they repeat a step.
 
-- If modified Newton converges badly the solver restarts the step. The rates of all first-order coordinates, such as
-  heat and work, keep the values of the diverged iterate (``examples/11_exudyn_first_order_rates.py``).
-- A rejected step is repeated with a smaller size. Generalised-α keeps the algorithmic accelerations of the rejected
-  step, which changes all velocities.
+- If modified Newton converges badly, the solver restarts the step, but all first-order rates keep the values of the
+  diverged iterate (``examples/11_exudyn_first_order_rates.py``).
+- If a step is rejected, generalised-α keeps its algorithmic accelerations, which changes all velocities.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ import exudyn as exu
 
 WITHOUT_RESTART: dict[str, Any] = {
     "modifiedNewtonContractivity": 1e300,
-    "maxModifiedNewtonIterations": 1,  # then a new Jacobian in each iteration, as in full Newton
+    "maxModifiedNewtonIterations": 1,
     "maxModifiedNewtonRestartIterations": 1_000_000,
     "modifiedNewtonJacUpdatePerStep": False,
 }
@@ -25,7 +24,7 @@ WITHOUT_RESTART: dict[str, Any] = {
 
 @contextmanager
 def kept(settings: Any, *names: str) -> Iterator[None]:
-    """Restore the named ``settings`` at the end."""
+    """Restore the named ``settings`` on exit."""
     before = {name: getattr(settings, name) for name in names}
     try:
         yield
@@ -36,7 +35,7 @@ def kept(settings: Any, *names: str) -> Iterator[None]:
 
 @contextmanager
 def changed(settings: Any, **values: Any) -> Iterator[None]:
-    """Give ``settings`` other values, and restore those before at the end."""
+    """Change ``settings`` temporarily."""
     with kept(settings, *values):
         for name, value in values.items():
             setattr(settings, name, value)
@@ -44,7 +43,7 @@ def changed(settings: Any, **values: Any) -> Iterator[None]:
 
 
 def newton_without_restart(mbs: Any, newton: Any) -> AbstractContextManager[None]:
-    """Make modified Newton renew its Jacobian instead of restarting, if the model has first-order coordinates."""
+    """Make modified Newton renew its Jacobian instead of restarting, if there are first-order coordinates."""
     return changed(newton, **WITHOUT_RESTART if mbs.systemData.ODE1Size() else {})
 
 
@@ -69,8 +68,7 @@ def user_function(mbs: Any, place: str, wrap: Callable[[Any], Any]) -> Iterator[
 def restored_accelerations(mbs: Any) -> Iterator[None]:
     """Make generalised-α repeat a rejected step from the algorithmic accelerations at its start.
 
-    Exudyn restores them if the user function after Newton's method reports a discontinuity. So this one reports one,
-    once per repeated step.
+    Exudyn restores them after a discontinuity, so the function after Newton's method reports one per repeated step.
     """
     last_start, spoilt = math.nan, False
 

@@ -1,21 +1,18 @@
 """``mbs.SolveDynamic`` for any model, with checks for problems that Exudyn does not report.
 
-- *Load jumps.* A step across a load jump has an error of the jump times the part of the step before it, and a larger
-  one with an implicit solver. With ``breaks`` the run stops just before these times and continues just after. A
-  ``RuntimeWarning`` at the end reports a jump of a power of ``add_energy_balance`` or of a heat sensor, see
-  ``jumps``.
+- *Load jumps.* A step across a load jump has an error of at least the jump times the part of the step before it. With
+  ``breaks`` the run stops just before these times and continues just after. A ``RuntimeWarning`` reports jumps that
+  ``jumps`` finds in the powers of ``add_energy_balance`` and of heat sensors.
 - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
-  success with a state that is not finite. A check after every step, which costs about 1.5 μs, ends the run in that
-  case; the model's own function after a step is still called.
-- *Fixed explicit steps.* If the step exceeds the stability limit of sticking contacts, a ``RuntimeWarning`` reports
-  it, because the run looks normal; see ``largest_stable_step``. The check includes the contacts of
-  ``add_ring_friction``, whether or not they will stick, and all dampers at the initial values. Functions for loads
-  and coefficients are evaluated at the start and at a hundred times of the run, with the motion of the run.
+  success with a state that is not finite. A check after every step (about 1.5 μs) ends such a run.
+- *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the stability limit of sticking contacts
+  (``largest_stable_step``). The check assumes that all contacts stick, takes dampers at the initial values, and
+  evaluates loads and coefficients at the start and at a hundred times of the run.
 - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero. Repeated
-  steps start with the complete state from their beginning, see ``repeated_steps``; for this, modified Newton renews
-  its Jacobian instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of friction are
-  repeated with a smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
-- *Exact stick.* Friction contacts without a regularisation lock and release at the times of Coulomb's law, see
+  steps start from their complete first state, see ``repeated_steps``; for this, modified Newton renews its Jacobian
+  instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of friction are repeated with a
+  smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
+- *Exact stick.* Contacts without a regularisation lock and release at the times of Coulomb's law, see
   ``stick.switching``. Sensors have an additional row at each of these times.
 """
 
@@ -57,16 +54,12 @@ def solve_dynamic(
     *,
     breaks: Sequence[float] = (),
 ) -> list[ModeChange]:
-    """Run ``mbs.SolveDynamic`` with the same arguments, and raise errors that it does not report.
-
-    The module describes its checks and repairs.
+    """Run ``mbs.SolveDynamic`` with the same arguments and the checks and repairs of this module.
 
     Parameters
     ----------
-    mbs : exudyn MainSystem
-        The model.
-    simulationSettings : exudyn SimulationSettings
-        Settings of the run.
+    mbs, simulationSettings : exudyn MainSystem, SimulationSettings
+        Model, and settings of the run.
     solverType : exudyn DynamicSolverType, optional
         Solver, if not that of the settings.
     updateInitialValues : bool
@@ -84,8 +77,7 @@ def solve_dynamic(
     ValueError
         If the solver is explicit and the model has algebraic constraints, or ``breaks`` are invalid.
     SimulationError
-        If a step does not converge, a matrix is singular, a state is not finite, or DOPRI5
-        would need too many steps.
+        If a step does not converge, a matrix is singular, a state is not finite, or DOPRI5 would need too many steps.
     exudyn.ExudynError
         Any other error of Exudyn; an error in a function of a friction contact is its ``__cause__``.
 
@@ -105,15 +97,13 @@ def solve_dynamic(
 
 
 class _Look:
-    """Checks the state of an assembled model after every step of a run by a ``solver``."""
+    """Checks the state of a model after every step of a run."""
 
     def __init__(self, mbs: Any, solver: Any, options: Any) -> None:
         data, self._solver, self._start = mbs.systemData, solver, options.startTime
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._others, self._rates = data.GetODE1Coordinates, data.GetODE1Coordinates_t
-        automatic = (
-            solver not in IMPLICIT and solver.name not in INTERVALS
-        )  # steps as small as the solver likes
+        automatic = solver not in IMPLICIT and solver.name not in INTERVALS
         self._count = StepCount(options.endTime) if automatic else None
         if self._count is not None:
             self._count.look_from(self._start)
@@ -124,16 +114,14 @@ class _Look:
 
     @property
     def duration(self) -> float:
-        """Time in s from the start of the run to its last step."""
+        """Time in s since the start of the run."""
         return float(self._reached - self._start)
 
     def start(self) -> None:
-        """Note the initial rates, which the repairs of an implicit run determine."""
         if self._jumps is not None:
             self._jumps.look(self._start, self._rates(exu.ConfigurationType.Initial))
 
     def __call__(self, mbs: Any, t: float) -> bool:
-        """Return whether the run may continue after a step to the time t (s)."""
         self._reached = t
         if t >= self._steps.next_time:
             self._steps.warn(t, self._positions())
@@ -162,10 +150,6 @@ def _solve(
     contacts: list[StickingContact],
     modes: list[Mode],
 ) -> list[ModeChange]:
-    """Run an assembled model without a break; return the changes of modes of ``contacts``.
-
-    ``modes`` are the modes at the end of the previous part. They are empty in the first part.
-    """
     options = simulationSettings.timeIntegration
     look = _Look(mbs, solver, options)
     changes: list[ModeChange] = []
@@ -196,7 +180,7 @@ def _repair_implicit(repairs: ExitStack, mbs: Any, solver: Any, options: Any) ->
 
 
 def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> None:
-    """Raise the cause of an error in a run at the ``time`` (s) after its start, if it is not Exudyn's own."""
+    """Raise the cause of an error in a run, unless it is Exudyn's own."""
     raise_interrupt(error)
     if isinstance(error.__cause__, Warning):  # the check's warning, turned into an error by a filter
         raise error.__cause__ from None
@@ -210,12 +194,11 @@ def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> 
 
 
 def _singular(mbs: Any, at_start: bool) -> str:
-    """Return a message about a singular mass matrix, if a run has failed at its start for that reason, else ""."""
     if not at_start:
         return ""
     try:
         return singular_mass(mbs)
-    except exu.ExudynError:  # the run's own error is the one to report
+    except exu.ExudynError:  # the run's own error is more useful
         return ""
 
 

@@ -1,4 +1,4 @@
-"""A single call of an Exudyn solver: quiet, without files, and checked for problems that Exudyn does not report."""
+"""One call of an Exudyn solver: quiet, without files, and checked."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ FIXED_STEP = ("RK44", "RK67", "GeneralizedAlpha", "TrapezoidalIndex2")
 
 @dataclass(frozen=True)
 class Model:
-    """An assembled model of a system, with sensors for the state of one body.
+    """Assembled model of a system, with sensors for the state of one body.
 
-    ``container`` owns ``mbs`` and must live as long. The body's coordinates are the coordinates first, ..., first +
-    size − 1 of ``mbs``. ``sensors`` record them and their first and second time derivatives at every step.
+    ``container`` owns ``mbs`` and must live as long. The body has ``size`` coordinates of ``mbs`` from ``first`` on,
+    which ``sensors`` record with their first and second time derivatives.
     """
 
     container: Any
@@ -38,11 +38,10 @@ class Model:
 
 @dataclass(frozen=True)
 class Steps:
-    """The states at the start and after every step of a solver.
+    """States at the start and after every step of a solver.
 
-    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities (m/s,
-    rad/s); ``accelerations``, shape (n, d), in m/s², rad/s²; and the number of ``evaluations`` of the equations of
-    motion.
+    ``times``, shape (n,), in s; ``states``, shape (n, 2d), with d coordinates (m, rad) and their velocities; and
+    their ``accelerations``, shape (n, d). ``evaluations`` counts those of the equations of motion.
     """
 
     times: FloatArray
@@ -61,13 +60,13 @@ class Steps:
 
 
 NOT_FINITE = "the state is not finite any more"
-"""Message for a state that is not finite; Exudyn would continue and report success."""
+"""Message for a state that is not finite; Exudyn would report success."""
 
 FIRST_STEP = 1e-6
 """First step of DOPRI5, in the model's unit of time; later steps are automatic.
 
-Runs with Exudyn's built-in contact fail if they start with the largest step. A factor of a thousand makes no
-difference.
+Runs with Exudyn's built-in contact fail if they start with the largest step. A thousandth and a thousand times this
+step give the same results.
 """
 
 
@@ -78,7 +77,7 @@ class StepCount(trajectory.StepCount):
     seconds: float = 1.0
 
     def expect(self, start: float, steps: float) -> None:
-        """Raise ``SimulationError`` if the expected ``steps`` from the time ``start`` on are too many."""
+        """Raise ``SimulationError`` if the ``steps`` expected from the time ``start`` on are too many."""
         if steps > trajectory.MOST_AHEAD:
             raise SimulationError(
                 self._sentence(f"more than {trajectory.MOST_AHEAD:,} further steps are needed", start)
@@ -97,7 +96,7 @@ class StepCount(trajectory.StepCount):
 
 
 Watch = Callable[[float, list[float]], bool]
-"""Called with time (s) and state after every step; returns False to end the run there."""
+"""Called with time (s) and state after every step; returns False to end the run."""
 
 
 def solve(
@@ -114,15 +113,13 @@ def solve(
     balanced: bool = False,
     count: StepCount | None = None,
 ) -> Steps:
-    """Run ``model`` from its initial values at ``start`` (s) to ``end`` or to where ``watch`` ends it.
+    """Run ``model`` from its initial values at ``start`` (s) to ``end``, or until ``watch`` ends it.
 
-    ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``, ``step`` in s, for DOPRI5 the largest one and
+    ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``. ``step``, in s, is the largest step of DOPRI5, and
     ``first_step`` its first. ``tolerance`` is the absolute local error of DOPRI5, or the residual force in N of the
-    implicit solvers. If the run is ``quasi_static``, generalised-α follows a motion without inertia. Forces then
-    balance at the end of each step, and accelerations are derivatives of the velocities, because the balance
-    determines them only to its residual. If it is ``balanced`` too, the forces give the first acceleration, otherwise
-    it is 0. ``count`` counts the steps of the whole motion and gives the unit of time of a model that is not in SI
-    units.
+    implicit solvers. A ``quasi_static`` run of generalised-α neglects inertia: forces balance at the end of each
+    step, and accelerations are derivatives of the velocities. If it is ``balanced`` too, the forces give the first
+    acceleration, otherwise it is 0. ``count`` counts the steps of the whole motion and gives the unit of time.
 
     Raises ``SimulationError`` if a state is not finite, Newton's method fails, the step falls below the resolution of
     time, or there are too many steps.
@@ -142,7 +139,6 @@ def solve(
 
 
 def _no_steps(model: Model, time: float) -> Steps:
-    """Return the initial values of ``model`` as a run that ends where it starts."""
     data, own = model.mbs.systemData, slice(model.first, model.first + model.size)
     initial = [
         values(configuration=exu.ConfigurationType.Initial)[own]
@@ -152,10 +148,6 @@ def _no_steps(model: Model, time: float) -> Steps:
 
 
 def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tuple[Any, FloatArray | None]:
-    """Return the solver after its run, and the initial acceleration, which explicit solvers do not record.
-
-    Raises ``SimulationError`` if the run fails.
-    """
     explicit = integrator in EXPLICIT
     solver: Any = exu.MainSolverExplicit() if explicit else exu.MainSolverImplicitSecondOrder()
     first_acceleration = None
@@ -182,20 +174,20 @@ def _run_solver(model: Model, integrator: str, settings: Any, look: _Look) -> tu
 
 
 class _Look:
-    """Checks the state after every step of a run, and ends it where it fails or ``watch`` returns False."""
+    """Ends a run if a state is invalid or ``watch`` returns False."""
 
     def __init__(self, model: Model, start: float, end: float, watch: Watch | None, count: StepCount) -> None:
         data, self._own = model.mbs.systemData, slice(model.first, model.first + model.size)
         self._positions, self._velocities = data.GetODE2Coordinates, data.GetODE2Coordinates_t
         self._start, self._end, self._watch, self.count = start, end, watch, count
         self._previous = start
-        #: Smallest step in s; a smaller one would not change the time.
+        #: Smallest step in s that still changes the time.
         self.smallest_step = 8.0 * float(np.spacing(max(abs(start), abs(end))))
         self.failure = self.too_many = ""
         self.stopped = False
 
     def __call__(self, mbs: Any, t: float) -> bool:
-        own, watch = self._own, self._watch  # every call counts, because this runs after every step
+        own, watch = self._own, self._watch  # runs after every step, so every call counts
         state = self._positions().tolist()[own] + self._velocities().tolist()[own]
         if not math.isfinite(sum(state)):
             self.failure = NOT_FINITE
@@ -211,10 +203,7 @@ class _Look:
 def _recorded(
     model: Model, end: float | None, quasi_static: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the times of all steps, shape (n,), states (n, 2d) and accelerations (n, d).
-
-    The sum of fixed steps may differ in the last digits from the ``end`` (s) of a completed run.
-    """
+    """Return times, shape (n,), states (n, 2d) and accelerations (n, d) of all steps; the last time is ``end``."""
     stored = [np.array(model.mbs.GetSensorStoredData(sensor)) for sensor in model.sensors]
     positions, velocities, accelerations = (values[:, 1 : 1 + model.size] for values in stored)
     times = stored[0][:, 0]
@@ -247,14 +236,14 @@ def _settings(
 ) -> Any:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 0.0  # at every step
+    settings.solution.sensors.writePeriod = 0.0
     options = settings.timeIntegration
     options.verboseMode = 0
     options.startTime, options.endTime = start, end
     options.numberOfSteps = max(1, math.ceil((end - start) / step * (1.0 - 1e-12)))
     options.solverType = getattr(exu.DynamicSolverType, integrator)
     if integrator in EXPLICIT:
-        # Exudyn 1.13 scales the error with absolute + relative·y for y of either sign: with equal tolerances the step
+        # Exudyn 1.13 scales the error with absolute + relative·y of either sign: with equal tolerances the step
         # would collapse wherever a coordinate passes −1.
         options.absoluteTolerance, options.relativeTolerance = tolerance, 0.0
         options.initialStepSize = min(first_step, end - start) if integrator == "DOPRI5" else 0.0
@@ -270,10 +259,7 @@ def _settings(
 
 
 def _initial_acceleration(model: Model, start: float) -> FloatArray:
-    """Return the initial accelerations in m/s², rad/s², shape (d,).
-
-    Exudyn's explicit solvers report zero there; the implicit ones compute them.
-    """
+    """Return the initial accelerations by an implicit solver; explicit ones report zero."""
     span = 1e-9 * max(1.0, abs(start))
     settings = _settings(start, start + span, "GeneralizedAlpha", span, math.inf)
     solver: Any = exu.MainSolverImplicitSecondOrder()
@@ -283,23 +269,23 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
 
 
 def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
-    """Call ``function`` after every step, in addition to the model's own function; False ends the run."""
+    """Call ``function`` after every step and the model's own function; False ends the run."""
     return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 
 def raise_interrupt(error: exu.ExudynError) -> None:
-    """Raise the ``KeyboardInterrupt`` that arrived while Exudyn was in a user function, if ``error`` is that."""
+    """Raise ``KeyboardInterrupt`` if ``error`` is one that arrived in a user function."""
     if "KeyboardInterrupt" in str(error):
         raise KeyboardInterrupt from error
 
 
 def quiet() -> AbstractContextManager[None]:
-    """Suppress Exudyn's output, and its warnings that Python functions allocate memory."""
+    """Suppress Exudyn's output, and its warnings about memory that Python functions allocate."""
     return changed(exu.config, printToConsole=False, suppressWarnings=True)
 
 
 def advice(integrator: str, time: float, what: str) -> str:
-    """Return a message about a run that failed at ``time`` (s after its start)."""
+    """Return a message about a run that failed at ``time`` (s)."""
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
         "use a smaller step, a larger tolerance or a larger regularisation, or the other solver"

@@ -1,8 +1,7 @@
 """Initial rates of first-order coordinates for implicit solvers.
 
-Exudyn's implicit solvers compute the initial accelerations from the forces. But they start all first-order rates,
-such as those of heat and work, with the stored initial values: zero, or at a break the rate before it. By the
-trapezoidal rule of the first step the error is half the step times the missing rate.
+Exudyn's implicit solvers start them with stored values: zero, or at a break the rate before it. The trapezoidal rule
+turns this into an error of half a step times the missing rate.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ from exudyn_models.solver.solver_run import quiet
 
 @contextmanager
 def starting_rates(mbs: Any, t: float) -> Iterator[None]:
-    """Start an implicit run of an assembled model at the time t (s) with the correct first-order rates."""
+    """Start an implicit run of an assembled model with the correct first-order rates at the time t (s)."""
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     if data.ODE1Size() == 0:
         yield

@@ -1,7 +1,7 @@
 """Detection of implicit steps that skip a peak of friction, such as that of ``static_ratio`` or a Stribeck curve.
 
-If friction falls within the slip change of a step, the equations of the step have several solutions: a contact that
-holds, and one that has passed its peak and runs away. Newton's method may find either.
+If friction falls within the slip change of a step, Newton's method may find a contact that holds, or one that has
+passed its peak and runs away.
 """
 
 from __future__ import annotations
@@ -19,17 +19,14 @@ from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.repeated_steps import user_function
 
 RESOLVED = 0.05
-"""Slip change of a step, over ε, that is small enough: tests hold 99 % of static friction with it.
-
-The trapezoidal rule oscillates by half of it about the state of a contact that starts to hold.
-"""
+"""Largest slip change of a step divided by ε: a contact then still holds 99 % of static friction (tested)."""
 
 LEAST_FALL = 1e-3
-"""Smallest relative fall of friction from its peak that counts."""
+"""Smallest relative fall of friction that counts as a peak."""
 
 
 def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
-    """Repeat the steps of an assembled model that skip a peak with a smaller size; warn if steps are fixed."""
+    """Repeat steps that skip a peak with a smaller size; warn if steps are fixed."""
     data, places = mbs.systemData, mbs.systemData.GetObjectLTGODE2
     contacts = [
         (np.array(places(item)), contact)
@@ -66,7 +63,7 @@ def peaks_resolved(mbs: Any, options: Any) -> AbstractContextManager[None]:
 
 
 def _right_share(contact: Any, t: float, start: Any, rates: Any, end: Any, end_rates: Any) -> float:
-    """Return the share, up to 1, of a step to the time t (s) that skips no peak of a contact's friction."""
+    """Return the share, up to 1, of a step that skips no peak of friction."""
     factors, reference = contact.factors, contact.reference
     before, after, change, spin, radius = change_of_slip(
         contact.kinds, factors.geometry, reference + start, rates, reference + end, end_rates

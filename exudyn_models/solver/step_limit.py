@@ -1,8 +1,8 @@
 """The largest stable step of explicit solvers while contacts stick.
 
-Sticking contacts are dampers between their bodies, see ``stick_dampers``. They add to the dampers of the model, and
-the fastest decay is the largest eigenvalue λ of M⁻¹·D. The step must stay below Z/λ, with Z the ``INTERVALS`` of the
-solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
+Sticking contacts are dampers between their bodies, see ``stick_dampers``. With them and the dampers of the
+model, the fastest decay rate is the largest eigenvalue λ of M⁻¹·D. The step must stay below Z/λ, with Z the
+``INTERVALS`` of the solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ INTERVALS = {
 
 @dataclass(frozen=True, eq=False)
 class ModelInStick:
-    """A model with all contacts in stick, linearised about its initial values.
+    """Model with all contacts in stick, linearised about its initial values.
 
-    ``mass`` and ``damping``, shape (n, n), are the matrices of its n second-order coordinates; ``damping`` excludes
-    ``contacts``, which are coordinates and dampers of each contact.
+    ``mass`` and ``damping``, shape (n, n), are its matrices; ``damping`` excludes the ``contacts``, which list the
+    coordinates and dampers of each contact.
     """
 
     mass: FloatArray
@@ -48,10 +48,7 @@ class ModelInStick:
 
     @classmethod
     def of(cls, mbs: Any, t: float) -> ModelInStick | None:
-        """Return the linearisation of an assembled model at the time t (s); None if it has no contact.
-
-        Raises any error of the model's functions.
-        """
+        """Return the linearisation at the time t (s); None if the model has no contact."""
         found = {item: contact for item, contact in contacts_of(mbs).items() if contact.stick is None}
         if not found:
             return None
@@ -65,7 +62,7 @@ class ModelInStick:
             if not contact.built_in:
                 jacobian = contact.functions["jacobian"]
                 now = jacobian(mbs, t, item, q[places].tolist(), q_t[places].tolist(), 0.0, 1.0)
-                damping[np.ix_(places, places)] -= now  # the damping of its initial slip
+                damping[np.ix_(places, places)] -= now
             contacts.append((places, contact.dampers))
         return cls(mass, damping, tuple(contacts))
 
@@ -93,23 +90,12 @@ class ModelInStick:
 def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
-    It refers to the initial values, with functions for loads and coefficients evaluated at time 0, and is infinite
-    without contacts. A disc that creeps about a point on or near its own circle of contact chatters from a quarter of
-    this step on; at half of it by less than 7 % of its creep.
+    It refers to the initial values and time 0, and is infinite without contacts. A disc that creeps about a point on
+    or near its own circle of contact chatters from a quarter of this step on; at half of it, by less than 7 % of its
+    creep. The model is assembled if necessary.
 
-    Parameters
-    ----------
-    mbs : exudyn MainSystem
-        The model, which is assembled if necessary.
-    solver_type : exudyn DynamicSolverType
-        Solver with a fixed step: ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67``,
-        ``VelocityVerlet``.
-
-    Raises
-    ------
-    ValueError
-        For any other solver, or a model with constraints or a singular mass matrix.
-
+    ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.
+    Raises ``ValueError`` for any other solver, or a model with constraints or a singular mass matrix.
     """
     if solver_type.name not in INTERVALS:
         raise ValueError(
@@ -132,27 +118,27 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
 
 
 LOOKS = 100
-"""Number of checks of functions for loads and coefficients in a run, after its start."""
+"""Number of checks of functions for loads and coefficients after the start of a run."""
 
 
 class StepCheck:
-    """Warns once about a fixed step that is too large for stick, in a run with the ``options``."""
+    """Warns once if the fixed step of a run is too large for stick."""
 
     def __init__(self, mbs: Any, solver: str, options: Any) -> None:
         self._solver, self._span = solver, options.endTime - options.startTime
         self._step = self._span / options.numberOfSteps
-        #: Time in s of the next call of ``warn``.
+        #: Time in s of the next check.
         self.next_time = math.inf
         self._model = _in_stick(mbs, options.startTime) if solver in INTERVALS else None
 
     def warn(self, t: float, coordinates: FloatArray) -> None:
-        """Warn if the step is too large for friction at the time t (s) and the model's ``coordinates``."""
+        """Warn if the step is too large at the time t (s) and the model's ``coordinates``."""
         if self._model is None:
             return
         self.next_time = t + self._span / LOOKS if self._model.varies else math.inf
         try:
             decay = self._model.decay(t, coordinates)
-        except Exception:  # a massless body or an error in a load: the run will report it, with its time
+        except Exception:  # the run itself will report the error, with its time
             return
         limit = INTERVALS[self._solver] / decay if decay > 0.0 else math.inf
         if self._step <= limit:
@@ -169,10 +155,9 @@ class StepCheck:
 
 
 def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
-    """Return the model in stick, or None if this fails."""
     try:
         return ModelInStick.of(mbs, t)
-    except Exception as error:  # an error in a function of the model: the run will report it, with its time
+    except Exception as error:  # the run itself will report the error, with its time
         if isinstance(error, exu.ExudynError):
             raise_interrupt(error)
         return None
@@ -180,7 +165,6 @@ def _in_stick(mbs: Any, t: float) -> ModelInStick | None:
 
 @contextmanager
 def _inactive(mbs: Any, items: Sequence[int]) -> Iterator[None]:
-    """Let connectors exert no force."""
     for item in items:
         mbs.SetObjectParameter(item, "activeConnector", False)
     try:

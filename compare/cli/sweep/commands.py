@@ -229,7 +229,6 @@ def sweep_figures(
 
 
 def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: Sequence[str]) -> list[Any]:
-    """Return the axes x and y; raise ``ValueError`` if one is invalid, or both vary the same quantity."""
     from compare.sweep.quantities import Axis
 
     axes = [Axis.parse(text or default, kind, names) for text, default in zip(texts, defaults, strict=True)]

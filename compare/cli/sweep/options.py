@@ -21,12 +21,11 @@ COARSE = 65
 MOST_CHUNK, MOST_SAMPLES, MOST_AT_A_VALUE = 10_000_000, 2**31, 2**20
 
 STARTS = {"pin": (0.1, 0.0, 0.03, 0.0), "disc": (0.02, 0.0, 0.0, 0.0, 0.0, 1.3)}
-"""Default initial states, equal to those of ``simulate``."""
+"""Default initial states, those of ``simulate``."""
 
 UNTIL, UNTIL_ON_POINTS = 12000.0, 1200.0
-"""Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls.
-For single contact points it is shorter: the plain reference simulates their rests slowly, and more time decides no
-further motion."""
+"""Default of ``--until`` in s. Only then do modulated motions near the Hopf curve of Fig. 11 differ from whirls. On
+single contact points it is shorter, because the plain reference simulates their rests slowly."""
 
 
 @refused()
@@ -188,9 +187,9 @@ class Request:
         }
 
     def set_names(self) -> list[str]:
-        """Return the names of parameters that ``--set`` changes."""
+        """Return the parameters that ``--set`` changes."""
         return [setting.partition("=")[0].strip() for setting in self.settings or []]
 
     def run(self, plan: Plan) -> int:
-        """Run or resume the sweep of ``plan`` and return the exit status."""
+        """Run or resume the sweep of ``plan``."""
         return run_sweep(plan, self.chunk, self.scheduler, self.output, self.resume)

@@ -79,7 +79,6 @@ def run_sweep(plan: Plan, chunk: int | None, scheduler: str | None, place: str, 
 
 @contextmanager
 def _reporting_store_errors() -> Iterator[None]:
-    """Turn errors of the folder or its store into ``BadInputError``."""
     from compare.sweep.files import StoreError
 
     with refused():

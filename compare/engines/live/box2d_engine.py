@@ -3,8 +3,6 @@
 Written for Box2D 2.3 (``pip install box2d``), in single precision. See ``TopDown`` in ``setting`` for the bodies. A
 friction joint bounds the length of its impulse, a cone. Its torque limit is 0 because contact is at points.
 
-Settings and their reasons:
-
 - Bodies must not sleep. Several points need 50 velocity iterations; the 8 of the manual are for games.
 - Box2D's angles grow without bound, so rounding grows with long spins. The adapter counts whole turns itself.
 

@@ -5,19 +5,15 @@ The pin or disc is a multibody on two prismatic joints; a disc also has a revolu
 on vertical joints, each pressed on the plate by its own weight N/n only. For several feet of one rigid body, the
 solver would load only the first. The plate turns at ω on a joint and is heavy enough not to be slowed.
 
-Settings and their reasons:
-
-- Bullet's defaults, disabled here: a damping of the whole body of 0.04, motors in the joints, a joint speed limit
-  of 100.
+- Bullet's defaults, disabled here: a damping of the whole body of 0.04, motors in the joints, a joint speed limit of
+  100. As shipped, only the motors are off.
 - The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
-As shipped, the solver, the cone, damping and joint speeds keep their defaults; only the motors are off.
-
-Limits: a step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world
-axis, which is up to √2 times too large at any step. With the cone on, friction on a disc deviates from the direction
-of slip, because each component of the slip is divided by its own mobility: a relative error of R²·m/J at any step.
-The continuous ring is not supported.
+A step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world axis, up to
+√2 times too large at any step. With the cone on, friction on a disc deviates from the direction of slip, because each
+component of the slip is divided by its own mobility: a relative error of R²·m/J at any step. The continuous ring is
+not supported.
 """
 
 from __future__ import annotations
@@ -89,7 +85,7 @@ class _World(Model):
             pybullet.resetJointState(plate, 0, 0.0, system.disc_speed, physicsClientId=self.client)
 
     def _body(self, height: float, links: Any, shapes: Any, places: Any, parents: Any, axes: Any) -> int:
-        """Return an undamped multibody without motors on a fixed base; ``links`` are pairs of mass and inertia."""
+        """Return an undamped multibody without motors; ``links`` are pairs of mass and inertia."""
         none, unit = [[0.0, 0.0, 0.0]] * len(links), [[0.0, 0.0, 0.0, 1.0]] * len(links)
         vectors = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1], "turn": [0, 0, 1]}
         body: int = pybullet.createMultiBody(
@@ -108,7 +104,8 @@ class _World(Model):
             linkJointAxis=[vectors[axis] for axis in axes],
             physicsClientId=self.client,
         )
-        # Settings of the whole body go to its base: in a call for a link, they would discard the link's own settings.
+        # Settings of the whole body go to its base; in a call for a link, they would discard the link's own
+        # settings.
         if not self.shipped:
             whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
             awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
@@ -141,7 +138,6 @@ class _World(Model):
         return self.state
 
     def _forces(self, *state: float) -> list[float]:
-        """Return the generalised forces of support, shaft and, unless contact is native, friction."""
         system = self.system
         z, v = complex(*state[:2]), complex(*state[self.half : self.half + 2])
         force = support_force(system, z, v)

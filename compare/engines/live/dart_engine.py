@@ -3,14 +3,12 @@
 Needs ``pip install dartpy`` (wheels for Linux, and from Python 3.12 on for macOS and Windows). Measured with 6.20.0.
 
 The pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints, each pressed on the
-plate by its own weight N/n only. Rigid contact would leave the distribution of load on several feet of one body
-undefined. The plate turns at ω on a joint with prescribed motion.
-
-Settings and their reasons:
+plate by its own weight N/n only, because rigid contact does not determine the loads on several feet of one body. The
+plate turns at ω on a joint with prescribed motion.
 
 - A step is semi-implicit, of order 1: friction opposes the slip at its end, positions follow from the new velocities.
-  Springs of joints are implicit, which damps like C·h. The support's spring is therefore a force set before each
-  step, with a quarter of the error. The dampers are those of the joint.
+  Implicit springs of joints would damp like C·h. The support's spring is a force set before each step, with a quarter
+  of the error; the dampers are those of the joint.
 - By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
 - Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes
   and up to √2 times too large in between, at any step. The other two solvers use the cone.
@@ -68,7 +66,6 @@ class _Model(Model):
 
 
 def _world(system: System, arms: list[complex], solver: str) -> tuple[Any, Any]:
-    """Return the world and the joint of the pin or disc, with coordinates x, y and angle."""
     dynamics, world = dartpy.dynamics, dartpy.simulation.World()
     if solver != SHIPPED:
         asleep = dartpy.simulation.DeactivationOptions()
@@ -134,7 +131,7 @@ def _shift(x: float, y: float, z: float) -> Any:
 
 
 def _touching(body: Any, shape: Any, height: float) -> None:
-    """Add ``shape`` to ``body`` at this ``height`` in m, with μ = 1 and without restitution."""
+    """Add ``shape`` to ``body`` at a ``height`` in m, with μ = 1 and without restitution."""
     node = body.createShapeNode(shape)
     node.setRelativeTransform(_shift(0.0, 0.0, height))
     node.createCollisionAspect()

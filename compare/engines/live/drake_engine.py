@@ -5,17 +5,14 @@ Needs ``pip install drake`` (wheels for Linux and newer Pythons on macOS, none f
 The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a plate that turns at ω.
 Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any motion.
 
-Settings and their reasons:
-
-- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, contact is a force, and
-  friction grows smoothly up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
+- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, friction grows smoothly
+  up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
 - ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
 - The convex solvers stop when the residual of Newton's iteration is 1e-6 of the total momentum, and ignore a force F
   if F·h is smaller. A heavy master would hide all friction, so theirs is light and driven: by the gain of its motor
   or, because cenic ignores that, by a torque through a stiff damper. Below h = 2e-3/rate errors grow.
 - With a half-space, Drake crashes from about twenty spheres on, so the plate is a box.
-- Drake's springs between bodies act along a line, so a bushing is used, which has no direction. The dampers are those
-  of the joint.
+- Drake's springs between bodies act along a line, so a bushing is used, which has no direction.
 """
 
 from __future__ import annotations
@@ -121,7 +118,6 @@ class _Plant:
             forces.FixValue(self.context, steady)
 
     def _touch(self, body: Any, master: Any) -> None:
-        """Add the contact points below ``body`` and a plate on ``master``."""
         material, arms = ProximityProperties(), contact_arms("Drake", self.system)
         in_series = 2.0 * self.system.friction_force / len(arms) / DEPTH
         AddContactMaterial(0.0, in_series, CoulombFriction(1.0, 1.0), material)
@@ -133,7 +129,7 @@ class _Plant:
             self.plant.RegisterCollisionGeometry(body, place, Sphere(RADIUS), f"{i}", material)
 
     def start(self, state: FloatArray) -> None:
-        """Set the initial state of the next ``advance``."""
+        """Set the initial state."""
         self.steps, self.time, half = 0, 0.0, len(state) // 2
         self.joint.set_translation(self.context, state[:2])
         self.joint.set_translational_velocity(self.context, state[half : half + 2])
@@ -145,9 +141,9 @@ class _Plant:
         self.simulator.Initialize()
 
     def advance(self, duration: float, steps: int) -> FloatArray:
-        """Return the state ``duration`` seconds later, after this number of ``steps`` of a discrete solver."""
+        """Return the state ``duration`` seconds later, after ``steps`` of a discrete solver."""
         self.steps, self.time = self.steps + steps, self.time + duration
-        # Step i is taken at time i·h. Ending half a step early completes all steps, whatever the rounding.
+        # Ending half a step early completes all steps, whatever the rounding.
         self.simulator.AdvanceTo((self.steps - 0.5) * self.step if self.step else self.time)
         joint, context, half = self.joint, self.context, self.system.state_size // 2
         place = [*joint.get_translation(context), joint.get_rotation(context)]
@@ -156,7 +152,7 @@ class _Plant:
 
 
 class _OurFriction(LeafSystem):  # type: ignore[misc]
-    """Friction −μN·v/max(|v|, ε) at each point, plus ``steady`` forces on the joints, as functions of the state."""
+    """Friction −μN·v/max(|v|, ε) at each point, plus ``steady`` forces on the joints."""
 
     def __init__(self, model: _Plant, steady: FloatArray) -> None:
         super().__init__()

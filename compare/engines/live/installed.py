@@ -11,13 +11,13 @@ from compare.engines.engine import Engine
 from compare.engines.registry import ByName, Scheme, register_scheme
 from compare.output.outside_text import one_of
 
-KINDS = ("pin", "points")  # systems that these engines simulate, as in ``compare.engines.KINDS``
+KINDS = ("pin", "points")  # as in ``compare.engines.KINDS``
 
 
 class Installed(NamedTuple):
     """An engine provided by a Python package, with its official name and the platforms that have wheels.
 
-    The first of the ``settings`` is the default. The adapter's function has its name, with "_" for "-".
+    The first of the ``settings`` is the default.
     """
 
     title: str

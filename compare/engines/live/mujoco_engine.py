@@ -5,8 +5,6 @@ sliding joints; a disc also has a hinge. Springs and dampers are those of the jo
 vertical joints, each pressed on the plate by its own weight N/n only. The plate is a cylinder on a hinge that turns
 at ω and is heavy enough not to be slowed.
 
-Settings and their reasons:
-
 - Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero, with a compliance of
   1e-4. It acts along v + a₀/b, where a₀ is the acceleration without friction, so b ~ 1/h causes an error of first
   order in the step. At b = 2/h it acts along the slip at mid-step. Only the direct form of ``solref`` sets b.
@@ -15,11 +13,11 @@ Settings and their reasons:
 - The solver's own tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0,
   and the iterations are limited. A pyramid needs more of them, with many points far more than an ellipse.
 
-As shipped, the contact has all of MuJoCo's defaults, such as a pyramid and a relaxation in 20 ms. The feet weigh
-9.81 m/s² times half of the mass. A plate at rest is fixed. One that turns is only a hundred times heavier than the
-body, because of the solver's tolerance, and its speed is set again before each step.
+As shipped, the contact has all of MuJoCo's defaults, such as a pyramid and a relaxation in 20 ms. The feet weigh 9.81
+m/s² times half of the mass. A plate at rest is fixed. One that turns is only a hundred times heavier than the body,
+because of the solver's tolerance, and its speed is set again before each step.
 
-Limits: a pyramid's friction acts along the nearest world axis, up to 45° off, at any step. With the pyramid or with
+A pyramid's friction acts along the nearest world axis, up to 45° off, at any step. With the pyramid or with
 Runge–Kutta steps, a sticking pin creeps in proportion to the step; with the ellipse, to its square. The continuous
 ring is not supported.
 """
@@ -43,10 +41,7 @@ LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 @dataclass(frozen=True)
 class _Contact:
-    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping.
-
-    μ follows from ``gravity`` in m/s², but is at least ``LEAST_COEFFICIENT``.
-    """
+    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping."""
 
     option: str = ""
     friction_rate: float = 0.0
@@ -57,7 +52,7 @@ class _Contact:
 
     @classmethod
     def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
-        """Return contact that converges to Coulomb's law with the smallest μ that MuJoCo accepts.
+        """Return contact that converges to Coulomb's law.
 
         A foot sinks and rises by less than the size of feet and plate, so this has no effect in the plane.
         """

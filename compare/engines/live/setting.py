@@ -50,7 +50,7 @@ class Model:
         raise NotImplementedError
 
     def work(self, steps: int) -> tuple[int, int]:
-        """Return the numbers of evaluations and steps, if this number of ``steps`` was requested."""
+        """Return the numbers of evaluations and steps for requested ``steps``."""
         return steps, steps
 
     def close(self) -> None:
@@ -63,16 +63,16 @@ class Setting:
 
     Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
     order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``. ``step`` and ``precision`` are as in ``compare.engines.Engine``; the step is
-    short enough for accuracy but faster than real time, and None for an integrator that controls its error.
+    fills each interval of ``times``. ``step``, as in ``compare.engines.Engine``, is short enough for accuracy but
+    faster than real time, and None for an integrator that controls its error.
     """
 
     name: str
-    says: str  # description
+    says: str
     model: type[Model]
     options: Mapping[str, Any] = field(default_factory=dict)  # of the model
     finest: float = 0.0  # least step in units of 1/max(k, ω)
-    linear: bool = True  # True if the engine has linear springs only
+    linear: bool = True  # springs only without hardening and stop
     step: float | None = 2e-3
     precision: float = 0.0
 
@@ -114,7 +114,7 @@ class Setting:
 def contact_arms(engine: str, system: System, most: float = math.inf) -> list[complex]:
     """Return the positions in m of the contact points on the disc at angle 0.
 
-    Raises ``UnsupportedSystemError`` for a ring, or if there are more than ``most`` points.
+    Raises ``UnsupportedSystemError`` for a ring, or more than ``most`` points.
     """
     if not isinstance(system, DiscOnDisc):
         return [0j]
@@ -134,30 +134,30 @@ def rate(system: System) -> float:
 
 
 def mobility(system: System) -> float:
-    """Return the largest change of slip in m/s that an impulse of 1 N s on the contact can cause."""
+    """Return the largest change of slip in m/s for an impulse of 1 N s on the contact."""
     turning = system.contact_radius**2 / system.polar_inertia if isinstance(system, DiscOnDisc) else 0.0
     return 1.0 / system.mass + turning
 
 
 def inertia_of(system: System) -> float:
-    """Return J; for a pin, which does not turn, return its mass as a stand-in."""
+    """Return J, or the mass of a pin, which does not turn."""
     return system.polar_inertia if isinstance(system, DiscOnDisc) else system.mass
 
 
 def shaft_torque(system: System, spin: float) -> float:
-    """Return the torque in N m of the shaft on a disc with this ``spin`` in rad/s; 0 for a pin."""
+    """Return the torque in N m of the shaft on a disc; 0 for a pin."""
     return system.shaft_damping * (system.shaft_speed - spin) if isinstance(system, DiscOnDisc) else 0.0
 
 
 def support_force(system: System, z: complex, v: complex) -> complex:
-    """Return the force in N of springs, stop and dampers at the position ``z`` in m and velocity ``v`` in m/s."""
+    """Return the force in N of springs, stop and dampers at ``z`` (m) and ``v`` (m/s)."""
     w = z - system.offset
     stop = system.stop_stiffness * max(0.0, 1.0 - system.stop_gap / abs(w)) if w else 0.0
     return -(system.stiffness + system.hardening * abs(w) ** 2 + stop) * w - system.damping * v
 
 
 def our_friction(system: System, arms: list[complex], state: Sequence[float], epsilon: float) -> Any:
-    """Return the total force in N, and for a disc the moment in N m, of −μN·v/max(|v|, ε) at the contact points."""
+    """Return force in N, and for a disc moment in N m, of −μN·v/max(|v|, ε) at the contact points."""
     half = len(state) // 2
     z, v = complex(*state[:2]), complex(*state[half : half + 2])
     turned, spin = (cmath.rect(1.0, state[2]), state[5]) if half > 2 else (1.0 + 0j, 0.0)
@@ -173,14 +173,14 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 
 # --- Common code of planar engines, with contact as a joint.
 #
-# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint between
-# two bodies that removes their relative velocity up to a force limit, here μN/n at each contact point. The second
-# body at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
-# forces, so any support is possible. All of these are set in each step. Steps are semi-implicit, of order 1.
+# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint that
+# removes the relative velocity of two bodies up to a force limit, here μN/n at each contact point. The second body
+# at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
+# forces, set in each step. Steps are semi-implicit, of order 1.
 
 
 class TopDown(Model):
-    """A body with a kinematic partner at each contact point; if it is ``shipped``, the engine keeps its defaults."""
+    """A body with a kinematic partner at each contact point; a ``shipped`` engine keeps its defaults."""
 
     shipped = False
 

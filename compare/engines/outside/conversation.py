@@ -1,7 +1,6 @@
 """A program that answers questions line by line until this process ends.
 
-Every failure raises an error with a clear message. A program that does not answer in time, or answers nonsense, is
-ended, and the next question starts a new process.
+A program that does not answer in time, or answers nonsense, is ended, and the next question starts a new process.
 """
 
 from __future__ import annotations
@@ -36,20 +35,20 @@ from compare.output.outside_text import cause_of_end, printable
 from reference_model.systems import System
 from reference_model.trajectory import Trajectory
 
-GREETING_LIMIT = 60.0  # time limit in s for the first line; a program may have to be compiled when it starts
+GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation
 GREETING_BYTES = 100_000
 TICK = 0.1  # interval in s between checks of the time limit
 FAREWELL = 1.0  # time in s for a program to end after its input is closed
-AT_ONCE = 1 << 18  # bytes read from a pipe at once, at least its capacity
-LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept from the end of a program's standard error
+AT_ONCE = 1 << 18  # bytes read from a pipe at once
+LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's standard error
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
-"""Command of a shell that waits on its standard input, which closes when this process ends, even if killed."""
+"""Shell command that waits on its standard input, which closes when this process ends, even if killed."""
 
 
 class ProgramError(RuntimeError):
-    """A program did not answer; the message says why, with the last lines of its standard error."""
+    """A program did not answer; the message says why, with its last lines of standard error."""
 
 
 def simulate(
@@ -63,7 +62,7 @@ def simulate(
     """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
     Raises ``UnsupportedSystemError`` if the program says so, ``OSError`` if it cannot be started, and
-    ``ProgramError`` if it reports an error, ends, hangs, or writes an invalid line.
+    ``ProgramError`` for any other failure.
     """
     conversation = conversation_with(command, folder)
     line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))
@@ -77,7 +76,7 @@ def simulate(
 
 
 def greeting_of(command: tuple[str, ...], folder: str) -> Greeting:
-    """Return the program's greeting; raise ``ValueError`` if it cannot be started or does not greet."""
+    """Return the program's greeting; raise ``ValueError`` without one."""
     check_command(command, folder)
     try:
         return conversation_with(command, folder).greeting
@@ -126,13 +125,13 @@ def end_all() -> None:
 
 
 class Conversation:
-    """One process of a program in a working directory, its ``greeting``, and whether it is ``over``."""
+    """One process of a program in a working directory."""
 
     def __init__(self, command: Sequence[str], folder: str) -> None:
         self._name = own_name(command)
         self.over = False
         self._asking = threading.Lock()
-        # A new session: Ctrl-C does not reach the program, and its children can be ended with it.
+        # Its own session: Ctrl-C does not reach the program, and its children can be ended with it.
         self._process = subprocess.Popen(
             command,
             cwd=folder,
@@ -160,12 +159,12 @@ class Conversation:
             return self._exchanged(line, most, self.greeting.limit, "answer")
 
     def sentence(self, what: str) -> str:
-        """Return the name of the program, ``what``, and the end of its standard error, as a sentence."""
+        """Return a sentence of the program's name, ``what``, and the end of its standard error."""
         said = self._errors.text(ended=self.over)
         return f"{self._name} {what}" + (f"; its standard error ends with: {said}" if said else "")
 
     def end(self, patience: float = 0.0) -> None:
-        """Close the program's input, and kill it if it does not end within ``patience`` in s."""
+        """Close the program's input, and kill it if it does not end within ``patience`` (s)."""
         if self.over:
             return
         self.over = True
@@ -193,10 +192,10 @@ class Conversation:
         """Write ``line`` and return the next line; end the program and raise unless it writes exactly one."""
         self._watch.begin(limit)
         try:
-            with suppress(BrokenPipeError):  # _read detects that the program has ended
+            with suppress(BrokenPipeError):  # _read detects the end of the program
                 _write(self._input, line)
             answer = _read(self._output, most)
-        except BaseException:  # e.g. Ctrl-C; a late answer would be taken for the next one
+        except BaseException:  # e.g. Ctrl-C; a late answer would count as the next one
             self.end()
             raise
         in_time = self._watch.in_time()
@@ -214,7 +213,6 @@ class Conversation:
         raise ProgramError(self.sentence(why))
 
     def _cause(self) -> str:
-        """Return how a program that has closed its output ended."""
         try:
             code = self._process.wait(FAREWELL)
         except subprocess.TimeoutExpired:
@@ -223,15 +221,15 @@ class Conversation:
 
 
 def _environment() -> dict[str, str]:
-    """Return this process's environment without the variable set for workers, see ``compare.run.workers``."""
+    """Return this process's environment without the variable of ``compare.run.workers``."""
     environment = dict(os.environ)
     if multiprocessing.parent_process() is not None:
-        environment.pop("PYTHONSAFEPATH", None)  # a Python program may import modules from its folder
+        environment.pop("PYTHONSAFEPATH", None)  # a Python program may import from its folder
     return environment
 
 
 def _guard_of(group: int) -> subprocess.Popen[bytes]:
-    """Start and return a process that kills those of ``group`` when this process has ended."""
+    """Start a process that kills those of ``group`` when this process has ended."""
     return subprocess.Popen(
         ("/bin/sh", "-c", END_WITH_US, str(group)),
         stdin=subprocess.PIPE,
@@ -249,7 +247,7 @@ def _write(stream: IO[bytes], line: bytes) -> None:
 
 
 def _read(stream: IO[bytes], most: int) -> bytes:
-    """Return bytes up to the end of a line or of the stream, or slightly more than ``most`` bytes."""
+    """Return bytes up to the end of a line or of the stream, or slightly more than ``most``."""
     parts: list[bytes] = []
     length = 0
     while length <= most:
@@ -262,7 +260,7 @@ def _read(stream: IO[bytes], most: int) -> bytes:
 
 
 class _Watch:
-    """A thread that calls ``expire`` when a time limit has passed; setting a limit costs next to nothing."""
+    """Thread that calls ``expire`` at a time limit; setting a limit costs next to nothing."""
 
     def __init__(self, expire: Callable[[], None]) -> None:
         self._expire = expire
@@ -276,7 +274,7 @@ class _Watch:
         self._deadline = time.monotonic() + limit
 
     def in_time(self) -> bool:
-        """Return whether the limit has not passed, and clear it."""
+        """Clear the limit; return whether it has not passed."""
         with self._deciding:
             expired = self._deadline == -math.inf
             self._deadline = math.inf
@@ -295,7 +293,7 @@ class _Watch:
 
 
 class _LastWords:
-    """A thread that reads a program's standard error, so the program never blocks on it, and keeps the end."""
+    """Thread that reads a program's standard error, so that it never blocks, and keeps the end."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream
@@ -306,7 +304,7 @@ class _LastWords:
     def text(self, *, ended: bool) -> str:
         """Return the last lines as one; if the program has ``ended``, wait for the rest."""
         if ended:
-            self._reader.join(FAREWELL)  # limited, because other processes may hold the stream open
+            self._reader.join(FAREWELL)  # other processes may hold the stream open
         lines = self._kept.decode(errors="replace").split("\n")
         return printable(" / ".join([line.strip() for line in lines if line.strip()][-LAST_LINES:]))
 

@@ -1,9 +1,8 @@
 """``fmu:FILE``: a model for co-simulation (FMI 2 or 3) as an engine, by FMPy.
 
-The parameters have the names of the systems' parameters, and the outputs those of the states: x, y, vx, vy, and for
-a disc angle and spin. The initial x is set by ``x_start`` if the model has this variable, otherwise by x, and
-likewise for the other states. Models with the outputs of ``stick_events`` report phases; for others, stick is found
-from states.
+Parameters have the names of the systems' parameters, outputs those of the states: x, y, vx, vy, and for a disc angle
+and spin. ``x_start``, if the model has it, otherwise x sets the initial x; the other states likewise. Models with the
+outputs of ``stick_events`` report phases; for others, stick is found from states.
 """
 
 from __future__ import annotations
@@ -38,12 +37,12 @@ OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
 """Parameter for the regularisation speed of points, and the ratio of this speed to tolerance times speed.
 
-The speed is that of the motion. Even a model that reports stick, for pins and rings, may regularise friction at
-points. The error of the resulting creep must fall with the tolerance.
+Even a model that reports stick may regularise friction at points. The error of the creep must fall with the
+tolerance.
 """
 
-LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without any speed
-MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive; models of pins and discs are far smaller
+LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without speed
+MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive
 
 
 class FmuError(RuntimeError):
@@ -64,7 +63,7 @@ class Fmu:
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Return the motion, with communication steps up to ``step`` in s if given, else from time to time.
+        """Return the motion, with communication steps up to ``step`` (s) if given, else from time to time.
 
         Raises ``UnsupportedSystemError`` if the model lacks a parameter, and ``FmuError`` if a call fails.
         """
@@ -73,11 +72,11 @@ class Fmu:
         values = _values(system, state, model.variables)
         try:
             instance = model.instance()
-        except Exception as error:  # from the library, e.g. for another platform or with missing functions
+        except Exception as error:  # from the library, e.g. for another platform
             raise FmuError(f"{name} cannot be started: {_reason(error, model.folder)}") from None
         try:
             return _motion(instance, model, values, system, at, **accuracy)
-        except Exception as error:  # FMPy has a separate class for each version of the standard
+        except Exception as error:  # FMPy has a class for each version of the standard
             raise FmuError(f"{name}: {_reason(error, model.folder)}") from None
         finally:
             instance.freeInstance()
@@ -85,7 +84,7 @@ class Fmu:
 
 @dataclass(frozen=True)
 class _Model:
-    """A model's description, unpacked files and variables; ``folder`` is removed with this object."""
+    """A model's description, unpacked files and variables; ``folder`` lives as long."""
 
     description: Any
     folder: tempfile.TemporaryDirectory[str]
@@ -98,7 +97,7 @@ class _Model:
 
     @property
     def tells_stick(self) -> bool:
-        """True if the model reports when its contact sticks."""
+        """True if the model reports stick."""
         return tells_stick(self.description, self.variables)
 
     def events(self, system: System) -> type[Events] | None:
@@ -110,7 +109,7 @@ class _Model:
         return StickEvents
 
     def instance(self) -> Any:
-        """Return a new instance; the caller must free it."""
+        """Return a new instance, which the caller must free."""
         return _fmpy().instantiate_fmu(self.folder.name, self.description, "CoSimulation")
 
 
@@ -147,7 +146,6 @@ def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
 
 
 def _values(system: System, state: FloatArray, variables: Mapping[str, Any]) -> dict[str, float]:
-    """Return the values to set, by variable name: parameters of the system and initial state."""
     parameters = {name: value for name, value in asdict(system).items() if value is not None}
     lacking = [name for name, value in parameters.items() if name not in variables and value != 0.0]
     if lacking:
@@ -170,12 +168,11 @@ def _motion(
     tolerance: float | None = None,
     step: float = math.inf,
 ) -> Trajectory:
-    """Return the motion at ``times`` (n,), computed by a new instance."""
     if model.tells_stick and isinstance(system, DiscOnDisc) and system.contact_points is not None:
         values = {**values, **_creep(system, values, model.variables, tolerance)}
     for name, value in values.items():
         variable = model.variables[name]
-        whole = "Int" in variable.type  # the number of points has one of the integer types
+        whole = "Int" in variable.type  # the number of points has an integer type
         getattr(instance, f"set{variable.type}")(
             [variable.valueReference], [int(value) if whole else float(value)]
         )
@@ -208,7 +205,7 @@ def _motion(
 def _creep(
     system: DiscOnDisc, values: Mapping[str, float], variables: Mapping[str, Any], tolerance: float | None
 ) -> dict[str, float]:
-    """Return the regularisation speed of points in m/s, proportional to the tolerance, if it is a parameter."""
+    """Return the regularisation speed of points in m/s, if it is a parameter."""
     if CREEPS not in variables or tolerance is None:
         return {}
     x, y, _, vx, vy, spin = (

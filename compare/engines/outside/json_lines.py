@@ -1,6 +1,6 @@
 """Questions to a program that serves as an engine, and its answers, each a line of JSON.
 
-``docs/judge-your-engine.md`` specifies them. Numbers are written with enough digits to be exact.
+``docs/judge-your-engine.md`` specifies them. All digits of numbers are written.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _written = json.JSONEncoder(separators=(",", ":"), allow_nan=False).encode
 
 
 class BadLineError(RuntimeError):
-    """A program wrote an invalid line; the message says why and continues a sentence that begins with its name."""
+    """A program wrote an invalid line; the message continues a sentence that begins with its name."""
 
 
 class RefusedError(RuntimeError):
@@ -69,7 +69,7 @@ def greeting(line: bytes) -> Greeting:
 
 
 def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[str, float]) -> bytes:
-    """Return the line that requests a motion; ``accuracy`` is its tolerance, or its step in s."""
+    """Return the line that requests a motion; ``accuracy`` is a tolerance, or a step in s."""
     ((name, value),) = accuracy.items()
     numbers = (_written(np.asarray(values, dtype=float).tolist()) for values in (state, times))
     text = '{{"system":{},"state":{},"times":{},"{}":{!r}}}\n'.format(
@@ -78,19 +78,19 @@ def question(system: System, state: ArrayLike, times: ArrayLike, accuracy: dict[
     return text.encode("ascii")
 
 
-@functools.lru_cache(maxsize=64)  # successive questions often have the same system
+@functools.lru_cache(maxsize=64)  # questions often have the same system
 def _system(system: System) -> str:
     kind = "pin" if isinstance(system, PinOnDisc) else kind_of(system)  # a block is a pin on a disc at rest
     return _written({"kind": kind} | asdict(system))
 
 
 def most_bytes(system: System, times: ArrayLike) -> int:
-    """Return a length that no answer exceeds, even with all digits, generous white space, and phases."""
+    """Return a length that no answer exceeds, even with all digits and phases."""
     return 1_000_000 + 100 * system.state_size * np.size(times)
 
 
 def answered(line: bytes, system: System, times: ArrayLike) -> Trajectory:
-    """Return the motion in ``line`` at the requested times (n,); its shapes and numbers are not yet checked.
+    """Return the motion in ``line`` at the requested times (n,), not yet checked.
 
     Raises ``UnsupportedSystemError`` or ``RefusedError`` if the line says so, and ``BadLineError`` if it is invalid.
     """

@@ -1,8 +1,8 @@
 """``files:DIR``: motions computed beforehand as an engine, in a folder created by ``plan``.
 
-``plan.json`` lists the motions. For each there is a file such as ``0f3a.json`` with a question in the form of
-``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
-header. The file names are hashes of the questions, so an answer cannot be confused with one to another plan.
+``plan.json`` lists the motions. Each has a file such as ``0f3a.json`` with a question in the form of ``json_lines``.
+The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a header. File
+names are hashes of the questions, so answers fit only one plan.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class MotionFiles:
 
     @property
     def files(self) -> set[Path]:
-        """Paths of the plan and the motions."""
+        """Plan and motions."""
         return {Path(self.folder, INDEX), *Path(self.folder).glob("*.csv")}
 
     def __call__(
@@ -48,8 +48,8 @@ class MotionFiles:
     ) -> Trajectory:
         """Return this motion from its file.
 
-        Raises ``UnsupportedSystemError`` if the motion is not in the plan, or its file is missing or ends too early,
-        and ``BadFileError`` if the file is otherwise invalid.
+        Raises ``UnsupportedSystemError`` if the motion is not in the plan or its file is incomplete, and
+        ``BadFileError`` if the file is invalid.
         """
         name = name_of(question(system, initial_state, times, accuracy))
         if name not in _names(self.folder):
@@ -61,7 +61,7 @@ class MotionFiles:
 
 
 def name_of(line: bytes) -> str:
-    """Return the name, without extension, of the files for a question."""
+    """Return the file name, without extension, of a question."""
     return hashlib.sha256(line).hexdigest()[:12]
 
 

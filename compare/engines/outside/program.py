@@ -33,10 +33,10 @@ def _conversation() -> Any:
 
 @dataclass(frozen=True)
 class Program:
-    """The ``simulate`` of a program; each calling process has its own process of the program."""
+    """The ``simulate`` of a program; each calling process starts its own."""
 
     command: tuple[str, ...]
-    folder: str  # working directory
+    folder: str
 
     @property
     def files(self) -> set[Path]:
@@ -59,7 +59,7 @@ class Program:
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, **accuracy: float
     ) -> Trajectory:
-        """Return the motion computed by the program."""
+        """Return the program's motion."""
         trajectory: Trajectory = _conversation().simulate(
             self.command, self.folder, system, initial_state, times, **accuracy
         )
@@ -67,7 +67,7 @@ class Program:
 
 
 def program_engine(text: str) -> Engine:
-    """Return the engine "exec:TEXT" as described by the program's greeting; raise ``ValueError`` if it fails."""
+    """Return the engine "exec:TEXT" of the program's greeting; raise ``ValueError`` if it fails."""
     program = _program(text)
     greeting = _conversation().greeting_of(program.command, program.folder)
     name = name_of(program.command)
@@ -95,12 +95,12 @@ def _program(text: str) -> Program:
 
 
 def name_of(command: Sequence[str]) -> str:
-    """Return the name of an engine: the program's own name and the arguments after it."""
+    """Return the name of an engine: the program's own name and its arguments."""
     return " ".join([own_name(command), *_run(command)[1:]])
 
 
 def own_name(command: Sequence[str]) -> str:
-    """Return the name of the program, or of an interpreter's script, without folder and extension."""
+    """Return the name of the program or the script, without folder and extension."""
     path = PurePath(_run(command)[0])
     return path.stem if path.suffix.lstrip(".").isalpha() else path.name
 
@@ -119,7 +119,7 @@ def _is_interpreter(program: str) -> bool:
 register_scheme("exec", Scheme(program_engine, check_program))
 
 
-# --- Files of foreign code, found by their extensions, without importing or running anything.
+# --- Files of foreign code, found by their extensions.
 
 MODULES = tuple(set(all_suffixes()) - set(BYTECODE_SUFFIXES))
 """Extensions of importable files: Python sources and compiled modules."""
@@ -128,7 +128,7 @@ MODULES = tuple(set(all_suffixes()) - set(BYTECODE_SUFFIXES))
 def code_below(folders: Iterable[str | Path], endings: tuple[str, ...] = MODULES) -> set[Path]:
     """Return the files with one of the ``endings`` in folders and their packages.
 
-    A folder whose name is not an identifier, such as ``site-packages`` or ``.venv``, is not a package.
+    A folder whose name is not an identifier, such as ``.venv``, is not a package.
     """
     found, seen = set[Path](), set[str]()
     for folder in folders:

@@ -1,8 +1,8 @@
 """Stick phases from a model's own record of its last events.
 
-The outputs ``NAMES`` count sticks and releases and give the times of the last ones and the position of the last
-stick. ``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the
-last change. They are read at communication points. A step with several events of a kind is rejected and halved.
+The outputs ``NAMES`` count sticks and releases and give their last times and the position of the last stick.
+``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the last
+change. They are read at communication points. A step with several events of a kind is rejected and halved.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ Kind = Literal["slip", "pivot", "stick"]
 
 
 def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
-    """Return whether a model reports stick; if ``exact`` is off by default, it creeps and has no events."""
+    """Return whether a model reports stick; one with ``exact`` off by default creeps and has no events."""
     exact = variables.get("exact")
     return (
         set(NAMES) <= set(variables)
@@ -40,10 +40,9 @@ def tells_stick(description: Any, variables: Mapping[str, Any]) -> bool:
 
 
 class Events:
-    """The phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
+    """Phases of an initialised instance, collected while it takes steps; of FMI 3 if ``newer``, else of FMI 2."""
 
     counts: ClassVar[tuple[str, ...]]
-    """Outputs that count events."""
 
     def __init__(
         self,
@@ -93,11 +92,9 @@ class Events:
         return [self._variables[name].valueReference for name in names]
 
     def _first(self) -> Kind:
-        """Return the kind of the first phase."""
         raise NotImplementedError
 
     def _note(self, counts: list[int]) -> None:
-        """Record the events since ``_counts``, at most one of each kind."""
         raise NotImplementedError
 
 
@@ -129,7 +126,7 @@ class StickEvents(Events):
         return "stick" if self._counts[0] > self._counts[1] else "slip"
 
     def _note(self, counts: list[int]) -> None:
-        """Record the new stick and release in their order: a stuck contact is released before it sticks again."""
+        """Record the new stick and release: a stuck contact is released before it sticks again."""
         changed = [now > then for now, then in zip(counts, self._counts, strict=True)]
         stuck, released = self._real(self._timed)
         happened: dict[Kind, tuple[bool, float, Callable[[float], FloatArray]]] = {
@@ -143,12 +140,11 @@ class StickEvents(Events):
                 self._begun.append((kind, time, state(time)))
 
     def _released(self, time: float) -> FloatArray:
-        """Return the state at release, carried by the master disc since the contact stuck."""
         _, stuck, state = self._begun[-1]
         return self._carried(state[: len(self._placed)], time - stuck)
 
     def _carried(self, place: Any, lasted: float) -> FloatArray:
-        """Return the state of a body that the master disc has carried from ``place`` for ``lasted`` in s."""
+        """Return the state after the master disc has carried a body from ``place`` for ``lasted`` s."""
         omega = self._system.disc_speed
         z = complex(*place[:2]) * cmath.exp(1j * omega * lasted)
         velocity = 1j * omega * z

@@ -19,10 +19,10 @@ from urllib.parse import urlsplit
 from compare.output.outside_text import reason_of
 from compare.run.provenance import stamp
 
-WAIT = 3.0  # time limit in s for a scheduler to be reached, to answer, and to have a worker
-IN_FLIGHT = 3  # submitted tasks per thread of the cluster: enough to keep it busy, and few to lose
-COUNT_INTERVAL = 1.0  # interval in s between counts of the cluster's threads
-AT_ONCE = 2  # number of simultaneous tasks in this process, each on all cores
+WAIT = 3.0  # time limit in s for a scheduler to answer and to have a worker
+IN_FLIGHT = 3  # submitted tasks per thread: enough to keep it busy, and few to lose
+COUNT_INTERVAL = 1.0  # interval in s between counts of threads
+AT_ONCE = 2  # simultaneous tasks in this process, each on all cores
 
 
 class ClusterError(RuntimeError):
@@ -39,17 +39,16 @@ class Task(NamedTuple):
 
 
 class InProcess:
-    """The cores of this machine; the next task fills cores that a task leaves idle."""
+    """The cores of this machine; the next task fills idle cores."""
 
     threads = None
-    """Number of threads per task, here all cores."""
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
         """Yield keys and results in order; ``tasks`` is consumed on demand."""
         running: deque[tuple[Hashable, Future[Any]]] = deque()
         with ThreadPoolExecutor(AT_ONCE) as pool:
             for task in tasks:
-                if not task.compiled:  # two of them would wait for each other's interpreter lock
+                if not task.compiled:  # two of them would wait for the interpreter lock
                     yield task.key, task.function(*task.arguments)
                     continue
                 running.append((task.key, pool.submit(task.function, *task.arguments)))
@@ -63,14 +62,14 @@ class InProcess:
 class Cluster(AbstractContextManager["Cluster"]):
     """The workers of the Dask scheduler at "tcp://host:port", each task on one thread; a context manager.
 
-    Raises ``ValueError`` for an invalid address, ``ModuleNotFoundError`` without Dask, and ``ClusterError`` if no
-    scheduler answers, if it has no workers or lacks this package, or if it is lost later.
+    Raises ``ValueError`` for an invalid address, ``ModuleNotFoundError`` without Dask, and ``ClusterError`` if the
+    scheduler is lost or does not answer, or if its workers lack this package.
     """
 
     threads = 1
 
     def __init__(self, address: str) -> None:
-        self._dask: Any = importlib.import_module("distributed")  # from the extra "cluster", untyped
+        self._dask: Any = importlib.import_module("distributed")  # untyped
         for logger in ("distributed", "distributed.client", "tornado.application"):
             logging.getLogger(logger).setLevel(logging.CRITICAL)  # ``ClusterError`` reports problems
         self._address = _checked_address(address)
@@ -78,7 +77,7 @@ class Cluster(AbstractContextManager["Cluster"]):
         self._most = 1
         _reach(self._dask, self._address)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about versions of libraries; the stamp covers the relevant ones
+            warnings.simplefilter("ignore")  # the stamp covers relevant versions of libraries
             self._client = self._dask.Client(address, timeout=WAIT, set_as_default=False)
         try:
             self._client.wait_for_workers(1, timeout=WAIT)
@@ -100,7 +99,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
-        """Yield keys and results as they become available; tasks of a lost worker are repeated by another."""
+        """Yield keys and results as they become available; another worker repeats tasks of a lost one."""
         keys: dict[str, Hashable] = {}
         waiting = iter(tasks)
         running = self._dask.as_completed(with_results=True, loop=self._client.loop)
@@ -136,7 +135,7 @@ Executor: TypeAlias = InProcess | Cluster
 
 
 def _reach(dask: Any, address: str) -> None:
-    """Raise ``ClusterError`` unless a scheduler answers; Dask's client may wait long, or fail on other answers."""
+    """Raise ``ClusterError`` unless a scheduler answers; Dask's client may wait long."""
 
     async def kind() -> Any:
         async with dask.rpc(address) as server:
@@ -144,7 +143,7 @@ def _reach(dask: Any, address: str) -> None:
 
     try:
         answer = asyncio.run(asyncio.wait_for(kind(), WAIT))
-    except Exception:  # Dask may raise anything for the answer of another program
+    except Exception:  # Dask may raise anything for another program
         answer = "nothing"
     if answer != "Scheduler":
         raise ClusterError(f"no Dask scheduler answers at {address}; start one with: dask scheduler")

@@ -14,11 +14,11 @@ from reference_model.systems import FloatArray
 GAP = 0.05
 """Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
 
-JUMP = 0.3  # largest relative difference between the radii of a motion and those extrapolated from its branch
+JUMP = 0.3  # largest relative difference between the radii of a motion and those of its extrapolated branch
 
 
 class Motion(NamedTuple):
-    """A motion that some of the starts end in: its kind, their number, medians of least and largest radius in m."""
+    """A motion that starts end in: its kind, their number, medians of least and largest radius in m."""
 
     end: int
     starts: int
@@ -27,7 +27,7 @@ class Motion(NamedTuple):
 
 
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
-    """Return the motions in which starts end, without undecided ones; all arguments have shape (n,).
+    """Return the motions that starts end in, without undecided ones; all arguments have shape (n,).
 
     A gap between radii separates motions of one kind. Stuck motions form one group, because a pin may stick anywhere.
     """
@@ -62,9 +62,8 @@ One = TypeVar("One", Motion, TheoryMotion)
 def matched(found: Sequence[Sequence[One]], kind: Callable[[One], Hashable]) -> list[dict[int, One]]:
     """Return branches of motions; each maps indices of values to motions.
 
-    A branch continues with the motion of its kind that is nearest to a linear extrapolation of its last two; nearest
-    pairs are matched first. A motion farther than ``JUMP`` from all branches begins a new one. A branch ends at the
-    first value without a matching motion.
+    A branch continues with the motion of its kind nearest to a linear extrapolation; nearest pairs are matched first.
+    A motion farther than ``JUMP`` from all branches begins a new one.
     """
     branches: list[dict[int, One]] = []
     for i, here in enumerate(found):

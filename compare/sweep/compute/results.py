@@ -27,22 +27,19 @@ SHOWN = ("end", "time", "least_radius", "largest_radius", "slip_power")
 """Labelled results of a trajectory; its state remains in its round."""
 
 BLOCK = 1 << 17
-"""Approximate number of trajectories per block; its memory is small compared with that of the libraries."""
+"""Approximate number of trajectories per block, for little memory."""
 
 ENDS = [end.name.lower() for end in EndState]
 
 SENSITIVE = ("largest_radius", "whirl")
-"""Results with sensitivities.
-
-An undecided trajectory counts with its last radius. "whirl" is 1 if a trajectory ends as a whirl, else 0.
-"""
+"""Results with sensitivities; "whirl" is 1 if a trajectory ends as a whirl, else 0."""
 
 Variables = dict[str, tuple[Any, ...]]
 Values = dict[str, NDArray[Any]]
 
 
 class Block(NamedTuple):
-    """Trajectories ``first`` to ``last`` of a plan, and their region of the labelled arrays."""
+    """Trajectories ``first`` to ``last`` of a plan, and their region of the arrays."""
 
     first: int
     last: int
@@ -60,8 +57,8 @@ class Part(NamedTuple):
 class Labelled(NamedTuple):
     """Summary of a block.
 
-    ``counts`` are the trajectories of each ``EndState``, shape (rows, ends), with a row for each value of a
-    continuation, else a single row. ``moments`` contribute to sensitivities; ``motions`` are listed for each value.
+    ``counts``, shape (rows, ends), are the trajectories of each ``EndState``, with a row for each value of a
+    continuation, else one row. ``motions`` are listed for each value.
     """
 
     counts: NDArray[np.int64]
@@ -70,10 +67,7 @@ class Labelled(NamedTuple):
 
 
 def _layout(plan: Plan) -> tuple[tuple[str, ...], tuple[int, ...], int, int]:
-    """Return dimensions and shape of the labelled arrays, trajectories per row, and rows per block.
-
-    Rows lie along the last dimension but one, or along the only one.
-    """
+    """Return dimensions and shape of the labelled arrays, trajectories per row, and rows per block."""
     if isinstance(plan, RandomBasin):
         return ("sample",), (plan.samples,), 1, BLOCK
     if isinstance(plan, Uncertainty):
@@ -91,9 +85,9 @@ def _layout(plan: Plan) -> tuple[tuple[str, ...], tuple[int, ...], int, int]:
 
 
 def blocks_of(plan: Plan) -> list[Block]:
-    """Return the blocks of a plan's trajectories; they do not depend on chunks or threads."""
+    """Return the blocks of a plan, which do not depend on chunks or threads."""
     _, shape, across, size = _layout(plan)
-    labels = BASES if isinstance(plan, Uncertainty) else 1  # labelled trajectories per row
+    labels = BASES if isinstance(plan, Uncertainty) else 1
     *planes, rows = shape[:-1] or (shape[0] // labels,)
     inside = tuple(slice(0, count) for count in shape[1:][-1:])
     blocks = []
@@ -135,7 +129,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
     """Return the parts of a block in the rounds."""
     parts = []
     for one in rounds:
-        if isinstance(one.numbers, range):  # the only round
+        if isinstance(one.numbers, range):
             where = slice(block.first, block.last)
             parts.append(Part(one.chunks, where, slice(None)))
         else:
@@ -149,7 +143,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
 def label(
     group: Group, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
 ) -> Labelled:
-    """Write the labelled results of a block; ``grid`` contains a basin's ends and marks of simulated points there."""
+    """Write the results of a block; ``grid`` contains a basin's ends and marks of simulated points."""
     found = {name: _found(name, block, parts) for name in SHOWN}
     sensitive, motions = None, list[list[Motion]]()
     numbers = range(block.first, block.last)
@@ -182,7 +176,7 @@ def label(
 
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
-    """Return a result of a block's trajectories, shape (n,) or (n, components); NaN or 0 where none was simulated."""
+    """Return a result of a block, shape (n,) or (n, components); NaN or 0 where none was simulated."""
     found = [(part.places, part.chunks.read(name, part.where)) for part in parts]
     more = found[0][1].shape[1:] if found else ()
     dtype = np.dtype(RESULTS[name].dtype)
@@ -199,7 +193,7 @@ def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArra
 
 
 def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Dataset:
-    """Return the labelled results of the whole sweep from the ordered summaries of its blocks."""
+    """Return the results of the whole sweep from the ordered summaries of its blocks."""
     rows = np.concatenate([one.counts for one in found])
     counts = np.sum(rows, axis=0)
     variables: Variables = {
@@ -233,7 +227,6 @@ def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Da
 
 
 def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables:
-    """Return the branches of motions, NaN at values without a motion."""
     branches = matched(found, lambda motion: motion.end)
     ends = [next(iter(branch.values())).end for branch in branches]
     variables: Variables = {
@@ -254,7 +247,6 @@ def _motions(plan: Continuation, found: Sequence[Sequence[Motion]]) -> Variables
 def _along(
     plan: Continuation, name: str, branches: Sequence[Mapping[int, Any]], fields: Sequence[str]
 ) -> Variables:
-    """Return fields of motions along the axis, shape (branches, values)."""
     variables: Variables = {}
     for field in fields:
         values = np.full((len(branches), plan.x.points), np.nan)
@@ -267,7 +259,7 @@ def _along(
 
 
 def branches_of(plan: Continuation) -> xr.Dataset:
-    """Return the motions from formulas and continuation; ``theory_stable`` is 1 for stable ones, else 0."""
+    """Return the motions of formulas and continuation; ``theory_stable`` is 1 or 0."""
     found = theory_branches(plan)
     meanings = [next(iter(branch.values())).meaning for branch in found]
     return xr.Dataset(

@@ -1,4 +1,4 @@
-"""Runs a sweep from its plan to its results: rounds of chunks, a check by the plain reference, labelled arrays."""
+"""Runs a sweep: rounds of chunks, a check by the plain reference, labelled arrays."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ Progress = Callable[[str, int, int], None]  # takes the name of the work, the am
 
 
 def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
-    """Compute the parts of the sweep that ``store`` lacks."""
+    """Compute the parts that ``store`` lacks."""
     rounds, grid = simulated(store, executor, progress)
     if store.get(CHECK) is None:
         store.put(CHECK, _checked(store, rounds, executor, progress))
@@ -48,14 +48,14 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
 
 
 def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
-    """Return the group of results from formulas for a plan, with the function that computes it."""
+    """Return the group of results from formulas, with the function that computes it."""
     if isinstance(plan, Map):
         return {CURVES: lambda: curves_of(plan)}
     return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
 
 
 def finished(store: SweepStore) -> bool:
-    """Return whether the sweep is complete and intact; damaged parts are added to ``store.broken``."""
+    """Return whether the sweep is complete; damaged parts are added to ``store.broken``."""
     groups = (CHECK, RESULT, *_theory(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None
@@ -88,7 +88,6 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
 
 
 def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
-    """Mark intact chunks of round ``i`` as done, and add damaged ones to ``store.broken``."""
     tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.chunks.there())
     broken = []
     for chunk, whole in executor.run(tasks):
@@ -140,7 +139,6 @@ def _label(
 def _checked(
     store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress
 ) -> xr.Dataset:
-    """Return a random sample of the trajectories, compared with the plain reference."""
     sizes = [len(one.numbers) for one in rounds]
     count = min(CHECKED, sum(sizes))
     chosen = np.sort(np.random.default_rng(store.plan.seed).choice(sum(sizes), count, replace=False))

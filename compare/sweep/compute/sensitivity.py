@@ -13,15 +13,15 @@ from compare.claims.shares import CONFIDENCE
 from compare.sweep.plan import BASES
 from reference_model.systems import FloatArray
 
-GROUPS = 16  # number of groups of rows; the scatter of the indices between groups gives their error
-LEAST_SAMPLES = 16 * GROUPS  # least number of rows
+GROUPS = 16  # groups of rows, whose scatter gives the error of the indices
+LEAST_SAMPLES = 16 * GROUPS
 
 
 class Indices(NamedTuple):
     """Sobol indices of shape (results, quantities), and half the widths of their confidence intervals.
 
-    The first-order index is the share of the variance that vanishes if the quantity is known. The total index is the
-    share that remains if all other quantities are known. Both are NaN if the result does not vary.
+    The first-order index is the share of the variance that vanishes if the quantity is known, the total index the
+    share that remains if all others are known. Both are NaN if the result does not vary.
     """
 
     first: FloatArray
@@ -49,7 +49,7 @@ class Moments(NamedTuple):
 
 
 def moments(results: FloatArray) -> Moments:
-    """Return the moments of ``results``, shape (results, rows, 2 + quantities), in the order of the plan."""
+    """Return the moments of ``results``, shape (results, rows, 2 + quantities)."""
     bases, change = results[..., :BASES], results[..., BASES:] - results[..., :1]
     mean = np.mean(bases, axis=(1, 2))
     deviations = bases - mean[:, np.newaxis, np.newaxis]
@@ -66,13 +66,13 @@ def moments(results: FloatArray) -> Moments:
 
 
 def indices(blocks: Sequence[Moments]) -> Indices:
-    """Return the indices from ordered blocks with equal numbers of rows; ``GROUPS`` divides the number of blocks."""
+    """Return the indices from ordered blocks of equal size; ``GROUPS`` divides their number."""
     size = len(blocks) // GROUPS
     grouped = [reduce(_together, blocks[i * size : (i + 1) * size]) for i in range(GROUPS)]
     of_groups = np.array([_indices(group) for group in grouped])
     whole = reduce(_together, grouped)
     first, total = _indices(whole)
-    from scipy.stats import t  # slow import that most sweeps do not need
+    from scipy.stats import t  # slow import
 
     width = t.ppf(0.5 + 0.5 * CONFIDENCE, GROUPS - 1) / math.sqrt(GROUPS)
     errors = width * np.std(of_groups, axis=0, ddof=1)
@@ -83,7 +83,7 @@ def indices(blocks: Sequence[Moments]) -> Indices:
 
 
 def _together(one: Moments, other: Moments) -> Moments:
-    """Return the moments of the rows of both, with the formulas of Chan, Golub and LeVeque (1983)."""
+    """Return the moments of all rows (Chan, Golub and LeVeque 1983)."""
     rows = one.rows + other.rows
     apart = other.mean - one.mean
     mean = one.mean + apart * (other.rows / rows)
@@ -100,7 +100,7 @@ def _together(one: Moments, other: Moments) -> Moments:
 
 
 def _about(of: Moments, mean: FloatArray) -> FloatArray:
-    """Return the sum of (f_B − ``mean``)(f_M − f_A), where ``mean`` is the mean of a larger set of rows."""
+    """Return the sum of (f_B − ``mean``)(f_M − f_A) with the ``mean`` of more rows."""
     return of.product + (of.mean - mean)[:, np.newaxis] * of.change
 
 

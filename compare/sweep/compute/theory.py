@@ -20,7 +20,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 # --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
-"""Number of samples of an orbit for its radii; between two, the radius of a nearly circular orbit varies by 1e-3."""
+"""Number of samples of an orbit for its radii; the radius of a nearly circular orbit varies by 1e-3 between two."""
 
 
 def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
@@ -29,10 +29,7 @@ def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
 
 
 def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
-    """Yield the motions at each value.
-
-    The search for a whirl with an offset starts from the whirl of the previous value.
-    """
+    """Yield the motions at each value; a whirl with an offset continues that of the previous value."""
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
@@ -53,7 +50,7 @@ def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
 
 
 def _orbit(system: System, before: Orbit | None, tolerance: float) -> Orbit | None:
-    """Return the whirl by shooting from the previous one, or else from the circle without offset."""
+    """Return the whirl by shooting from the previous one, or from the circle without offset."""
     for guess in (before, None) if before is not None else (None,):
         with suppress(ValueError, RuntimeError):  # no whirl exists, or shooting fails
             return whirl_orbit(system, guess=guess, tolerance=tolerance, samples=SAMPLES)
@@ -68,11 +65,11 @@ def _circle(meaning: str, radius: float, stable: bool) -> TheoryMotion:
 #
 # All except (5) hold without offset; a disc is treated as a continuous ring.
 
-NODES = 101  # number of values of each parameter; the zeros of a margin are interpolated between them
+NODES = 101  # values of each parameter; zeros of a margin are interpolated
 
 
 class Curve(NamedTuple):
-    """A boundary: its meaning, and its points, shape (n, 2), in the units of the two parameters."""
+    """A boundary: its meaning, and its points, shape (n, 2)."""
 
     meaning: str
     points: FloatArray

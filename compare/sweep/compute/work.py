@@ -19,19 +19,16 @@ from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray, System
 from reference_model.trajectory import SimulationError, Trajectory
 
-DOUBLINGS = 3  # largest number of times that the plain reference doubles its duration to find an end
+DOUBLINGS = 3  # largest number of times that the plain reference doubles its duration
 
 
 class OtherCodeError(RuntimeError):
-    """A worker has a different version of the code from that of the store."""
+    """A worker has a different version of the code."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plain:
-    """A trajectory of the plain reference: its state at a requested time, and its end.
-
-    They are NaN and undecided if the simulation failed.
-    """
+    """A trajectory of the plain reference: its state at a requested time (NaN if it failed), and its end."""
 
     state: FloatArray
     end: int
@@ -51,8 +48,8 @@ def simulate_chunk(
 
 
 def compute(plan: Plan, numbers: Numbers, threads: int | None) -> dict[str, NDArray[Any]]:
-    """Simulate trajectories on ``threads`` threads, None for all cores; return the arrays named in ``RESULTS``."""
-    from reference_model.ensemble import simulate_ensemble  # the only call of the kernel in sweeps
+    """Simulate trajectories on ``threads`` threads (None: all cores); return the arrays named in ``RESULTS``."""
+    from reference_model.ensemble import simulate_ensemble
 
     states, parameters = plan.trajectories(numbers)
     found = simulate_ensemble(
@@ -70,8 +67,8 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
     The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
-    duration is doubled up to ``DOUBLINGS`` times, because the motion alone shows its end later than the kernel, which
-    uses known attractors. An undecided trajectory is simulated up to ``time`` only.
+    duration is doubled up to ``DOUBLINGS`` times, because the kernel knows attractors and sees the end earlier. An
+    undecided trajectory is simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -96,15 +93,15 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
 WATCHED = 0.5  # share of a trajectory, at its end, that decides the end state
 
 SAMPLES_PER_TURN = 64
-"""Samples per turn in the last part; earlier ones, ``SAMPLES_BEFORE``, only give the extent of the motion."""
+"""Samples per turn in the last part; earlier ones only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
 AT_REST = 0.02  # largest distance from the last position, relative to the whole motion, of a centre at rest
 
 STEADY = 0.01
-"""Largest spread (largest − smallest)/(largest + smallest) of the radii at successive turns of a steady motion."""
+"""Largest spread (largest − smallest)/(largest + smallest) of the radii of a steady motion at successive turns."""
 
-SAME = 1.4  # largest ratio of the spreads in both halves of the last part for a modulation of constant size
+SAME = 1.4  # largest ratio of the spreads in both halves of a constant modulation
 
 DYING = 0.1
 """Ratio of the slip speeds in both halves of the last part below which slip dies out; for a whirl it stays near 1."""
@@ -124,7 +121,7 @@ def plain_trajectory(
 
 
 def twice_as_long(trajectory: Trajectory) -> Trajectory:
-    """Return the motion for twice its duration, continued from its last state."""
+    """Return the motion for twice its duration."""
     times, last, solution = trajectory.times, float(trajectory.times[-1]), trajectory.solution
     later = _samples(trajectory.system, last, 2.0 * last - float(times[0]), SAMPLES_PER_TURN)
     more = simulate(trajectory.system, trajectory.at_end, later, tolerance=solution.tolerance)
@@ -152,7 +149,6 @@ def _samples(system: System, first: float, last: float, per_turn: int) -> FloatA
 
 
 def _turn(system: System, duration: float) -> float:
-    """Return the time of a turn in s, at most 2π·``duration``."""
     return 2.0 * math.pi / max(system.natural_frequency, abs(system.disc_speed), 1.0 / duration)
 
 
@@ -160,11 +156,10 @@ def end_of(trajectory: Trajectory) -> EndState:
     """Return the end of a trajectory, UNDECIDED if its second half is ambiguous.
 
     - *Stuck*: the last stick phase lasts a whole turn of the master disc, so no new force can release it; or the
-      contact slips permanently, but ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same
-      radius.
+      contact slips ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same radius.
     - *Self-centred*: the centre hardly moves in the last quarter.
-    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis, taken once a turn so an
-      offset does not matter, is constant for a whirl and varies equally in both halves for a modulated motion.
+    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis, taken once a turn, is
+      constant for a whirl and varies equally in both halves for a modulated motion.
     """
     system, times = trajectory.system, trajectory.times
     since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))
@@ -193,7 +188,6 @@ def end_of(trajectory: Trajectory) -> EndState:
 
 
 def _at_rest(trajectory: Trajectory, since: float) -> bool:
-    """Return whether the centre hardly moves after ``since`` (s) compared with its whole motion."""
     x, y = trajectory.states.T[:2]
     distance = np.hypot(x - x[-1], y - y[-1])
     last = trajectory.times >= since
@@ -201,7 +195,7 @@ def _at_rest(trajectory: Trajectory, since: float) -> bool:
 
 
 def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
-    """Return whether the slip after ``middle`` (s) is below ``DYING`` times the slip before, or below its error."""
+    """Return whether the slip falls below ``DYING`` times the slip before ``middle``, or below its error."""
     slip, times = trajectory.slip_speed, trajectory.times
     before, after = np.max(slip[(times >= since) & (times < middle)]), np.max(slip[times >= middle])
     error = trajectory.solution.tolerance * abs(trajectory.system.disc_speed) * np.max(trajectory.radius)
@@ -209,10 +203,7 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times in s and radii in m of passages of the positive x-axis in the master disc's sense of rotation.
-
-    They are interpolated linearly: a radius hardly changes between samples, unlike x and y.
-    """
+    """Return times in s and radii in m of passages of the positive x-axis with the master disc, by interpolation."""
     x, y = trajectory.states.T[:2]
     y = math.copysign(1.0, trajectory.system.disc_speed) * y
     at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (x[1:] > 0.0) & (trajectory.times[:-1] >= since))

@@ -1,7 +1,6 @@
 """Calls from compiled code to Python functions and to functions that numba compiled separately.
 
-Compiled code calls a Python function like the interpreter does, which costs no more than the function itself.
-Addresses of functions and numbers are passed as floats, whose 53 bits exceed the 48 bits of an address.
+Addresses are passed as floats, whose 53 bits exceed the 48 bits of an address.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ extending: Any = numba.extending  # not fully typed
 cgutils: Any = numba.core.cgutils
 
 ARGUMENTS = 4
-"""Number of arguments that a function may take, all of them floats."""
+"""Number of arguments that a function may take."""
 
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
 
@@ -44,7 +43,7 @@ def _as_it_is(kind: Any, argument: Any, context: Any) -> Any:
 def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
     """Return the result of a Python function called with those of four numbers whose bits are set in ``places``.
 
-    The result is NaN for anything but a number. An error that the function raises is passed on.
+    It is NaN for anything but a number. Errors are passed on.
     """
     floats = [types.float64] * ARGUMENTS
 
@@ -84,7 +83,7 @@ def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c:
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
 def result_at(typing: Any, address: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
-    """Return the result of the compiled function at ``address_of`` for four numbers, or raise its error."""
+    """Return the result of the compiled function at ``address`` for four numbers, or raise its error."""
     floats = (types.float64,) * ARGUMENTS
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -112,6 +111,6 @@ def number_at(typing: Any, address: Any, place: Any) -> Any:
 
 
 def address_of(function: Any) -> float:
-    """Return the address of the machine code of a function of four floats that numba has compiled for these only."""
+    """Return the address of the machine code of a function of four floats."""
     (found,) = function.overloads.values()
     return float(found.library.get_pointer_to_function(found.fndesc.llvm_func_name))

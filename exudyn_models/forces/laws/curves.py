@@ -23,8 +23,8 @@ COLUMNS = 3
 def peak_over_sliding(share: float, static_ratio: float) -> float:
     """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
-    In between it falls like a square root of P/ε − 1. A law with a linear fall leaves its peak by exponential growth,
-    which takes the time ε·ln(1/ε); with a square root it takes the time ε.
+    In between it falls like a square root of P/ε − 1, so that a contact leaves the peak in the time ε; after a linear
+    fall it would take ε·ln(1/ε).
     """
     if share <= 1.0:
         return static_ratio
@@ -38,8 +38,6 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
     """Return the pieces of a coefficient curve, shape (n, ``COLUMNS``), from rows of slip speed and coefficient.
 
     The coefficient is linear between the rows and beyond the last one, as Modelica's ``mu_pos`` is, but not below 0.
-    A single row is a constant. The pieces have the shape (n, ``COLUMNS``).
-
     Raises ``ValueError`` if the table is invalid.
     """
     speeds, values = _checked_table(name, table)
@@ -49,12 +47,9 @@ def curve_of_table(name: str, table: Any) -> FloatArray:
 
 @compiled
 def coefficient_of_curve(address: float, pieces: float, slip_speed: float) -> float:
-    """Return the coefficient at a slip speed >= 0 (m/s).
-
-    ``pieces`` is the size of the ``curve_of_table`` at ``address``.
-    """
+    """Return the coefficient at a slip speed >= 0 (m/s); ``pieces`` is the number of pieces at ``address``."""
     first, last = 0, int(pieces) - 1
-    while first < last:  # invariant: first <= piece <= last
+    while first < last:  # first <= piece <= last
         middle = (first + last + 1) // 2
         if number_at(address, middle * COLUMNS) <= slip_speed:
             first = middle

@@ -16,22 +16,18 @@ from exudyn_models.forces.laws.calls import address_of
 from reference_model.systems import finite_number
 
 ARGUMENTS = {"time": "s", "radius": "m", "slip_speed": "m/s", "relative_spin": "rad/s"}
-"""Possible arguments of a coefficient or load, with units.
-
-``radius`` is the distance of the disc's node from the master's axis, ``slip_speed`` the mean slip speed P,
-``relative_spin`` S, the spin of the disc relative to the master.
-"""
+"""Possible arguments of a coefficient or load, with units; see ``ring_friction`` for their meaning."""
 
 Checked = Callable[[float, float, float, float], float]
-"""A coefficient or load as a function of all ``ARGUMENTS``, which raises ``ValueError`` for an invalid result."""
+"""A coefficient or load as a function of all ``ARGUMENTS`` that raises ``ValueError`` for an invalid result."""
 
 
 @dataclass(frozen=True, eq=False)
 class LawFunction:
     """A coefficient or load that is a function of ``arguments``, in the order of ``ARGUMENTS``, for compiled code.
 
-    ``positional`` takes just these arguments, ``checked`` takes all ``ARGUMENTS`` and raises an error for an invalid
-    result. ``address`` is that of the machine code, 0 for a Python function.
+    ``positional`` takes just these arguments, ``checked`` all ``ARGUMENTS``. ``address`` is that of the machine code,
+    0 for a Python function.
     """
 
     arguments: tuple[str, ...]
@@ -70,7 +66,7 @@ def law_function(name: str, function: Callable[..., float], unit: str) -> LawFun
 
 
 def checked_not_negative(name: str, value: float, unit: str) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` if it is not a finite number >= 0."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is finite and >= 0."""
     number = finite_number(name, value)
     if number < 0.0:
         raise ValueError(f"{name} = {number:g}{unit}: it must be >= 0")
@@ -82,10 +78,7 @@ def _call_by_name(arguments: Sequence[str], function: Callable[..., float], *giv
 
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ...], bool]:
-    """Return which ``ARGUMENTS`` a function takes, in their order, and whether the function has the same order.
-
-    Raises ``ValueError`` if it needs others.
-    """
+    """Return which ``ARGUMENTS`` a function takes, and whether in that order."""
     allowed = f"any of {', '.join(ARGUMENTS)} by these names, for example `lambda time: ...`"
     try:
         parameters = list(inspect.signature(function).parameters.values())
@@ -112,7 +105,6 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
 
 @cache  # machine code must persist while it may be called
 def _of_four(function: Any, arguments: tuple[str, ...]) -> Any:
-    """Return the function compiled by numba as one of four floats."""
     places = tuple(list(ARGUMENTS).index(argument) for argument in arguments)
     adapt = _OF_FOUR[len(places)]
 

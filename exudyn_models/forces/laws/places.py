@@ -14,11 +14,11 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray, Place
 
 BEND = 4.0 / 3.0
-"""Smallest slip of the slowest point, over δ, without effect on the other points."""
+"""Smallest slip of the slowest point, divided by δ, without effect on the other points."""
 
 
 def ring_places(radius: float, points: int) -> tuple[Place, ...]:
-    """Return points on a circle of ``radius`` (m), the first one on the x-axis, with equal shares of the load."""
+    """Return points on a circle of ``radius`` (m), the first on the x-axis, with equal shares of the load."""
     arms = [cmath.rect(radius, 2.0 * math.pi * i / points) for i in range(points)]
     return tuple((arm.real, arm.imag, 1.0 / points) for arm in arms)
 
@@ -51,7 +51,7 @@ _KNOWN: dict[float, FloatArray] = {}
 
 
 def places_in(table: float) -> FloatArray:
-    """Return x, y (m) and share of all points in a table, shape (n, 3)."""
+    """Return x, y (m) and share of all points, shape (n, 3)."""
     return _KNOWN[table][1:].reshape(-1, 3)
 
 

@@ -1,7 +1,7 @@
 """Pressure of an annulus as a function of the radius, for compiled code.
 
-The share of the load on the ring from r to r + dr is d(r)·dr, d ∝ p·r. It is a polynomial in s, which is 0 at the
-inner and 1 at the outer radius, of a degree that the quadrature in ``slip_potential`` integrates exactly.
+The share of the load on the ring from r to r + dr is d(r)·dr, d ∝ p·r. It is a polynomial in s, 0 at the inner and 1
+at the outer radius, that the quadrature in ``slip_potential`` integrates exactly.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from exudyn_models.forces.laws.calls import number_at
 from reference_model.systems import FloatArray, finite_number
 
 Pressure = Literal["uniform", "wear"] | Callable[[float], float]
-""""uniform"; "wear", which is ∝ 1/r, as in evenly worn linings; or a function of r in m, in any unit."""
+""""uniform"; "wear", ∝ 1/r as in evenly worn linings; or a function of r in m, in any unit."""
 
 DEGREE = 7
 """Degree of the polynomial: with the cubes of ``slip_potential`` 3·7 + 2 = 23, exact for a 12-point Gauss rule."""
 
 DEVIATION = 1e-6
-"""Largest deviation of the polynomial from a function, over its largest value."""
+"""Largest deviation of the polynomial from a function, relative to its largest value."""
 
 
 def density_of(pressure: Pressure, inner: float, outer: float) -> int:
     """Return the code of ``pressure`` in a ``Contact``: 0 if uniform, else minus an address.
 
-    Raises ``ValueError`` if it is not a valid, smooth pressure.
+    Raises ``ValueError`` if it is not a smooth pressure.
     """
     if isinstance(pressure, str) and pressure == "uniform":
         return 0

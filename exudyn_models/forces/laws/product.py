@@ -22,10 +22,10 @@ LAW = _types.Tuple((_floats(_types.float64, NUMBERS), *[python_function] * 4))
 """Type of the result of ``law_of`` in compiled code."""
 
 Law = tuple[list[float], Any, Any, Any, Any]
-"""Numbers, then each of two functions with a function that reports an error in its result."""
+"""Numbers, then two functions, each followed by one that reports an error in its result."""
 
 ABSENT = -1.0
-"""Marker for the arguments of an absent function."""
+"""Marks the arguments of an absent function."""
 
 
 def law_of(
@@ -35,13 +35,13 @@ def law_of(
     coefficient: LawFunction | None,
     load: LawFunction | None,
 ) -> Law:
-    """Return a law for ``friction_force_under``; ``constant`` is the product of all factors that are numbers."""
+    """Return a law for ``friction_force_under``; ``constant`` is the product of the factors that are numbers."""
     numbers = [constant, static_ratio]
     numbers += [0.0, 0.0] if curve is None else [float(curve.ctypes.data), float(len(curve))]
     functions: list[Any] = []
     for function, instead in ((coefficient, curve), (load, None)):
         numbers += [ABSENT, 0.0] if function is None else [function.places, function.address]
-        # Keep the curve alive while its address is in use.
+        # The curve must live as long as its address.
         functions += [instead, None] if function is None else [function.positional, function.checked]
     first, its_check, second, seconds_check = functions
     return numbers, first, its_check, second, seconds_check
@@ -53,7 +53,7 @@ def friction_force_under(
 ) -> float:
     """Return the friction force in N at the time t in s, for a motion as in ``ARGUMENTS`` and ε in m/s.
 
-    Raises ``ValueError`` if a function returns anything but a finite number >= 0, and any error that it raises.
+    Raises ``ValueError`` unless a function returns a finite number >= 0.
     """
     numbers, coefficient, checked_coefficient, load, checked_load = law
     constant, static_ratio, curve, pieces, of_coefficient, its_address, of_load, loads_address = numbers

@@ -1,1 +1,1 @@
-"""Exact stick: laws of locked contacts, the switching of their modes, and runs from one change to the next."""
+"""Exact stick: laws of locked contacts, choice of their modes, and runs from one change to the next."""

@@ -1,4 +1,4 @@
-"""Locked contacts in a model at one time: the slips they hold, velocities that obey them, and their forces."""
+"""Locked contacts of a model at one time: the slips they hold, and their forces."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from reference_model.systems import FloatArray
 class LockedContacts:
     """Joints and locked contacts of an assembled model at its initial values and the time t (s).
 
-    All gradients are derivatives with respect to the n velocities of the model.
+    Gradients are derivatives by the n velocities of the model.
     """
 
     def __init__(self, mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
@@ -32,7 +32,7 @@ class LockedContacts:
         self._joints, self._mass = joints_and_mass(mbs, t, contacts)
 
     def is_held(self, contact: StickingContact) -> bool:
-        """Return whether the joints of the model and the other locks fix the slip of a contact."""
+        """Return whether joints and the other locks fix the slip of a contact."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
         return spanned(contact.rows(self._mbs), self._held_rows(others))
 
@@ -40,7 +40,7 @@ class LockedContacts:
         return np.vstack([self._joints, *(contact.rows(self._mbs) for contact in locked)])
 
     def share_directions(self) -> None:
-        """Let each contact in the plane slip only in directions that joints and contacts locked before it allow."""
+        """Let each contact slip only in directions that joints and contacts locked before it allow."""
         if not self._planar:
             return
         locked: list[StickingContact] = []
@@ -54,14 +54,14 @@ class LockedContacts:
                 locked.append(contact)
 
     def set_slip(self, contact: PlanarContact, slip: FloatArray) -> None:
-        """Change the initial velocities so that a contact has the ``slip``."""
+        """Give a contact the ``slip`` by a change of the initial velocities."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         velocities = np.array(data.GetODE2Coordinates_t(initial))
         velocities += self._velocities_of(contact, slip - contact.slip_rows(self._mbs) @ velocities)
         data.SetODE2Coordinates_t(velocities, initial)
 
     def _velocities_of(self, contact: PlanarContact, slip: FloatArray) -> FloatArray:
-        """Return velocities that give only this contact a slip; heavy bodies move the least."""
+        """Return velocities that give only this contact a slip; heavy bodies move least."""
         others = [other for other in self._contacts if other.mode == Mode.LOCKED and other is not contact]
         held, weights = self._held_rows(others), self._mobilities()
         resisted = slice(3 if contact.planar.mean_radius > 0.0 else 2)  # a pin may spin
@@ -70,10 +70,10 @@ class LockedContacts:
         return np.asarray(weights * np.linalg.lstsq(rows, wanted, rcond=None)[0])
 
     def balance(self, t: float) -> bool:
-        """Distribute the load at the time t (s) over the contacts in the plane that rest on the same bodies.
+        """Distribute the load at the time t (s) over the contacts that rest on the same bodies.
 
-        The largest share of its capacity that a contact holds becomes as small as possible, so the contacts cannot
-        hold the load if one is still overloaded. Return whether the bodies leave the distribution undetermined.
+        The largest share of its capacity that a contact holds becomes as small as possible. Return whether the
+        distribution is statically undetermined.
         """
         mbs = self._mbs
         resting = [contact for contact in self._planar if contact.planar.rests and contact.holding(t) > 0.0]
@@ -88,13 +88,14 @@ class LockedContacts:
         slips = np.vstack([contact.slip_rows(mbs) for contact in resting])
         on_bodies = _null_space(self._held_rows(others)).T @ (slips.T * sizes)
         undetermined = sizes[:, None] * _null_space(on_bodies)
-        undetermined = undetermined[:, np.linalg.norm(undetermined, axis=0) > 0.0]  # not the moments of pins
+        undetermined = undetermined[
+            :, np.linalg.norm(undetermined, axis=0) > 0.0
+        ]  # a pin transmits no moment
         if not undetermined.size:
             return False
         present = np.concatenate([contact.planar.held_wrench(mbs) for contact in resting])
 
         def shares(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-            """Return the share that each contact holds, and its derivatives by x."""
             found = [
                 contact.planar.load_share(wrench, capacity)
                 for contact, wrench, capacity in zip(
@@ -113,7 +114,6 @@ class LockedContacts:
         return True
 
     def _mobilities(self) -> FloatArray:
-        """Return the inverse square roots of the diagonal of the mass matrix, or the largest one without mass."""
         masses = np.diag(self._mass)
         light = np.min(masses, where=masses > 0.0, initial=np.inf)
         return np.asarray(1.0 / np.sqrt(np.where(masses > 0.0, masses, light)))
@@ -121,7 +121,7 @@ class LockedContacts:
     def correct(self) -> None:
         """Correct the accelerations and constraint forces at the start of a run for locks in the plane.
 
-        Exudyn computes them as if the gradients of user-defined constraints were constant.
+        Exudyn neglects that the gradients of user-defined constraints vary.
         """
         locked = [contact for contact in self._contacts if contact.mode == Mode.LOCKED]
         bias = np.concatenate([contact.bias(self._mbs) for contact in locked] or [np.zeros(1)])
@@ -147,7 +147,7 @@ class LockedContacts:
 def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray]], size: int) -> FloatArray:
     """Return the minimiser, shape (size,), of the maximum of convex functions.
 
-    ``functions`` returns their values, shape (n,), and their derivatives, shape (n, size).
+    ``functions`` returns their values, shape (n,), and derivatives, shape (n, size).
     """
 
     def above(z: FloatArray) -> FloatArray:
@@ -170,6 +170,5 @@ def least_maximum(functions: Callable[[FloatArray], tuple[FloatArray, FloatArray
 
 
 def _null_space(rows: FloatArray) -> FloatArray:
-    """Return a basis of the vectors that ``rows``, shape (m, n), map to zero, shape (n, k)."""
     # SciPy 1.12 fails for a matrix without rows
     return np.asarray(scipy.linalg.null_space(rows) if rows.size else np.eye(rows.shape[1]))

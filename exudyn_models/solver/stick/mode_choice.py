@@ -1,7 +1,7 @@
-"""Modes of all contacts that sticking exactly allows at one time of a run.
+"""Modes that let all contacts of a model obey Coulomb's law at one time of a run.
 
-A locked contact transmits no more than it can hold, and a sliding one does not reverse. A contact in the plane begins
-to slide normal to the limit surface, with the slip that its load reaches within a millionth of a step.
+A contact in the plane begins to slide normal to the limit surface, with the slip that its load reaches within a
+millionth of a step.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ ROUNDING = 1e-12
 """Relative rounding error of the load of a locked contact."""
 
 SETTLED = 1e-10
-"""Largest relative change of a load that counts as settled."""
+"""Largest relative change of a settled load."""
 
 MOST_CHANGES = 100
-"""Largest number of changes at one time."""
+"""Largest number of changes of mode at one time."""
 
 
 class ModeChoice:
-    """Choice of the modes of contacts, which have their first modes, in an assembled model at its initial values.
+    """Choice of the modes of contacts in an assembled model at its initial values.
 
-    ``at_start`` computes the initial accelerations and calls a function with the time (s) before the first step,
-    which has the length ``step`` (s).
+    ``at_start`` computes the initial accelerations, and calls a function with the time (s) before the first step of
+    the length ``step`` (s).
     """
 
     def __init__(
@@ -51,27 +51,27 @@ class ModeChoice:
         self._locked = LockedContacts(mbs, t, contacts)
 
     def survey(self, t: float) -> None:
-        """Find the directions of slip that joints and locks hold at the time t (s) and the initial values."""
-        if self._planar:  # on one axis the directions of slip stay
+        """Find the directions of slip that joints and locks hold."""
+        if self._planar:  # slip on one axis has a constant direction
             forces = np.array(self._mbs.systemData.GetAECoordinates())
             self._locked = LockedContacts(self._mbs, t, self._contacts)
             self._mbs.systemData.SetAECoordinates(forces)
 
     def begin(self) -> None:
-        """Remove the slip of contacts that are locked at the start."""
+        """Remove the slip of contacts that start locked."""
         for contact in self._planar:
             if contact.mode == Mode.LOCKED:
                 self._locked.set_slip(contact, np.zeros(3))
 
     def margins(self, t: float) -> list[float]:
-        """Return the margins of all contacts at the time t (s), after sharing loads that would end a rest."""
+        """Return the margins of all contacts, after redistributing loads that would end a rest."""
         margins = [contact.margin(self._mbs, t) for contact in self._contacts]
         if min(margins) < 0.0 and self._locked.balance(t):
             margins = [contact.margin(self._mbs, t) for contact in self._contacts]
         return margins
 
     def leave(self, t: float, contact: StickingContact, mode: Mode) -> None:
-        """Let a contact enter the mode that follows at t (s); of several that share a load, the most loaded one."""
+        """Let a contact enter its next mode; if several share a load, the most loaded one."""
         if isinstance(contact, PlanarContact) and contact.planar.rests and mode != Mode.OPEN:
             locked = [one for one in self._planar if one.mode == Mode.LOCKED]
             contact = max(locked, key=lambda one: one.overload(self._mbs, t), default=contact)
@@ -79,7 +79,7 @@ class ModeChoice:
         self.enter(contact, mode)
 
     def settle(self, t: float) -> None:
-        """Choose modes that let all contacts obey Coulomb's law from the time t (s) on."""
+        """Choose modes that let all contacts obey Coulomb's law."""
         self._locked.share_directions()
         for contact in self._contacts:
             contact.stick.idle = False
@@ -102,7 +102,7 @@ class ModeChoice:
         )
 
     def enter(self, contact: StickingContact, mode: Mode) -> None:
-        """Switch the mode of a contact; in the plane, set the slip of one that is locked or released."""
+        """Switch the mode of a contact; in the plane, also set its slip."""
         released = contact.mode == Mode.LOCKED and mode != Mode.OPEN
         if not isinstance(contact, PlanarContact) or not (released or mode == Mode.LOCKED):
             contact.enter(self._mbs, mode)
@@ -133,10 +133,7 @@ class ModeChoice:
         return found
 
     def _examined(self) -> tuple[bool, tuple[StickingContact, Mode] | None]:
-        """Compute the initial forces, and return whether the loads have settled and a contact that changes its mode.
-
-        The contact is None unless they have settled and a contact violates Coulomb's law.
-        """
+        """Return whether loads have settled, and the change of mode that the initial forces require."""
         settled, found = False, None
 
         def look(t: float) -> None:
@@ -151,10 +148,9 @@ class ModeChoice:
         return settled, found
 
     def _contradiction(self, t: float) -> tuple[StickingContact, Mode] | None:
-        """Return a contact that violates Coulomb's law in its present mode, and the mode that it enters.
+        """Return a contact that violates Coulomb's law, and its next mode.
 
-        Contacts that open or close come first. The most overloaded locked contact follows, then sliding contacts that
-        reverse.
+        Opening and closing come first, then the most overloaded locked contact, then contacts that reverse.
         """
         mbs = self._mbs
         for contact in self._contacts:
@@ -174,10 +170,7 @@ class ModeChoice:
         return max(self._contacts, key=lambda contact: contact.overload(self._mbs, t))
 
     def _start_with_forces(self, t: float) -> bool:
-        """Make accelerations and constraint forces initial values; return whether the loads agree with them.
-
-        A load may be a function of constraint forces, such as the reaction of a joint.
-        """
+        """Make accelerations and constraint forces initial values; return whether loads that depend on them agree."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         forces = np.array(data.GetAECoordinates())
         loads = [contact.holding(t) for contact in self._contacts]

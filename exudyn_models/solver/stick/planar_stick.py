@@ -1,12 +1,12 @@
 """Exact stick of a pin, circle or annulus between bodies that may also slide sideways.
 
-While the contact is locked, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are
-the force and moment of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law
-without regularisation, so no step may pass its rest. ``stick.switching`` limits the steps for that reason.
+In stick, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are the force and moment
+of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law without regularisation,
+so ``stick.switching`` lets no step pass its rest.
 
 Joints may leave the contact only some directions of slip. With such a basis B, shape (3, k), the slip is B·v, and the
 k constraints are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share
-lies within the limit surface. This is the limit surface of the potential P(B·v).
+lies within the limit surface, which is that of the potential P(B·v).
 """
 
 from __future__ import annotations
@@ -40,13 +40,11 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 
 @dataclass(eq=False)
 class PlanarStick(AxialStick):
-    """Friction between any two bodies, which sticks exactly; the joints of the model may hold them on one axis.
+    """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
-    ``sliding`` are the user functions for force and Jacobian of Coulomb friction. If ``on_axis`` it is an
-    ``AxialStick``. ``basis``, shape (3, k), are the directions of slip (m/s, m/s, rad/s) that its locks hold, and
-    ``allowed`` those that the joints of the model leave free; other locked contacts may hold some of them.
-    ``direction``, shape (3,), is the slip into which the load has released the contact, scaled to P = 1 m/s and
-    normal to the limit surface.
+    ``sliding`` are the user functions for Coulomb's force and its Jacobian. ``on_axis`` it is an ``AxialStick``. Its
+    locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``, shape (3, k); joints leave those in ``allowed``
+    free. ``direction``, shape (3,), is the slip at its release: normal to the limit surface, with P = 1 m/s.
     """
 
     sliding: tuple[Callable[..., Any], ...] = ()
@@ -55,60 +53,60 @@ class PlanarStick(AxialStick):
     allowed: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
     taken_over: FloatArray = field(default_factory=lambda: np.zeros(3))
-    """Force (N) and moment (N m) on the disc that the contact takes over from others that hold the same bodies.
+    """Force (N) and moment (N m) on the disc that the contact takes over from others on the same bodies.
 
-    The sum over these contacts is zero on each body, so it changes no motion.
+    Their sum over these contacts is zero, so they change no motion.
     """
     frozen: bool = False
-    """True in the last step before the contact rests: friction keeps its value from the start of the step."""
+    """True in the last step before rest: friction keeps its value from the start of the step."""
     predicts: bool = False
-    """True during the first iteration of Newton's method: friction is linear about the start of the step.
+    """True in the first iteration of Newton's method: friction is linear about the start of the step.
 
-    Exudyn's first iterate has no acceleration at the end of the step, so it may slip in any direction.
+    Exudyn's first iterate has no acceleration at the end of the step, so its slip may have any direction.
     """
 
     def __post_init__(self) -> None:
         self.set_basis(self.basis)
 
     def span(self, slips: FloatArray) -> FloatArray:
-        """Return a basis of possible ``slips``, shape (3, n); a pin does not resist spin."""
+        """Return a basis of ``slips``, shape (3, n); a pin does not resist spin."""
         radius = self.mean_radius
         axes, sizes, _ = np.linalg.svd(slips * np.array([1.0, 1.0, radius])[:, None])
         count = np.count_nonzero(sizes > NEGLIGIBLE)
         return np.asarray(axes[:, :count] / np.array([1.0, 1.0, radius or 1.0])[:, None])
 
     def set_basis(self, basis: FloatArray) -> None:
-        """Lock the slip in the directions of ``basis``, shape (3, k), from now on."""
+        """Lock the directions of slip in ``basis``, shape (3, k)."""
         self.basis, self._to_basis = basis, np.linalg.pinv(basis)
         self._evaluated: tuple[list[float], FloatArray] = [], np.empty((3, 0))
 
     @property
     def rests(self) -> bool:
-        """True if the contact or others on the same bodies hold its slip."""
+        """True if this contact or others hold its slip."""
         return self.idle or self.mode == Mode.LOCKED
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
-        """Return the gradients of the locked slips, shape (k, n), at ``coordinates`` with reference values."""
+        """Return the gradients of the locked slips, shape (k, n)."""
         return np.asarray(self._to_basis @ self.slip_map(coordinates))
 
     def slip_map(self, coordinates: FloatArray) -> FloatArray:
-        """Return J, the map of the nodes' velocities to the slip, shape (3, n)."""
+        """Return J, the map from the nodes' velocities to the slip, shape (3, n)."""
         return np.asarray(slip_and_place_of_nodes(self.kinds, coordinates)[0])
 
     def motion(self, q: FloatArray, q_t: FloatArray, q_tt: FloatArray) -> SlipMotion:
-        """Return the motion for coordinates without reference values, and their derivatives."""
+        """Return the motion for coordinates without reference values."""
         return SlipMotion(*slip_motion(self.kinds, self.factors.geometry, self.reference + q, q_t, q_tt))
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
-        """Return the rates of the locked slips in such a ``state`` without accelerations, shape (k,)."""
+        """Return the rates of the locked slips without accelerations, shape (k,)."""
         return np.asarray(self._to_basis @ self.motion(*state).bias)
 
     def potential_of(self, slip: FloatArray) -> float:
-        """Return P in m/s of a ``slip``, shape (3,)."""
+        """Return P in m/s."""
         return float(-np.array(unit_friction(slip, self.factors.geometry)) @ slip)
 
     def held_wrench(self, mbs: Any) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc of a contact at rest, in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the disc at rest, in the master's axes, shape (3,)."""
         if self.mode != Mode.LOCKED:
             return self.taken_over
         count = self.basis.shape[1]
@@ -116,10 +114,7 @@ class PlanarStick(AxialStick):
         return np.asarray(self.taken_over - self._to_basis.T @ np.array(forces, dtype=float))
 
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
-        """Return the share of ``friction`` (N) that a ``wrench`` on the disc needs, and the slip that it resists.
-
-        The slip has P = 1 m/s.
-        """
+        """Return the share of ``friction`` (N) that a ``wrench`` needs, and the resisted slip with P = 1 m/s."""
         contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.allowed
         if columns.shape[1] == (3 if radius else 2):  # the slip of the centre has the direction of the force
             force = math.hypot(load[0], load[1])
@@ -133,17 +128,17 @@ class PlanarStick(AxialStick):
         return float(load @ slip) / friction, slip
 
     def holding_force(self, t: float) -> float:
-        """Return the static friction in N at the time t (s)."""
+        """Return the static friction in N."""
         return self.static_ratio * self.factors.friction_force(t, 0.0, 0.0, 0.0)
 
     def capacity_share(self, mbs: Any, t: float) -> float:
-        """Return the load over the largest one: 1 while the contact slides, 0 while it is open."""
+        """Return load over capacity: 1 while the contact slides, 0 while it is open."""
         if self.on_axis or not self.rests:
             return super().capacity_share(mbs, t)
         return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         if self.on_axis:
             return super().wrench(mbs, t, slip, radius)
         if self.rests:
@@ -151,7 +146,7 @@ class PlanarStick(AxialStick):
         return self.sliding_wrench(t, slip, radius) if self.slides else np.zeros(3)
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
-        """Return the generalised forces on the nodes, as the user function of the connector."""
+        """Return the generalised forces on the nodes (user function of the connector)."""
         if self.on_axis or not self.running:
             return super().force(mbs, t, item, q, q_t)
         if not self.slides or self.idle:
@@ -161,7 +156,7 @@ class PlanarStick(AxialStick):
         return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
 
     def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
-        """Prepare the first iteration of a step that starts at these coordinates and velocities."""
+        """Prepare the first iteration of a step."""
         self.predicts = self.slides and not self.idle
         if self.predicts:
             self._start = self.motion(q, q_t, np.zeros(len(q)))
@@ -174,7 +169,6 @@ class PlanarStick(AxialStick):
         position_factor: float,
         velocity_factor: float,
     ) -> Any:
-        """Return friction that is linear in the slip since the start of the step, and its derivatives."""
         start = self._start
         friction = self.factors.friction_force(t, start.radius, start.potential, float(start.slip[2]))
         return linear_friction(
@@ -190,7 +184,7 @@ class PlanarStick(AxialStick):
         )
 
     def sliding_wrench(self, t: float, slip: FloatArray, radius: float) -> FloatArray:
-        """Return the force and moment on the disc that slides at the time t (s), in the master's axes, shape (3,)."""
+        """Return force (N) and moment (N m) on the sliding disc, in the master's axes, shape (3,)."""
         unit = np.array(unit_friction(slip, self.factors.geometry))
         return unit * self.factors.friction_force(t, radius, float(-unit @ slip), float(slip[2]))
 
@@ -204,7 +198,7 @@ class PlanarStick(AxialStick):
         position_factor: float,
         velocity_factor: float,
     ) -> FloatArray:
-        """Return the derivatives of minus the generalised forces, as the user function of the connector."""
+        """Return the derivatives of minus the forces (user function of the connector)."""
         if self.on_axis:
             return super().jacobian(mbs, t, item, q, q_t, position_factor, velocity_factor)
         if self.idle or not self.slides:
@@ -218,20 +212,20 @@ class PlanarStick(AxialStick):
     def constraint(
         self, lock: int, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], level: bool
     ) -> list[float]:
-        """Return the slip that the constraint number ``lock`` keeps at zero, as its user function.
+        """Return the slip that the constraint ``lock`` keeps at zero (its user function).
 
-        In contrast to a connector's, its coordinates ``q`` contain the reference values.
+        Unlike a connector's, its coordinates ``q`` contain the reference values.
         """
         return [float(self._row(lock, q) @ q_t)]
 
     def constraint_jacobian(
         self, lock: int, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float], level: bool
     ) -> FloatArray:
-        """Return the slip's derivatives with respect to the velocities, (1, n): the constraint's user function."""
+        """Return the derivatives of that slip, shape (1, n) (user function of the constraint)."""
         return self._row(lock, q)[None]
 
     def _row(self, lock: int, q: Sequence[float]) -> FloatArray:
-        if q != self._evaluated[0]:  # Exudyn asks for one row after the other
+        if q != self._evaluated[0]:  # Exudyn asks for one row after another
             rows = np.zeros((3, len(q)))
             rows[: self.basis.shape[1]] = self.rows(np.array(q))
             self._evaluated = list(q), rows

@@ -6,14 +6,11 @@ import math
 from typing import Any
 
 ON_GRID = 1e-9
-"""Tolerance, as a share of a step, for the end of a step at a multiple of the step."""
+"""Tolerance of multiples of a step, as a share of it."""
 
 
 class SensorRows:
-    """Rows of sensors, switched on for the steps whose ends are due.
-
-    Exudyn itself would count their period from the start of each part of a run.
-    """
+    """Rows of sensors, switched on for steps whose ends are due, because each part would restart the period."""
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step
@@ -21,11 +18,11 @@ class SensorRows:
         settings.writePeriod = 0.0
 
     def switch(self, on: bool) -> None:
-        """Switch rows on or off from the next step on, if they are wanted at all."""
+        """Switch rows on or off from the next step on, if the user wants any."""
         self._settings.active = self._wanted and on
 
     def is_due(self, t: float) -> bool:
-        """Return whether a row is due at the time t (s), and if so go on to the time of the next one."""
+        """Return whether a row is due at the time t (s); if so, advance to the next one."""
         if t < self._next - ON_GRID * self._step:
             return False
         period = max(self._period, self._step)

@@ -1,7 +1,7 @@
 """Steps that resolve how contacts slide in the plane.
 
-The friction of such a contact turns with its slip, ever faster as the slip vanishes. The steps therefore shrink in
-proportion to the slip until the contact counts as resting, and grow again after its release.
+The direction of friction turns ever faster as the slip vanishes. Steps shrink with the slip until the contact counts
+as resting, and grow again after its release.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
 
 APPROACH = 0.9
-"""Largest share of a contact's slip in the plane that its acceleration could remove within one step."""
+"""Largest share of the slip that its acceleration could remove in a step."""
 
 TURN = 0.05
-"""Largest change of the direction of friction in the plane within one step that a small slip has shortened."""
+"""Largest change of the direction of friction in a shortened step."""
 
 FULL_TURN = 0.3
-"""Largest change of this direction within a step of full length."""
+"""Largest change of this direction in a step of full length."""
 
 
 class SlidingSteps:
-    """Choice of the next step for the ``contacts`` in the plane of a model, at most the ``step`` (s) of the run.
+    """Choice of the next step, at most ``step`` (s), while contacts slide in the plane.
 
-    A contact ``rests`` at the end of the last step, and the run ``pauses`` if the next step must have another size.
+    A contact ``rests`` at the end of the last step; the run ``pauses`` if the next step must have another size.
     """
 
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
@@ -44,7 +44,7 @@ class SlidingSteps:
         return min(self._by_slip, self._growing)
 
     def begin(self, step: float) -> None:
-        """Begin to slide with a first ``step`` (s), after which the steps grow."""
+        """Begin to slide with a first ``step`` (s)."""
         self._growing = step
 
     def resolves(self, step: float) -> bool:
@@ -71,7 +71,7 @@ class SlidingSteps:
         return True
 
     def survey(self) -> None:
-        """Note the directions of friction, the longest next step, and whether a contact rests."""
+        """Record the directions of friction, the longest next step, and whether a contact rests."""
         self._directions, self._by_slip, self.rests = {}, math.inf, False
         for contact in self._contacts:
             if contact.free_to_slide:

@@ -1,4 +1,4 @@
-"""Slip of a contact, its rate of change and its friction, compiled for the switching of exact stick."""
+"""Slip of a contact, its rate and its friction, compiled for the switching of exact stick."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ ITERATIONS = 100
 """Largest number of iterations for the direction of slip on the limit surface."""
 
 ACCURACY = 1e-9
-"""Tolerance of this direction in rad; the error of the load share is of second order in it."""
+"""Tolerance of this direction in rad; the load share has an error of second order in it."""
 
 RESOLVED = 1e-6
 """Smallest slip with a reliable direction, relative to the speeds of both bodies."""
@@ -38,11 +38,10 @@ RESOLVED = 1e-6
 class SlipMotion(NamedTuple):
     """Motion of a contact that sticks exactly.
 
-    ``slip`` is (u, S) in m/s and rad/s, ``rate`` its rate of change in m/s² and rad/s², and ``bias`` the rate without
-    accelerations, J̇·q̇, each of shape (3,). ``gradient``, shape (3,), contains the derivatives of P by the slip,
-    zero at rest; ``radius`` is the distance of the disc's centre from the axis of the master, in m;
-    ``rate_potential`` is P of the rate, in m/s². The rounding error of the slip is proportional to ``largest_term``,
-    the largest speed in m/s that enters it.
+    ``slip`` is (u, S) in m/s and rad/s, ``rate`` its derivative and ``bias`` this rate without accelerations, J̇·q̇.
+    ``gradient`` contains the derivatives of P by the slip, zero at rest; all have the shape (3,). ``radius`` is the
+    distance of the disc's centre from the axis of the master, in m; ``rate_potential`` is P of the rate, in m/s². The
+    rounding error of the slip is proportional to ``largest_term``, the largest speed in m/s that enters it.
     """
 
     slip: FloatArray
@@ -60,7 +59,7 @@ class SlipMotion(NamedTuple):
 
     @property
     def remaining(self) -> float:
-        """Time in s until the contact rests if P keeps its present rate, infinite if P grows."""
+        """Time in s until rest if P keeps its present rate; infinite if P grows."""
         falling = -float(self.gradient @ self.rate)
         return self.potential / falling if falling > 0.0 else math.inf
 
@@ -70,7 +69,7 @@ class SlipMotion(NamedTuple):
         return self.potential >= RESOLVED * self.largest_term > 0.0
 
     def rests_within(self, time: float) -> bool:
-        """Return whether the slip decreases and vanishes within a ``time`` (s), or is no longer resolved."""
+        """Return whether the slip vanishes within a ``time`` (s), or decreases unresolved."""
         return self.remaining < time or (self.remaining < math.inf and not self.is_resolved)
 
 
@@ -113,11 +112,7 @@ def _linear_friction(
     position_factor: float,
     velocity_factor: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the forces on the nodes, linear in the slip from ``start``, and their derivatives, shape (n, n).
-
-    The derivatives are weighted sums of those by coordinates and by velocities. ``slope`` is 1, or 0 for forces that
-    do not depend on the slip.
-    """
+    """Return the forces on the nodes, linear in the slip from ``start``, and a weighted sum of their derivatives."""
     to_slip, _, turned, _ = slip_and_place(kinds, q)
     slip = slip_of_nodes(to_slip, q_t)
     unit = _unit_friction(start, contact)
@@ -136,9 +131,9 @@ def _linear_friction(
 
 @compiled
 def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArray:
-    """Return the derivatives of coordinates, which for a rotation vector v are not ω in the body's axes.
+    """Return the derivatives of coordinates; ω in the body's axes is not the derivative of a rotation vector v.
 
-    The formula is v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
+    v̇ = ω + v×ω/2 + (1 − θ/2·cot(θ/2))/θ²·v×(v×ω) with θ = |v|.
     """
     rates = q_t.copy()
     start = 0
@@ -160,7 +155,6 @@ def _coordinate_rates(kinds: Kinds, q: FloatArray, q_t: FloatArray) -> FloatArra
 
 @compiled
 def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, float]:
-    """Return force and moment per newton of μN of a circle or an annulus."""
     return friction_of_slip(slip[0], slip[1], slip[2], 0.0, contact)
 
 
@@ -168,8 +162,8 @@ def _unit_friction(slip: FloatArray, contact: Contact) -> tuple[float, float, fl
 def _resisted_slip(load: FloatArray, columns: FloatArray, contact: Contact) -> FloatArray:
     """Return the slip w in the span of two ``columns`` with the greatest load·w/P(w).
 
-    The quotient has one maximum between the directions without power, because P is convex. The Illinois method finds
-    the zero of its derivative (Dowell & Jarratt, BIT 11 (1971) 168).
+    P is convex, so there is one maximum between the directions without power. The Illinois method finds it (Dowell &
+    Jarratt, BIT 11 (1971) 168).
     """
     first, second = columns[:, 0].copy(), columns[:, 1].copy()
     middle = math.atan2(load @ second, load @ first)

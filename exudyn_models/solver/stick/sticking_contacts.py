@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 CURRENT = exu.ConfigurationType.Current
 
 SOON = 1e-9
-"""Short time in s, long enough for the slip of a contact at rest to take the sign of its acceleration."""
+"""Time in s that gives the slip of a contact at rest the sign of its acceleration."""
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,16 @@ class ModeChange:
 
 @dataclass(frozen=True, eq=False)
 class StickingContact:
-    """Contact on one axis that sticks exactly, in an assembled model."""
+    """Contact on one axis that sticks exactly."""
 
     item: int
     """Object number of the connector."""
     stick: AxialStick
     places: NDArray[Any]
-    """Positions of its coordinates among those of the model."""
+    """Positions of its coordinates among the model's."""
 
     rest_share: ClassVar[float] = 1e-9
-    """Time, as a share of the step, within which a contact stops that counts as resting."""
+    """Share of a step within which a contact that counts as resting stops."""
 
     @property
     def mode(self) -> Mode:
@@ -72,7 +72,7 @@ class StickingContact:
             mbs.SetObjectParameter(self.item, "forceVector", forces)
 
     def omit_user_functions(self, mbs: Any) -> None:
-        """Let Exudyn evaluate constant moments without calls of Python in a run."""
+        """Let Exudyn evaluate constant moments itself."""
         if self.stick.constant_forces is not None:
             for name in ("forceUserFunction", "jacobianUserFunction"):
                 mbs.SetObjectParameter(self.item, name, 0)
@@ -89,7 +89,7 @@ class StickingContact:
         self.enter(mbs, Mode.OPEN if self.holding(t) == 0.0 else Mode(int(np.sign(slip))))
 
     def following(self, mbs: Any, t: float) -> Mode:
-        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
+        """Return the next mode at the end of the present one, if no other contact changes."""
         if self.holding(t) == 0.0:
             return Mode.OPEN
         if self.mode == Mode.OPEN:
@@ -97,19 +97,19 @@ class StickingContact:
         return self.driven(mbs) if self.mode == Mode.LOCKED else Mode.LOCKED
 
     def holding(self, t: float) -> float:
-        """Return the static friction at the time t (s), a moment in N m."""
+        """Return the static friction, a moment in N m."""
         return max(self.stick.limits(t))
 
     def opens_or_closes(self, holding: float) -> bool:
-        """Return whether the static friction ``holding`` has vanished, or acts on an open contact."""
+        """Return whether static friction has vanished, or acts on an open contact."""
         return (holding == 0.0) != (self.mode == Mode.OPEN)
 
     def driven(self, mbs: Any) -> Mode:
-        """Return the mode of sliding into which the load drives a locked contact."""
+        """Return the mode into which the load drives a locked contact."""
         return Mode.BACKWARD if self.stick.held_moment(mbs) > 0.0 else Mode.FORWARD
 
     def rows(self, mbs: Any) -> FloatArray:
-        """Return the gradients of the locked slips by all velocities of the model, at its initial values."""
+        """Return the gradients of the locked slips by all velocities of the model."""
         return self._widened(mbs, self.stick.rows)
 
     def _widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
@@ -121,17 +121,17 @@ class StickingContact:
         return rows
 
     def active_locks(self) -> Sequence[int]:
-        """Return the object numbers of the constraints that hold a locked contact."""
+        """Return the object numbers of the active constraints."""
         return self.stick.locks[:1]
 
     def bias(self, mbs: Any) -> FloatArray:
-        """Return the rates of change of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
+        """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
         if not isinstance(self.stick, PlanarStick):
             return np.zeros(1)
         return self.stick.bias(self._state(mbs))
 
     def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return coordinates without reference values and their derivatives."""
+        """Return coordinates without reference values, and their derivatives."""
         data, places = mbs.systemData, self.places
         return (
             data.GetODE2Coordinates(configuration)[places],
@@ -152,8 +152,8 @@ class StickingContact:
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        It is the slip in the direction of sliding (rad/s), the unused share of the capacity of a locked contact, or
-        ±1 if load or coefficient is zero.
+        It is the slip in the direction of sliding (rad/s), the unused share of a locked contact's capacity, or ±1
+        without load or coefficient.
         """
         stick, mode = self.stick, self.mode
         limits = stick.limits(t)
@@ -166,18 +166,18 @@ class StickingContact:
         return int(mode) * self.slip(mbs)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of its capacity that a locked contact holds, or 0 if the contact is not locked."""
+        """Return the share of the capacity that a locked contact holds, else 0."""
         return 0.0 if self.mode != Mode.LOCKED else self.stick.capacity_share(mbs, t)
 
     def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a short ``time`` (s)."""
+        """Return whether a sliding contact stops within a ``time`` (s)."""
         if not self.stick.slides:
             return False
         return int(self.mode) * self.slip(mbs, time) < 0.0
 
 
 class PlanarContact(StickingContact):
-    """Contact that sticks exactly between bodies that may slide sideways, in an assembled model."""
+    """Contact between bodies that may slide sideways."""
 
     rest_share: ClassVar[float] = 1e-6
 
@@ -188,24 +188,21 @@ class PlanarContact(StickingContact):
 
     @property
     def free_to_slide(self) -> bool:
-        """True if the contact slides and no other constraints hold it."""
+        """True if the contact slides and nothing else holds it."""
         return self.stick.slides and not self.stick.idle
 
     def allow(self, mbs: Any, by_joints: FloatArray, velocities: FloatArray) -> None:
-        """Let the contact lock the directions of slip at ``velocities``, shape (n, m), of the whole model.
-
-        The joints allow the velocities ``by_joints``.
-        """
+        """Let the contact lock the slips of ``velocities``, shape (n, m); joints allow those ``by_joints``."""
         slips = self.slip_rows(mbs)
         self.planar.allowed = self.planar.span(slips @ by_joints)
         self.planar.set_basis(self.planar.span(slips @ velocities))
 
     def slip_rows(self, mbs: Any) -> FloatArray:
-        """Return the map from all velocities of the model to the slip at its initial values, shape (3, n)."""
+        """Return the map from all velocities of the model to the slip, shape (3, n)."""
         return self._widened(mbs, self.planar.slip_map)
 
     def scaled(self, gradient: FloatArray) -> FloatArray:
-        """Return a gradient of P as pure numbers."""
+        """Return a dimensionless gradient of P."""
         return gradient / [1.0, 1.0, self.planar.mean_radius or 1.0]
 
     def enter(self, mbs: Any, mode: Mode) -> None:
@@ -220,17 +217,17 @@ class PlanarContact(StickingContact):
         self.enter(mbs, self._free_mode(mbs, t, exu.ConfigurationType.Initial))
 
     def following(self, mbs: Any, t: float) -> Mode:
-        """Return the mode that follows one that has ended at the time t (s) if no other contact changes."""
+        """Return the next mode at the end of the present one, if no other contact changes."""
         if self.planar.rests and self.holding(t) > 0.0:
             return self.driven(mbs)
         return self._free_mode(mbs, t, CURRENT)
 
     def holding(self, t: float) -> float:
-        """Return the static friction at the time t (s), in N."""
+        """Return the static friction in N."""
         return self.planar.holding_force(t)
 
     def driven(self, mbs: Any) -> Mode:
-        """Return the mode of sliding into which its load drives a locked contact; remember the direction."""
+        """Return the mode into which the load drives a locked contact, and store the direction."""
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
         return _sliding_mode(self.planar.direction)
 
@@ -239,16 +236,16 @@ class PlanarContact(StickingContact):
         return self.planar.motion(*self._state(mbs, configuration))
 
     def active_locks(self) -> Sequence[int]:
-        """Return the object numbers of the constraints that hold a locked contact."""
+        """Return the object numbers of the active constraints."""
         return self.stick.locks[: self.planar.basis.shape[1]]
 
     def start_step(self, mbs: Any) -> None:
-        """Prepare the friction for a step from the present motion."""
+        """Prepare the friction for the next step."""
         q, q_t, _ = self._state(mbs)
         self.planar.start_step(q, q_t)
 
     def slid(self, mbs: Any) -> SlipMotion:
-        """Return the present motion of a sliding contact, and note its direction as the mode."""
+        """Return the present motion, and store its direction as the mode."""
         motion = self.motion(mbs)
         self.stick.mode = _sliding_mode(motion.slip)
         return motion
@@ -256,8 +253,8 @@ class PlanarContact(StickingContact):
     def margin(self, mbs: Any, t: float) -> float:
         """Return a number that falls below zero when the present mode ends.
 
-        It is the unused share of the capacity of a locked contact, or ±1 if load or coefficient is zero. A sliding
-        contact has no margin, because ``sliding_steps`` finds its end.
+        It is the unused share of the capacity, or ±1 without load or coefficient. ``sliding_steps`` finds the end of
+        sliding.
         """
         holding = self.holding(t)
         if self.opens_or_closes(holding):
@@ -265,15 +262,14 @@ class PlanarContact(StickingContact):
         return 1.0 - self.overload(mbs, t)
 
     def overload(self, mbs: Any, t: float) -> float:
-        """Return the share of its capacity that a contact at rest holds, or 0 if it does not rest."""
+        """Return the share of the capacity that a contact at rest holds, else 0."""
         return self.planar.capacity_share(mbs, t) if self.planar.rests else 0.0
 
     def reverses(self, mbs: Any, time: float) -> bool:
-        """Return whether a sliding contact stops within a short ``time`` (s)."""
+        """Return whether a sliding contact stops within a ``time`` (s)."""
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
-        """Return the mode of a contact that has not been locked; without a direction of slip it may stick."""
         if self.holding(t) == 0.0:
             return Mode.OPEN
         motion = self.motion(mbs, configuration)
@@ -285,7 +281,7 @@ def _sliding_mode(slip: FloatArray) -> Mode:
 
 
 def sticking_contacts(mbs: Any) -> list[StickingContact]:
-    """Return all contacts of an assembled model that stick exactly."""
+    """Return the contacts of a model that stick exactly."""
     return [
         StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
@@ -295,10 +291,7 @@ def sticking_contacts(mbs: Any) -> list[StickingContact]:
 
 @contextmanager
 def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[list[StickingContact]]:
-    """Let contacts have modes, at first those of load and slip at the start t (s) of a run.
-
-    Yields the contacts as those on one axis or in the plane, which the joints of the model decide.
-    """
+    """Give contacts the modes of load and slip at the start of a run; yield them on one axis or in the plane."""
     try:
         for contact in contacts:
             contact.stick.running = True
@@ -317,7 +310,6 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
 
 
 def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
-    """Return the contact on its axis, or in the plane if ``joints`` allow it to slip sideways."""
     stick = contact.stick
     if not isinstance(stick, PlanarStick):
         return contact
@@ -332,8 +324,7 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
     """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
 
-    The gradients, shape (m, n), are derivatives with respect to the n velocities, up to factors, of an assembled
-    model at its initial values and the time t (s).
+    The gradients, shape (m, n), are derivatives by the n velocities, up to factors, at the initial values.
     """
     data = mbs.systemData
     with initialised_solver(mbs, t) as solver:
@@ -346,6 +337,6 @@ def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> 
 
 
 def lock_places(mbs: Any, contacts: Sequence[StickingContact]) -> list[int]:
-    """Return the positions of the locks of ``contacts`` among the constraints of an assembled model."""
+    """Return the positions of the locks of ``contacts`` among the constraints."""
     locks = [lock for contact in contacts for lock in contact.stick.locks]
     return [int(mbs.systemData.GetObjectLTGAE(lock)[0]) for lock in locks]

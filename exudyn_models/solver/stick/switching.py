@@ -1,8 +1,7 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
-Between two changes the equations of motion are smooth. The driver takes back a step that passes a change and repeats
-it with a length that ends at the change. There ``mode_choice`` chooses modes that let all contacts obey Coulomb's law
-at once. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
+Between two changes the equations of motion are smooth. A step that passes a change is repeated to end at the change.
+There ``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
 from __future__ import annotations
@@ -26,16 +25,16 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 LOCATED = 1e-12
-"""Share of a step within which the time of a change is found."""
+"""Accuracy of the time of a change, as a share of a step."""
 
 FORCES = 1e-12
 """Relative residual of Newton's method for contacts in the plane.
 
-Errors of velocities enter constraint forces divided by the step, and these decide when a contact is released.
+Constraint forces, which decide about releases, contain errors of velocities divided by the step.
 """
 
 ITERATIONS = 200
-"""Least limit of Newton's iterations; many are needed if a load depends on forces, since the Jacobian omits this."""
+"""Least limit of Newton's iterations; loads that depend on forces need many, because the Jacobian omits them."""
 
 
 def run_switching(
@@ -46,10 +45,9 @@ def run_switching(
     update_initial_values: bool,
     before: Sequence[Mode] = (),
 ) -> list[ModeChange]:
-    """Run an implicit ``solver`` over an assembled model; return the changes of modes of its ``contacts``.
+    """Run an implicit ``solver``; return the changes of modes of the ``contacts``, which had the modes ``before``.
 
-    They have their first modes. ``before`` are the modes at the end of the preceding run, and are empty if there is
-    none. Raises ``SimulationError`` if the modes change without end at one time.
+    Raises ``SimulationError`` if the modes change without end at one time.
     """
     data, initial = mbs.systemData, exu.ConfigurationType.Initial
     state = data.GetSystemState(initial)
@@ -72,18 +70,14 @@ class _Run:
         self._writes_file = settings.solution.file.write
         self._reached, self._stopped, self._begun = self._start, False, False
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
-        self._accelerations = np.empty(0)  # at the start of the present step
+        self._accelerations = np.empty(0)
         self._slides = SlidingSteps(mbs, self._planar, self._step)
         self._modes = ModeChoice(mbs, self._start, contacts, self._slides, self._step, self._at_start)
         self._look: Callable[[float], bool] = lambda t: True
-        #: All changes of modes so far.
         self.changes: list[ModeChange] = []
 
     def run(self, before: Sequence[Mode]) -> None:
-        """Run from the start to the end of the settings; leave the end as the initial values.
-
-        ``before`` are the modes at the end of the preceding run. They are empty if there is none.
-        """
+        """Run to the end of the settings and leave it as the initial values."""
         mbs = self._mbs
         with (
             self._kept_settings(),
@@ -137,7 +131,7 @@ class _Run:
         def look(mbs: Any, t: float) -> bool:
             if not self._look(t):
                 return False
-            if t <= self._reached and self._begun:  # Exudyn calls it at the start of each part as well
+            if t <= self._reached and self._begun:  # Exudyn also calls it at the start of each part
                 return True
             self._reached, self._begun = t, True
             self._stopped = not own(mbs, t)
@@ -155,9 +149,9 @@ class _Run:
         keep: bool,
         settles: bool = False,
     ) -> None:
-        """Run from the last time reached to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
+        """Run to ``end`` (s); ``write`` sensors and files, ``keep`` the end.
 
-        If contacts are in the plane, Exudyn computes the initial accelerations only for a part that ``settles``.
+        If contacts lie in the plane, Exudyn computes the initial accelerations only for a part that ``settles``.
         """
         options, solution = self._options, self._settings.solution
         options.startTime, options.endTime, options.numberOfSteps = self._reached, end, steps
@@ -176,10 +170,9 @@ class _Run:
             solution.file.append = solution.sensors.append = True
 
     def _go_on(self) -> tuple[float, Sequence[FloatArray]] | None:
-        """Run to the end, or to the next multiple of the step if the last part has ended between two.
+        """Run to the end, or to the next multiple of the step if the last part ended between two.
 
-        Contacts in the plane may need shorter steps. Return None, or the end of a step that has passed a change and
-        was taken back, with the margins at both of its ends.
+        Return None, or the end of a step that passed a change, with the margins at both of its ends.
         """
         data, start = self._mbs.systemData, self._reached
         whole = (start - self._start) / self._step
@@ -211,7 +204,7 @@ class _Run:
             return True
 
         self._part(end, steps, look, write=True, keep=True)
-        self._settings.solution.file.writeInitialValues = passed is not None  # sensors follow it too
+        self._settings.solution.file.writeInitialValues = passed is not None  # also read by sensors
         return passed
 
     def _take_back(self) -> None:
@@ -224,8 +217,6 @@ class _Run:
         self._sensors.switch(False)
 
     def _at_start(self, look: Callable[[float], None]) -> None:
-        """Compute the initial accelerations and call ``look`` with the time (s) before the first step."""
-
         def end(t: float) -> bool:
             look(t)
             return False
@@ -236,7 +227,6 @@ class _Run:
         return self._modes.margins(t)
 
     def _try(self, t: float) -> FloatArray:
-        """Return the margins after one step to the time t (s) that is not kept."""
         found = np.empty(0)
 
         def look(time: float) -> bool:
@@ -252,8 +242,7 @@ class _Run:
     def _land(self, high: float, margins: Sequence[FloatArray]) -> None:
         """Step to the first change before ``high`` (s), and leave the modes that end there.
 
-        The Illinois method finds it: a secant that halves the margin at an end which stays (Dowell & Jarratt, BIT 11
-        (1971) 168).
+        The Illinois method finds it (Dowell & Jarratt, BIT 11 (1971) 168).
         """
         low, (above, below) = self._reached, margins
         tolerance = max(LOCATED * self._step, 4.0 * np.spacing(abs(high)))
@@ -271,9 +260,9 @@ class _Run:
 
         self._step_to(high)
         leaving = [contact for contact, margin in zip(self._contacts, below, strict=True) if margin < 0.0]
-        following = [contact.following(self._mbs, high) for contact in leaving]  # loads of this step
+        following = [contact.following(self._mbs, high) for contact in leaving]
         self._modes.survey(high)
-        released = False  # the others that share its load are left to ``settle``
+        released = False  # ``settle`` decides about others that share its load
         for contact, mode in zip(leaving, following, strict=True):
             shares = isinstance(contact, PlanarContact) and mode != Mode.OPEN
             if not (shares and released):
@@ -305,7 +294,7 @@ class _Run:
         self._part(t, 1, lambda time: True, write=False, keep=True)
 
     def _note(self, before: Sequence[Mode]) -> None:
-        """Add the changes at the time reached; raise ``SimulationError`` if they do not end."""
+        """Record the changes of mode; raise ``SimulationError`` if they do not end."""
         for contact, mode in zip(self._contacts, before, strict=bool(before)):
             after = contact.stick.visible_mode
             if after != mode:
