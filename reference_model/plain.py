@@ -1,6 +1,6 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-There is one change: slip speeds below ε are replaced by ε where they divide, so a sticking body creeps slower than ε.
+There is one change: a slip speed below ε is replaced by ε where it divides, so a sticking body creeps slower than ε.
 """
 
 from __future__ import annotations
@@ -19,12 +19,11 @@ from reference_model.systems import DiscOnDisc, System, checked_state, checked_t
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 Friction = Callable[[Any, Any, Any, Any], "tuple[Any, Any, Any]"]
-"""Function of slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex; returns F_x, F_y (N) and M (N m).
-"""
+"""Function of slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex; returns F_x, F_y (N), M (N m)."""
 
 
 def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
-    """Return the friction of (20), with its integral over χ as a mean over ``points`` whose slip is (21).
+    """Return the friction of (20), with its integral over χ as a mean over ``points`` that slip by (21).
 
     One point and R = 0 give the pin of (1).
     """
@@ -52,7 +51,7 @@ def by_law(load: float, law: Contact) -> Friction:
 
 
 def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
-    """Return the secant stiffness in N/m at the deflection w: the paper's C, plus hardening and stop."""
+    """Return the paper's C, plus hardening and stop, as the secant stiffness in N/m at the deflection w."""
     squared = w_x**2 + w_y**2
     d = np.sqrt(squared)
     beyond = (d - system.stop_gap) / d if d.real > system.stop_gap else 0.0

@@ -15,19 +15,19 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 MOST_POINTS = 1000
-"""Largest number of contact points; a continuous ring is better and cheaper than more."""
+"""Largest number of contact points; a continuous ring is cheaper than more."""
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest size of a positive parameter, and largest size of any: products of several stay finite."""
+"""Smallest positive parameter and largest size of any, so that products of several stay finite."""
 
 MOST_RATIO = 1e25
-"""Largest rate in 1/s, and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
+"""Largest rate in 1/s and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """A mass on springs and dampers, pressed on a disc that turns at constant speed: base class of pin and disc."""
+    """Base class of pin and disc: a mass on springs and dampers, pressed on a disc that turns at constant speed."""
 
     mass: float
     stiffness: float
@@ -64,7 +64,6 @@ class _SupportedMass:
     _least: ClassVar[tuple[tuple[str, float], ...]]
 
     def __init_subclass__(cls) -> None:
-        """Store the smallest allowed value of each parameter."""
         cls._least = tuple(
             (name, LEAST if name in cls._positive else 0.0 if name in cls._not_negative else -MOST)
             for name in cls._units
@@ -130,7 +129,7 @@ class PinOnDisc(_SupportedMass):
     mass : float
         m in kg, > 0.
     stiffness : float
-        C of the support in N/m, >= 0, the same in every radial direction.
+        C of the support in N/m, >= 0, equal in all radial directions.
     damping : float
         β of the support in N s/m, >= 0.
     friction_force : float
@@ -140,10 +139,9 @@ class PinOnDisc(_SupportedMass):
     offset : float
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
     hardening : float
-        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
+        C₃ in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
     stop_gap, stop_stiffness : float
-        Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. C_s = 0
-        means no stop.
+        Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap.
 
     """
 
@@ -154,9 +152,9 @@ class PinOnDisc(_SupportedMass):
 class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
-    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle
-    in rad, vx, vy in m/s and the spin in rad/s. Errors and the parameters of mass and support are those of
-    :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
+    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
+    rad, vx, vy in m/s and the spin in rad/s. Errors and all other parameters are those of :class:`PinOnDisc`; μN is
+    that of the whole ring and ω the speed of the master disc.
 
     Parameters
     ----------
@@ -169,8 +167,8 @@ class DiscOnDisc(_SupportedMass):
     shaft_speed : float
         Ω of the shaft in rad/s, of either sign.
     contact_points : int or None
-        Number n of contact points, from 3 to 1000. Point i lies at the angle φ + 2πi/n and carries N/n. None means
-        the continuous ring of (20).
+        Number n of contact points, from 3 to 1000. Point i lies at φ + 2πi/n and carries N/n. None: the continuous
+        ring of (20).
 
     """
 
@@ -228,22 +226,22 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
         ("spin", "rad/s"),
     ),
 }
-"""Name and unit of each state of a system."""
+"""Name and unit of each state."""
 
 PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
     kind: tuple((name, kind._units[name], least) for name, least in kind._least)
     for kind in (PinOnDisc, DiscOnDisc)
 }
-"""Name, unit and smallest value of each parameter of a system, except ``contact_points``."""
+"""Name, unit and smallest value of each parameter except ``contact_points``."""
 
 UNITS = DiscOnDisc._units
-"""Unit of each parameter of a disc, which include those of a pin."""
+"""Unit of each parameter of a disc or a pin."""
 
 SMALLEST_TOLERANCE = 1e-14
 """Smallest tolerance that double precision can reach."""
 
 LARGEST_STATE = 1e50
-"""Largest size of a state component in its SI unit: energies and forces of hardening springs stay finite."""
+"""Largest state component in SI units, so that energies and forces of hardening springs stay finite."""
 
 ANGLE = 2
 """Index of the angle in the state of a disc."""
@@ -263,7 +261,7 @@ def finite_number(name: str, value: Any) -> float:
 
 
 def positive_number(name: str, value: Any, unit: str) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` if it is not a finite number > 0."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is finite and > 0."""
     number = finite_number(name, value)
     if number <= 0.0:
         raise ValueError(f"{name} = {number:g} {unit}: it must be > 0")
@@ -271,7 +269,7 @@ def positive_number(name: str, value: Any, unit: str) -> float:
 
 
 def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
-    """Raise ``ValueError`` with the name and value unless ``value`` is an integer from ``least`` to ``most``."""
+    """Raise ``ValueError`` unless ``value`` is an integer from ``least`` to ``most``."""
     whole = isinstance(value, Integral) and not isinstance(value, bool)
     if not (whole and least <= value <= most):
         allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
@@ -279,7 +277,7 @@ def require_whole(name: str, value: int, *, least: int, most: float = math.inf) 
 
 
 Place: TypeAlias = tuple[float, float, float]
-"""Place x, y of a contact point in m in the frame of the disc, and its share of the load."""
+"""Position x, y of a contact point in m in the frame of the disc, and its share of the load."""
 
 SHARES = 1e-12
 """Largest deviation from 1 of a sum of shares: rounding errors of a thousand shares."""
@@ -288,7 +286,7 @@ SHARES = 1e-12
 def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place, ...]:
     """Return x, y and share of contact points; raise ``ValueError`` if invalid.
 
-    There are at least two, at different places. Their shares are positive and sum to 1.
+    At least two positions must differ; shares must be positive and sum to 1.
     """
     try:
         given = [tuple(place) for place in places]
@@ -314,7 +312,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
 
 
 def require_system(system: System, *allowed: type[System]) -> None:
-    """Raise ``ValueError`` unless ``system`` is an instance of the ``allowed`` classes, by default of either."""
+    """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default of either class."""
     allowed = allowed or (PinOnDisc, DiscOnDisc)
     if not isinstance(system, allowed):
         names = " or a ".join(kind.__name__ for kind in allowed)

@@ -1,4 +1,4 @@
-"""Friction of an annulus, such as a clutch facing, as a sum of rings that each carry a share of the load."""
+"""Friction of an annulus, such as a clutch facing, as a sum of rings that share the load."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ ORDER = 4 * CLUSTERING
 """Order of convergence of force and moment in ``rings``, if r₀ lies in the annulus or near it."""
 
 SLOPE_ORDER = 2 * CLUSTERING
-"""Order of convergence of their slopes in that case, which contain ln x in place of x·ln x."""
+"""Order of convergence of their slopes, which contain ln x instead of x·ln x."""
 
 
 @dataclass(frozen=True)
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    Force and moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's
-    rule with n rings. The rule is split and clustered at the kink r₀ = U/|S|, where a point is at rest. Its error
-    falls like n^(−12); with 16 rings it is about 1e-12. The error of the slopes falls like n^(−6) and is about 1e-7.
+    Force and moment of :class:`reference_model.contact.contact_law.Ring` are averaged over the load by Gauss's rule.
+    The rule is split and clustered at the kink r₀ = U/|S|, where a point is at rest. With n rings its error falls
+    like n^(−12), to about 1e-12 for n = 16. The error of the slopes falls like n^(−6), to about 1e-7.
 
     Parameters
     ----------
     inner_radius, outer_radius : float
         Radii in m, 0 <= inner < outer; 0 for a full disc.
     rings : int
-        n >= 1, on either side of r₀.
+        Number n >= 1 on either side of r₀.
     pressure : callable, optional
-        Pressure in any unit as a smooth function of the radius in m, for example ``lambda r: 1 / r`` for a worn-in
-        facing. None for a uniform pressure.
+        Pressure in any unit as a smooth function of the radius in m, such as ``lambda r: 1 / r`` for a worn-in
+        facing. None: uniform.
 
     Raises
     ------
@@ -82,12 +82,11 @@ class Annulus(IsotropicContact):
         return Shares(resistance, math.copysign(moment, relative_spin))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Like :meth:`IsotropicContact.slopes`; defined for every slip except that of a disc at rest."""
         by_slip = mixed = by_spin = 0.0
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             rim = radius * abs(relative_spin)
             if rim == slip_speed:
-                continue  # by rounding, where the range ends at r₀: a logarithm times a load of 1e-16
+                continue  # rounding at r₀, the end of the range: a logarithm times a load of 1e-16
             curvatures = mean_curvatures(slip_speed, rim)
             by_slip += share * curvatures[0]
             mixed += share * radius * curvatures[1]
@@ -96,7 +95,6 @@ class Annulus(IsotropicContact):
         return Slopes(by_slip, mixed, mixed, by_spin)
 
     def _resting_radius(self, slip_speed: float, relative_spin: float) -> float:
-        """Return r₀ = U/|S|, clipped to the annulus; raise ``ValueError`` at rest."""
         spin = abs(relative_spin)
         if slip_speed == 0.0 and spin == 0.0:
             raise ValueError("slip = 0 m/s and relative spin = 0 rad/s: the disc is at rest")

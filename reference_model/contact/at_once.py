@@ -1,7 +1,4 @@
-"""Vectorised friction laws, for implicit methods that solve for all nodes of a step together.
-
-The laws are those of :mod:`reference_model.contact.contact_law`, for arrays.
-"""
+"""Friction laws of :mod:`reference_model.contact.contact_law` for arrays, for implicit methods."""
 
 from __future__ import annotations
 
@@ -37,7 +34,6 @@ class PointsAtOnce:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Share of the load of each point."""
         return self.law.shares
 
     def arm(self, point: int, angle: FloatArray) -> ComplexArray:
@@ -83,7 +79,7 @@ class RingAtOnce:
 
 @dataclass(frozen=True)
 class OneByOne:
-    """Any law, evaluated for one state after the other."""
+    """Any law, evaluated state by state."""
 
     law: Contact
 

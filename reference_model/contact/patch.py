@@ -14,7 +14,7 @@ from reference_model.systems import finite_number, require_whole
 ComplexArray = NDArray[np.complex128]
 
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
-"""Weights of the corners of a triangle in the three points of the rule of degree 2, which have equal shares.
+"""Weights of a triangle's corners in the three points of the rule of degree 2, which have equal shares.
 
 A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971, rule T2:2-1.
 """
@@ -24,9 +24,9 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
     Each triangle of the polygon is cut into ``divisions``² equal ones (>= 1) with three points each. With their
-    longest side h the error falls like h⁴ if the centre of rotation lies outside the patch, and on average like h²
-    if it lies inside, where friction jumps. ``corners`` are x and y in m of at least three corners in the frame of
-    the disc, in order around the polygon.
+    longest side h the error falls like h⁴ if the centre of rotation lies outside the patch. If it lies inside,
+    friction jumps there and the error falls like h² on average. ``corners`` are x and y in m of at least three
+    corners in the frame of the disc, in order around the polygon.
 
     Raises ``ValueError`` if a number is invalid or the polygon has no area or intersects itself.
     """
@@ -41,7 +41,6 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
 
 
 def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
-    """Return the corners in counterclockwise order."""
     try:
         around = [complex(finite_number("corners", x), finite_number("corners", y)) for x, y in corners]
     except TypeError:
@@ -76,7 +75,6 @@ def _doubled_area(a: Any, b: Any, c: Any) -> Any:
 
 
 def _divided(triangle: ComplexArray, n: int) -> ComplexArray:
-    """Return n² equal triangles, shape (n², 3)."""
     a, b, c = triangle
     first, second = (b - a) / n, (c - a) / n
     upright = [[i * first + j * second, 1.0] for i in range(n) for j in range(n - i)]

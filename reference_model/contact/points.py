@@ -1,7 +1,4 @@
-"""Friction of a contact in single points, each with a share of the load.
-
-The points turn with the disc, so the law depends on the angle φ.
-"""
+"""Friction of a contact in single points, which turn with the disc, so the law depends on the angle φ."""
 
 from __future__ import annotations
 
@@ -25,11 +22,10 @@ from reference_model.systems import (
 
 @dataclass(frozen=True, repr=False)
 class Points:
-    """Contact in points at any places, each with its share of the load.
+    """Contact in points at any positions, each with its share of the load.
 
-    ``places`` contains (x, y, share) of each point: its place in m relative to the disc's centre at φ = 0, and its
-    share of the load. There are at least two points at different places; shares are positive and sum to 1. Raises
-    ``ValueError`` otherwise.
+    ``places`` contains (x, y, share) of each point, in m relative to the disc's centre at φ = 0. Raises
+    ``ValueError`` unless at least two positions differ and the shares are positive and sum to 1.
     """
 
     places: Sequence[Place]
@@ -38,26 +34,22 @@ class Points:
         object.__setattr__(self, "places", checked_places("places", self.places))
 
     def __repr__(self) -> str:
-        """Return a short description, because a patch may have thousands of points."""
         return f"{type(self).__name__}({len(self.places)} places)"
 
     def __iter__(self) -> Iterator[Place]:
-        """Iterate over x (m), y (m) and share of all points."""
         return iter(self.places)
 
     @cached_property
     def shares(self) -> tuple[float, ...]:
-        """Share of the load of each point."""
         return tuple(share for _, _, share in self.places)
 
     @cached_property
     def _arms(self) -> tuple[complex, ...]:
-        """Places at φ = 0 as complex numbers, in m."""
         return tuple(complex(x, y) for x, y, _ in self.places)
 
     @cached_property
     def _seen_from(self) -> dict[int | None, tuple[_Friction, ...]]:
-        """For the points that were asked for, all others; for None, all points seen from the centre."""
+        """For each point requested so far all others, seen from it; for None all points, seen from the centre."""
         return {None: tuple((arm, arm.conjugate(), share) for arm, share in self._loaded)}
 
     @property
@@ -69,7 +61,6 @@ class Points:
         return cmath.exp(1j * angle) * self._arms[point]
 
     def arms(self, angle: float) -> list[complex]:
-        """Return the positions of all points relative to the centre, in m."""
         turn = cmath.exp(1j * angle)
         return [turn * arm for arm in self._arms]
 
@@ -136,12 +127,11 @@ class PointsOnRing(Points):
         super().__init__([(arm.real, arm.imag, 1.0 / points) for arm in around])
 
     def __repr__(self) -> str:
-        """Return radius and number of points."""
         return f"PointsOnRing(radius={self.radius!r}, points={self.points!r})"
 
 
 _Friction = tuple[complex, complex, float]
-"""Place of a point relative to the one that slips with a given velocity, conjugate of its arm, and its share."""
+"""Position of a point relative to the one whose slip is given, conjugate of its arm, and its share."""
 
 
 def _friction_of(

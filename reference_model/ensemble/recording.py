@@ -28,7 +28,7 @@ Runs = Callable[[Task, Checkpoints], Results]
 """Runs the trajectories of a task; takes room for the checkpoints of one of them."""
 
 ROOM_TO_SPARE = 64
-"""Initial room for checkpoints where phases begin, in addition to those for all times."""
+"""Initial room for checkpoints where phases begin."""
 
 ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration or of the unit of time, whichever is longer."""
@@ -41,9 +41,8 @@ STAGES = 12
 class Recording:
     """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
 
-    ``states``, shape (n, 4) or (n, 6), is filled as far as computed; ``duration`` and ``rounding`` of times are in s.
-    ``phases`` are (kind, start, state) so far. ``steps`` and ``evaluations`` are those of ``Solution`` so far,
-    including rejected steps and stick phases.
+    ``states``, shape (n, 4) or (n, 6), is filled as far as computed. ``phases`` are (kind, start, state) so far.
+    ``steps`` and ``evaluations`` include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
     """
 
     times: FloatArray
@@ -87,7 +86,7 @@ class Recording:
         return end
 
     def take(self, motion: Trajectory) -> None:
-        """Insert a part of the motion computed by the plain reference, at all requested times in its span."""
+        """Insert a part of the motion computed by the plain reference."""
         requested = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
         self.states[requested] = motion.states[np.searchsorted(motion.times, self.times[requested])]
         for phase in motion.phases:

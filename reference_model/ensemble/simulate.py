@@ -48,13 +48,12 @@ def simulate_ensemble(
     system
         Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
-        Initial states as in ``reference_model.simulate``, one per trajectory or one for all.
+        Initial states, one per trajectory or one for all.
     duration
         Duration in s, > 0.
     tolerance
-        Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. With 1e-9, of 4,000
-        states each of Figs. 5, 8, 9 and 11 after 100 s half have errors below 4e-9, 99 % below 1e-8, and one, of
-        Fig. 9, has 2e-7.
+        Target relative accuracy, as in ``reference_model.simulate``. With 1e-9, half of 4,000 states each of Figs. 5,
+        8, 9 and 11 after 100 s have errors below 4e-9, 99 % below 1e-8; the largest, of Fig. 9, is 2e-7.
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Parameters that differ between trajectories.
     early_end
@@ -87,7 +86,7 @@ def simulate_ensemble(
 
 
 def require_supported(system: System) -> None:
-    """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
+    """Raise ``ValueError`` naming the parameter if compiled code does not support a system."""
     if not system.linear_support:
         name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
         raise ValueError(
@@ -144,7 +143,6 @@ def _numbers(name: str, values: Any) -> FloatArray:
 
 
 def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
-    """Return the number of trajectories; the starts may be one for all."""
     sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
     n = max(sizes.values())
     for name, size in sizes.items():

@@ -1,4 +1,4 @@
-"""Trajectories to simulate in the form of compiled code, and their distribution to threads."""
+"""Trajectories in the form of compiled code, and their distribution to threads."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ LENGTH, RATE, STEP, SHORT, SPAN = range(5)
 """Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.
 
 They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
-and the length of an implicit step, all as in lanes.
+and the length of an implicit step.
 """
 
 PACE_SIZE = SPAN + 1
@@ -53,4 +53,4 @@ def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
         return
     with ThreadPoolExecutor(min(threads, len(firsts))) as pool:
         for _ in pool.map(lambda first: run(first, min(first + CHUNK, n)), firsts):
-            pass  # retrieves the result, so that an error is raised here
+            pass  # raises errors of the thread here

@@ -2,8 +2,7 @@
 
 The centre moves like a pin, with a force that also depends on the spin. The third component of the slip is r = κ(φ̇ −
 ω) with the radius of gyration κ = √(J/m). In (u, r), u = ż − iωz, the relative kinetic energy is m/2 times the
-squared length, so the length measures the slip of the whole disc. Friction is the gradient of −(μN/m)·P(u, S), with
-the mean slip speed P.
+squared length. Friction is the gradient of −(μN/m)·P(u, S), with the mean slip speed P.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ from reference_model.systems import DiscOnDisc
 class DiscMotion:
     """Eq. 19 divided by the mass, for the unknowns x, y, φ, u_x, u_y, r.
 
-    ``centre`` contains the equations for a pin at the centre, with ``friction`` g = μN/m; ``gyration`` is κ =
-    √(J/m) in m, ``shaft_rate`` b/J in 1/s, and ``lag`` κ(ω − Ω) in m/s. ``length`` is the unit of length of these
-    parameters, in the unit of length of ``contact``.
+    ``centre`` contains the equations for a pin at the centre, with ``friction`` g = μN/m; ``gyration`` is κ = √(J/m)
+    in m, ``shaft_rate`` b/J in 1/s, and ``lag`` κ(ω − Ω) in m/s. ``length`` is their unit of length in that of
+    ``contact``.
     """
 
     centre: SlipMotion
@@ -38,7 +37,6 @@ class DiscMotion:
 
     @classmethod
     def of(cls, disc: DiscOnDisc, contact: Contact) -> DiscMotion:
-        """Return the equations of motion of ``disc`` with the friction law ``contact``."""
         gyration = math.sqrt(disc.polar_inertia / disc.mass)
         return cls(
             SlipMotion.of(disc),

@@ -1,8 +1,8 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
 A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
-exceed its share. In this pivot phase it has one degree of freedom (:mod:`reference_model.motion.pivot`). If two
-points rest, the whole disc sticks.
+exceed its share: a pivot phase with one degree of freedom (:mod:`reference_model.motion.pivot`). If two points rest,
+the whole disc sticks.
 """
 
 from __future__ import annotations
@@ -79,7 +79,6 @@ class PointsBody(DiscBody):
         return t + speed / falling, come_to_rest(self.run, self.coordinates, t, speed / falling, y)
 
     def leave(self, y: list[float]) -> bool:
-        """Like :meth:`DiscBody.leave`; also if a single point becomes slow."""
         return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
 
     def leaving(self, motion: Coordinates) -> Leave:
@@ -92,7 +91,7 @@ class PointsBody(DiscBody):
         return lambda own: whole(motion.standard(np.array([own]).T)[:, 0].tolist())
 
     def _slow_point(self, y: Sequence[float]) -> int | None:
-        """Return the point that slips slowly and decelerates, or rests; None if there is none."""
+        """Return the point that slips slowly and decelerates, or rests."""
         u, turning = complex(y[3], y[4]), 1j * y[5] / (self.motion.gyration * self.motion.length)
         speeds = [abs(u + turning * arm) for arm in self.contact.arms(y[2])]
         slowest = min(speeds)
@@ -112,7 +111,6 @@ class PointsBody(DiscBody):
         return [*y[:3], y[5], v.real, v.imag]
 
     def _rest_on(self, i: int, t: float, y: Sequence[float]) -> bool:
-        """Make point ``i`` the pivot if its friction suffices; return whether it does."""
         holds = self.points[i].grip([*y[:3], y[5]]) > 0.0
         if holds:
             self.pivot = i
@@ -120,7 +118,6 @@ class PointsBody(DiscBody):
         return holds
 
     def _turn_about(self, i: int, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow the rotation about point ``i`` until its friction no longer suffices or the disc rests."""
         motion, own = self.pivoting[i], [*y[:3], y[5]]
         creep = self.creeping(motion, own)
         if creep is not None:
@@ -190,7 +187,6 @@ class PointsBody(DiscBody):
         return math.inf
 
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`DiscBody.begin_to_slip`: the disc slips, or pivots about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
             return super().begin_to_slip(t, y)

@@ -20,7 +20,6 @@ class Units:
 
     @property
     def speed(self) -> float:
-        """Unit of speed in m/s."""
         return self.length / self.time
 
     @classmethod
@@ -29,8 +28,7 @@ class Units:
 
         Time is scaled by the faster of springs and master disc; without them by the dampers, and without dampers by
         the decay of slip. Length is scaled by the motion of the centre, because a fast spin must not hide it.
-        Hardening and a stop shorten both units by the same factor if the motion may reach them, which leaves the unit
-        of speed unchanged.
+        Hardening and a stop shorten both units by the same factor if the motion may reach them.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
@@ -62,7 +60,6 @@ class Units:
         return system.natural_frequency * self.time
 
     def of_pin(self, motion: SlipMotion) -> SlipMotion:
-        """Return the equations of motion of a pin, or of a disc's centre, in these units."""
         return SlipMotion(
             damping=motion.damping * self.time,
             support=motion.support.scaled(self.time**2, self.length),
@@ -71,7 +68,6 @@ class Units:
         )
 
     def of_disc(self, motion: DiscMotion) -> DiscMotion:
-        """Return the equations of motion of a disc in these units."""
         return DiscMotion(
             centre=self.of_pin(motion.centre),
             gyration=motion.gyration / self.length,

@@ -37,7 +37,6 @@ class OnePoint:
 
     @property
     def at_once(self) -> OnePoint:
-        """The vectorised equations, for arrays of shape (k,)."""
         motion = self.motion.at_once
         return OnePoint(motion, cast(Points, motion.contact), self.point)
 
@@ -47,7 +46,6 @@ class OnePoint:
         return self.motion.centre.friction * self.contact.shares[self.point]
 
     def arm(self, angle: float) -> complex:
-        """Return the arm of the point at the disc's ``angle``."""
         return self.contact.arm(self.point, angle) / self.motion.length
 
     @property
@@ -56,7 +54,6 @@ class OnePoint:
         return max(1.0, abs(self.arm(0.0)) / self.motion.gyration)
 
     def velocity(self, unknowns: Sequence[float]) -> complex:
-        """Return the slip velocity of the point for the standard unknowns of the disc."""
         _, _, angle, ux, uy, r = unknowns
         return complex(ux, uy) + 1j * r / self.motion.gyration * self.arm(angle)
 
@@ -70,7 +67,6 @@ class OnePoint:
         return (*carried, spin_up + torque, acceleration.real, acceleration.imag)
 
     def pivoting_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, r while the point rests."""
         carried, spin_up, arm, free = self._without_friction(unknowns, 0j)
         torque = (arm.conjugate() * self._holding(arm, free)).imag / self.motion.gyration
         return (*carried, spin_up + torque)
@@ -116,7 +112,6 @@ class OnePoint:
         return lacking * self.most * left * math.hypot(1.0, leverage)
 
     def slipping(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates for slip of the point."""
         slow = thresholds.slow_slip * self.most
         passing = CLOSE * self.contact.spacing(self.point) / self.motion.length / self.motion.gyration
 
@@ -127,7 +122,6 @@ class OnePoint:
         return Coordinates(self.slipping_rates, many, 2, slow_slip, turning=3, **self._common)
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates of the disc that turns about the resting point, with the slip r."""
         slow, many = thresholds.slow_slip * self.motion.centre.friction, self.at_once.pivoting_rates
         return Coordinates(
             self.pivoting_rates,
@@ -145,7 +139,6 @@ class OnePoint:
         return {"pace": self.motion.pace, "standard": self._standard, "angle": 2, "surfaces": surfaces}
 
     def _standard(self, unknowns: FloatArray) -> FloatArray:
-        """Return the standard unknowns of the disc, shape (6, n), for these, shape (4 or 6, n)."""
         x, y, angle, r = unknowns[:4]
         v = unknowns[4] + 1j * unknowns[5] if len(unknowns) == 6 else 0.0
         u = v - 1j * r / self.motion.gyration * self.arm(0.0) * np.exp(1j * angle)
@@ -158,7 +151,7 @@ class OnePoint:
     def _without_friction(
         self, unknowns: Sequence[float], v: complex
     ) -> tuple[tuple[float, float, float], float, complex, complex]:
-        """Return the rates of x, y, φ, the rate of r, the arm and B, all without the friction of this point."""
+        """Return the rates of x, y, φ, the rate of r, the arm and B, without the friction of this point."""
         x, y, angle, r = unknowns[:4]
         motion, kappa = self.motion, self.motion.gyration
         omega, g = motion.centre.disc_speed, motion.centre.friction

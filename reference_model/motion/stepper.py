@@ -21,13 +21,13 @@ Sampler = Callable[[FloatArray], FloatArray]
 """Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
 
 STABLE = 3.0
-"""Step times largest decay rate where stability begins to limit DOP853; the limit is 6."""
+"""Product of step and largest decay rate where stability begins to limit DOP853; the limit is 6."""
 
 STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Change of slip (relative) plus time (in T) of the longest short step."""
+"""Relative change of slip plus time (in T) of the longest short step."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
@@ -56,12 +56,12 @@ class StepError(SimulationError):
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between descriptions of the motion; results must not depend on them.
+    """Thresholds between descriptions of the motion, which results do not depend on.
 
     Parameters
     ----------
     slow_slip
-        Upper limit of slow slip, in g·T (T: unit of time), which is described in slip-polar coordinates.
+        Upper limit of slow slip, in g·T (T: unit of time), which uses slip-polar coordinates.
     stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time
@@ -69,8 +69,8 @@ class Thresholds:
     reversal_slip
         Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
     common_rest
-        Slip speed, in units of length per T, below which all points of a disc rest together, and which a point at
-        rest must be able to gain before the disc rests in order to slip.
+        Slip speed, in units of length per T, below which all points of a disc rest together. A point slips from rest
+        only if it can gain this speed before the disc rests.
     series
         Size of the last terms of the initial series of slip.
     safety
@@ -92,8 +92,8 @@ class Run:
     """A simulation from t = 0 on, in scaled times and unknowns.
 
     ``times``, shape (n,), are the requested times, the first of them 0. Half of the ``unknowns`` are relative
-    velocities. ``seconds`` converts a scaled time to s, ``tolerance`` is the requested one, and ``springs`` the
-    natural frequency in 1/T. The run ends if a slip phase lasts for ``slipping``.
+    velocities. ``seconds`` converts a scaled time to s, and ``springs`` is the natural frequency in 1/T. The run ends
+    if a slip phase lasts for ``slipping``.
     """
 
     times: FloatArray
@@ -104,10 +104,10 @@ class Run:
     springs: float
     slipping: float = math.inf
     motion: FloatArray = field(init=False)
-    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
+    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)
     evaluations: int = 0
     patience: int = PATIENCE
-    recorded: int = 0  # number of times
+    recorded: int = 0
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
@@ -118,11 +118,10 @@ class Run:
 
     @property
     def steps(self) -> int:
-        """Number of steps taken."""
         return self._count.steps
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
-        """Begin a phase of this kind, unless it is the current kind."""
+        """Begin a phase unless it is of the current kind."""
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
             self.end = min(t + (self.slipping if kind == "slip" else math.inf), float(self.times[-1]))
@@ -140,7 +139,6 @@ class Run:
             )
 
     def count_step(self, since: float) -> None:
-        """Count one more step, from ``since``; raise ``SimulationError`` if there are or will be too many."""
         if too_many := self._count.count(since):
             raise SimulationError(
                 f"stopped at t = {self.seconds(since):g} s because {too_many}: the parameters are very stiff, or the "
@@ -148,11 +146,9 @@ class Run:
             )
 
     def pending(self, t: float) -> bool:
-        """Return whether a requested time before or at ``t`` is not yet recorded."""
         return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
     def record(self, until: float, sample: Sampler) -> None:
-        """Store the motion at the times up to ``until`` that are not yet recorded."""
         stop = int(np.searchsorted(self.times, until, side="right"))
         if stop > self.recorded:
             self.motion[self.recorded : stop] = sample(self.times[self.recorded : stop]).T
@@ -163,8 +159,7 @@ class SwitchingSurface(NamedTuple):
     """A surface of continuous but not smooth rates.
 
     ``value`` takes the unknowns and changes sign on the surface. ``trend`` takes the unknowns and their rates and
-    returns a number with the sign of the rate of ``value``, which detects steps that cross the surface and come
-    back.
+    returns a number with the sign of the rate of ``value``, which detects steps that cross the surface and come back.
     """
 
     value: Callable[[list[float]], float]
@@ -178,12 +173,10 @@ class SwitchingSurface(NamedTuple):
 class Stepper:
     """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
-    Across such a surface an error estimate is unreliable, so a step that has crossed one is repeated up to it. The
-    method is explicit, or implicit collocation.
-
-    ``rates`` takes one state if explicit, and is vectorised if implicit. ``y`` are the initial unknowns, and
-    ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the
-    first step to try.
+    The error estimate of a step across such a surface is unreliable, so the step is repeated up to it. ``rates``
+    takes one state for the explicit method, and is vectorised for collocation. ``y`` are the initial unknowns, and
+    ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the first
+    step to try.
     """
 
     def __init__(
@@ -207,27 +200,23 @@ class Stepper:
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond it
         self._usual_step = math.inf
-        self._since = 0.0  # time before the last step
+        self._since = 0.0
         self._start(span[0], np.array(y), self._end, first_step)
 
     @property
     def t(self) -> float:
-        """Current time or stretched time."""
         return float(self._solver.t)
 
     @property
     def y(self) -> FloatArray:
-        """Current unknowns."""
         return np.asarray(self._solver.y)
 
     @property
     def rates(self) -> FloatArray:
-        """Current rates."""
         return np.asarray(self._solver.f)
 
     @property
     def settled(self) -> bool:
-        """True if the implicit method has found its step size."""
         return isinstance(self._solver, Radau) and self._solver.settled
 
     def stiff_for_long(self, change: float) -> bool:

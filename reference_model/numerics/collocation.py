@@ -1,8 +1,8 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
-the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). The polynomial is as accurate between
-the nodes as at its end. SciPy's ``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). It is as accurate between the nodes as
+at the end. SciPy's ``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
 """
 
 from __future__ import annotations
@@ -65,8 +65,7 @@ RatesAt = Callable[[FloatArray], FloatArray]
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes by differences, shape (NODES, n, n).
 
-    ``values`` are the unknowns, ``found`` their rates, and ``changes`` those of the unknowns, each of shape (NODES,
-    n).
+    ``values`` are the unknowns, ``found`` their rates, and ``changes`` those of the unknowns, all (NODES, n).
     """
     nodes, n = values.shape
     moved = values[:, np.newaxis] + changes[:, np.newaxis] * np.eye(n)
@@ -108,9 +107,8 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 class Radau:
     """Steps by collocation, with an interface like that of SciPy's solvers.
 
-    ``y``, shape (n,), are the unknowns at ``t``, ``end`` is the final time, and ``first_step`` the first step to
-    try. ``tolerated`` takes the unknowns and returns the allowed errors of a step. ``scales`` serve differences and
-    Newton's method.
+    ``y``, shape (n,), are the unknowns at ``t``, and ``end`` is the final time. ``tolerated`` takes the unknowns and
+    returns the allowed errors of a step.
     """
 
     def __init__(

@@ -43,8 +43,7 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the global interpreter lock. ``package`` is the folder of all sources that are compiled into it,
-    and ``kinds`` contains the compiled functions by the types of their arguments.
+    It runs without the global interpreter lock. ``package`` is the folder of all sources that are compiled into it.
     """
 
     def __init__(self, function: Callable[..., None], package: Path) -> None:
@@ -54,7 +53,7 @@ class CompiledOnce:
         digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
-        """Call the function; a call with new argument types first compiles it or loads it from disk."""
+        """Call the function, compiled or loaded for new argument types."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
@@ -134,7 +133,7 @@ def _delete_old(place: Path, package: Path) -> None:
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes, which is released when its owner ends. Without locks work may be done twice."""
+    """Hold a lock between processes, which ends with its owner. Without locks work may be done twice."""
     with ExitStack() as held:
         with suppress(OSError, NameError):
             file = held.enter_context(lock.open("w"))

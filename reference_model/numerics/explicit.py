@@ -1,7 +1,7 @@
 """Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
-Each stage is one matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control
-and interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
+Coefficients, step control and interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential
+Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations
@@ -38,8 +38,7 @@ class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     """Steps of the method, with the interface of SciPy's solvers.
 
     ``y``, shape (n,), are the unknowns at ``t`` and ``end`` > t is the final time. ``first_step`` None chooses a
-    step. ``tolerated`` takes the unknowns and returns the allowed errors of a step, shape (n,). ``most`` is the
-    longest step.
+    step. ``most`` is the longest step.
     """
 
     t: float

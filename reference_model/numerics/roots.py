@@ -28,8 +28,8 @@ def zeros_between(function: Callable[[float], float], left: float, right: float)
     """Return the zeros of a continuous ``function`` on [left, right] in increasing order.
 
     A zero shows as a change of sign between two of the :func:`nodes_between`, or as one of a pair in a dip towards
-    zero whose bottom is then searched for. Only two dips between three neighbouring nodes could hide zeros.
-    Neighbouring nodes that are zeros count as one zero.
+    zero. Only two dips between three neighbouring nodes could hide zeros. Neighbouring nodes that are zeros count as
+    one zero.
     """
     return sorted(set(_zeros(function, nodes_between(left, right).tolist())))
 
@@ -77,7 +77,6 @@ def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
 
 
 def _bottom(function: Callable[[float], float], left: float, right: float, sign: float) -> float:
-    """Return the minimum of ``sign`` times ``function``, to 1e-9 of the interval."""
     found = minimize_scalar(
         lambda x: sign * function(x),
         bounds=(left, right),

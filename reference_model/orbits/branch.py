@@ -23,11 +23,8 @@ def whirl_branch(
     """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
 
     Each orbit is predicted from the two before it, for a relative decrease of x by at most ``step``, down to
-    ``until`` > 0 in m. If Newton's method fails, the step is halved. The load may rise or fall along the branch,
-    and stick phases may appear. Engine and tolerance are those of ``orbit``; trajectories have ``samples``
-    intervals.
-
-    Raises ``RuntimeError`` if the branch breaks off, so that even a step of ``step``/64 finds no orbit.
+    ``until`` > 0 in m. The step is halved if Newton's method fails. The load may rise or fall along the branch, and
+    stick phases may appear. Raises ``RuntimeError`` if even a step of ``step``/64 finds no orbit.
     """
     seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
     before, last = None, orbit
@@ -55,7 +52,6 @@ def whirl_branch(
 
 
 def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
-    """Return a guess for the orbit at the crossing ``x`` by linear extrapolation."""
     ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
     load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
     return replace(
@@ -76,10 +72,9 @@ def last_whirl(
 ) -> Orbit:
     """Return the whirl at the smallest load with a whirl: the fold of the branch.
 
-    There the whirl meets the unstable whirl that separates it from the other motions. The paper does not give this
-    load. The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the
-    crossing x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
-    before it folds.
+    There the whirl meets the unstable whirl that separates it from the other motions. The branch is followed from the
+    load of ``system`` towards the axis, to the minimum of the load over the crossing x. Arguments and errors are
+    those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before it folds.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

@@ -65,8 +65,8 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
     Raises ``ValueError`` if there is no equilibrium, none of the shocks tried leads to the whirl, or there is no
-    saddle orbit with a stick phase between the two; ``RuntimeError`` if the boundary is not in the stable set of
-    that orbit.
+    saddle orbit with a stick phase between the two; ``RuntimeError`` if the boundary is not in the stable set of that
+    orbit.
     """
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
@@ -99,9 +99,8 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 def by_bisection(shock: Shock) -> float:
     """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, from end states.
 
-    The relative error is ``FINE``. The search covers 0.9 to 1.15 times the size of ``shock``.
-
-    Raises ``ValueError`` if the end state does not change in this range.
+    The relative error is ``FINE``. Raises ``ValueError`` if the end state does not change between 0.9 and 1.15 times
+    the size of ``shock``.
     """
     pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
     low, high = (
@@ -124,7 +123,6 @@ def _rest(pin: PinOnDisc) -> FloatArray:
 
 
 def _shocks(angles: float | FloatArray) -> FloatArray:
-    """Return changes of the state by shocks of 1 m/s, shape (n, 4)."""
     angles = np.atleast_1d(angles)
     zero = np.zeros_like(angles)
     return np.column_stack((zero, zero, np.cos(angles), np.sin(angles)))
@@ -138,7 +136,7 @@ def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatAr
 
 
 def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each angle two sizes that bracket the onset of the whirl; inf if none of the sizes leads there."""
+    """Return for each angle two sizes that bracket the onset of the whirl; inf if none leads there."""
     reach = abs(pin.disc_speed) * max(
         abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
     )
@@ -155,7 +153,7 @@ def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tu
 def _bisected(
     pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
 ) -> FloatArray:
-    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``; inf where these are inf."""
+    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``."""
     sizes = np.full(len(angles), math.inf)
     there = np.flatnonzero(np.isfinite(high))
     low, high, angles = low[there].copy(), high[there].copy(), angles[there]

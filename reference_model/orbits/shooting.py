@@ -1,7 +1,7 @@
 """Periodic orbits by shooting, with any engine's ``simulate``.
 
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
-offset the system is isotropic, and a motion may recur up to a rotation about the axis.
+offset a motion may recur up to a rotation about the axis.
 
 Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 return maps, each a simulation, to fail
 without an orbit near the guess, compared with 10 to 16 here.
@@ -58,7 +58,7 @@ ABOVE_NOISE = 10.0
 """Largest residual over an engine's precision, if that is more: a residual contains its noise several times."""
 
 SLOW = 0.3
-"""Share of the residual that may be left after an iteration before the derivatives are computed again."""
+"""Share of the residual that may remain after an iteration without new derivatives."""
 
 FARTHEST_PERIOD = 0.5
 """Largest relative change of the period of an orbit near the guess."""
@@ -85,11 +85,11 @@ class ShootingProblem:
         return max(CONVERGED, ABOVE_NOISE * self.precision)
 
     def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
-        """Return the unknowns of the motion that starts from ``state``, shape (4,) or (6,)."""
+        """Return the unknowns of the motion from ``state``, shape (4,) or (6,)."""
         return np.array([*without_angle(state), period, load, turn])
 
     def start(self, unknowns: FloatArray) -> FloatArray:
-        """Return the initial state for ``unknowns``, shape (4,) or (6,), with the angle zero."""
+        """Return the initial state, shape (4,) or (6,), with the angle zero."""
         part = unknowns[:PERIOD]
         return np.insert(part, 2, 0.0) if isinstance(self.system, DiscOnDisc) else part.copy()
 
@@ -138,10 +138,10 @@ class ShootingProblem:
 class Orbit:
     """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
-    ``state``, shape (4,) or (6,), is the initial state. It lies on the x axis, y = 0, unless the guess started
-    elsewhere; the angle of a disc is zero. ``period`` is in s. ``residual`` is the distance between start and end,
-    relative to the size of the orbit, and ``problem`` its return map. ``turn`` is the rotation of the motion about
-    the axis in a period, in rad, including whole turns; 0 if it recurs without rotation.
+    ``state``, shape (4,) or (6,), is the initial state, on the x axis unless the guess started elsewhere; the angle
+    of a disc is zero. ``period`` is in s. ``residual`` is the distance between start and end, relative to the size of
+    the orbit. ``turn`` is the rotation of the motion about the axis in a period, in rad, including whole turns; 0 if
+    it recurs without rotation.
     """
 
     system: System
@@ -170,8 +170,7 @@ class Orbit:
     def from_the_right(self) -> Orbit:
         """Return the same orbit, started at the sample with the largest x.
 
-        It crosses its own y at a right angle there. So it is a guess for the next orbit whether or not they cross the
-        x axis.
+        It crosses its own y at a right angle there, so it is a guess for the next orbit even away from the x axis.
         """
         states = self.trajectory.states
         state = self.problem.start(np.array([*without_angle(states[np.argmax(states[:, 0])]), 0.0, 0.0, 0.0]))
@@ -190,7 +189,7 @@ class Orbit:
     def multipliers(self) -> tuple[complex, ...]:
         """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
 
-        One of them is 1, for a shift in time; if the motion recurs up to a rotation, so is a second one.
+        One is 1, for a shift in time, and a second one if the motion recurs up to a rotation.
         """
         multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))

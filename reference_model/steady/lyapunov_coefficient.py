@@ -35,11 +35,11 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
     """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
     The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. So a cycle of the
-    amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on
-    the x axis; ``contact`` None means the law of the parameters.
+    amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on the
+    x axis.
 
-    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, the disc rests on single
-    points, or its support is not linear.
+    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, or the disc rests on single
+    points or a nonlinear support.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the modulation")
@@ -80,10 +80,7 @@ def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
 
 
 def _real_cubic_coefficient(rates: Rates) -> float:
-    """Return Re c at the origin, with z such that the first component deviates by Re z: half of (5.62) in Kuznetsov.
-
-    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are not a complex pair.
-    """
+    """Return Re c at the origin for z whose real part is the first component: half of (5.62) in Kuznetsov."""
     origin = np.zeros(SIZE)
     at_origin = rates(origin)
     step = 1e-2 * STEP

@@ -31,7 +31,7 @@ class SelfCentredEquilibrium:
     """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
 
     The position ``x``, ``y`` is in m. ``eigenvalues`` are in 1/s, slowest decay first: four for a pin, five for a
-    disc, whose angle drops out. The equilibrium is ``stable`` if all small deviations decay.
+    disc, without its angle. The equilibrium is ``stable`` if all small deviations decay.
     """
 
     x: float
@@ -62,9 +62,8 @@ class Whirl:
     """A motion on a circle about the axis with permanent slip (11).
 
     ``radius`` is in m, ``frequency`` in rad/s, negative if clockwise. ``eigenvalues`` are in 1/s in the frame that
-    turns with the whirl: first the exact zero of the free phase, then the others, slowest decay first: three for a
-    pin, four for a disc, whose angle drops out. The whirl is ``stable`` if all small deviations decay, apart from a
-    shift in phase.
+    turns with the whirl: first the exact zero of the free phase, then three for a pin or four for a disc, slowest
+    decay first. The whirl is ``stable`` if all small deviations decay, apart from a shift in phase.
     """
 
     radius: float
@@ -117,23 +116,22 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one: that of (3) if μN < C·|X0| and ω ≠ 0. It has none
+    A pin has at most one: that of (3). It has none
 
     - if μN >= C·|X0|, which includes X0 = 0; at equality the pin would stick on the axis;
     - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring
-    it is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² +
-    (μN·F)² = (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. If X0 = 0,
-    C = 0 or ω = 0 the disc spins about a centre without slip. If b = 0 and ω = Ω it behaves like a pin. It has none
+    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring it
+    is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² + (μN·F)² =
+    (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. It has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0²
-    with the deflection d at the force μN·F. :func:`why_no_equilibrium` returns the condition that fails.
+    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
+    the deflection d at the force μN·F.
 
     ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` if a disc
     rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as the rim of a
@@ -185,13 +183,11 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     - if C = 0: nothing holds the pin on a circle.
 
     A disc may have several, the largest first, all with the pin's frequency ±k and smaller than the pin's. The same
-    conditions hold, and the load must reach :func:`smallest_load_with_whirl`. :func:`why_no_whirl` returns the
-    condition that fails.
+    conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
-    On a nonlinear support the frequency grows with the circle. The pin's circle has the speed μN/β, see
-    :func:`reference_model.formulas.pin.whirl_radius`. It is a whirl if the disc turns faster; otherwise, and if β =
-    0, the pin finally sticks. The circles of a disc are smaller and slower, because its friction acts only partly
-    along the circle, so a disc may have whirls where a pin sticks.
+    On a nonlinear support the frequency grows with the circle. The pin's circle, with the speed μN/β, is a whirl if
+    the disc turns faster; otherwise, and if β = 0, the pin finally sticks. The circles of a disc are smaller and
+    slower, because its friction acts only partly along the circle, so a disc may have whirls where a pin sticks.
 
     Raises ``ValueError`` if the offset is not zero, where the orbit is not a circle about the axis; otherwise
     arguments and errors are those of :func:`self_centred_equilibria`.
@@ -237,10 +233,7 @@ def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWh
 
 
 def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) -> str | None:
-    """Return the condition that fails if :func:`self_centred_equilibria` finds none; else None.
-
-    Parameters and errors are those of :func:`self_centred_equilibria`.
-    """
+    """Return the condition that fails if :func:`self_centred_equilibria` finds none; else None."""
     if self_centred_equilibria(system, contact):
         return None
     if isinstance(system, PinOnDisc):
@@ -263,10 +256,7 @@ def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) 
 
 
 def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str | None:
-    """Return the condition that fails if :func:`whirls` finds none; else None.
-
-    Parameters and errors are those of :func:`whirls`.
-    """
+    """Return the condition that fails if :func:`whirls` finds none; else None."""
     if whirls(system, contact):
         return None
     if isinstance(system, PinOnDisc):
@@ -288,13 +278,11 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    The balances of a whirl give its load in closed form for each ratio of slip to rim speed, see
-    :func:`reference_model.formulas.disc.whirl_at`. The smallest of these loads belongs either to a whirl of zero
-    radius, where it is :func:`reference_model.steady.stability.onset_load`, or to a fold, where two whirls meet.
+    It is the smallest load of :func:`reference_model.formulas.disc.whirl_at` over all ratios: either that of a whirl
+    of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold, where two whirls meet.
 
-    The result does not depend on ``friction_force``. ``contact`` None means the law of the parameters. Raises
-    ``ValueError`` if whirls do not exist at any load, see :func:`whirls`, or if the support is not linear, where
-    whirls may begin and end at several loads.
+    The result does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at any load, or if
+    the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)

@@ -45,14 +45,12 @@ def _layout(state_size: int) -> np.dtype[Any]:
 
 @inlined
 def recorded(settings: Any) -> bool:
-    """Return whether checkpoints are requested."""
     requested: bool = settings.checkpoints.size > 0
     return requested
 
 
 @scalar
 def next_requested(memory: Any, settings: Any) -> float:
-    """Return the next requested time in units, or inf."""
     if memory.passed < settings.checkpoints.size:
         requested: float = settings.checkpoints[memory.passed].requested * memory.rate
         return requested

@@ -1,10 +1,9 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
-Both are resistances, as shares of μN, to slip of the centre and of the rim (the moment over R). Times the speeds they
-give the mean slip speed P.
+Both are resistances, as shares of μN, to slip of the centre and of the rim (the moment over R).
 
-The ring's are complete elliptic integrals by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the
-smaller over the larger of U = |u| and the rim's |W|, and c the halved differences of a and g::
+Those of the ring are complete elliptic integrals by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With
+k the smaller over the larger of U = |u| and the rim's |W|, and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
@@ -77,7 +76,7 @@ def points_shares(
 ) -> tuple[float, float, float, float]:
     """Return the resistances along x, y and the rim, and the mean slip speed, of points on a ring.
 
-    ``around`` contains (cos, sin) of each point in sequence. A point at rest contributes nothing. Compiled code only.
+    ``around`` contains (cos, sin) of each point in sequence. A point at rest contributes nothing.
     """
     raise NotImplementedError
 

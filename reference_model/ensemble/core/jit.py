@@ -50,7 +50,6 @@ def written_out(function: Function) -> Function:
 
 
 def called_from_python(function: Callable[..., None]) -> CompiledOnce:
-    """Compile ``function`` as one that Python calls."""
     return CompiledOnce(function, SOURCES)
 
 

@@ -1,8 +1,7 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
 Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
-inlined functions of numbers and tuples. The step is also compiled for one lane, because a single trajectory would pay
-for all.
+inlined functions of numbers and tuples. The step is also compiled for one lane, for single trajectories.
 
 A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
 release, the end), which scalar code handles. Results are the same bit by bit in every lane and next to any others.
@@ -24,7 +23,7 @@ from reference_model.systems import FloatArray
 
 
 class _Lanes(Protocol):
-    """The motion ``now`` and after the ``trial`` step, and a flag that is positive if a lane needs attention."""
+    """The motion ``now`` and after the ``trial`` step, and a flag that is positive at an event."""
 
     now: Any
     trial: Any
@@ -69,9 +68,8 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both
-    are zeros. ``kind`` contains properties for the compiler. ``settings`` is passed often and should contain few
-    arrays.
+    ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
+    ``kind`` contains properties for the compiler.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)

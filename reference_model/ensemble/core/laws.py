@@ -98,7 +98,7 @@ def ring_friction(
 def points_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return the friction of points, like :func:`ring_friction`; computed in the frame of the disc."""
+    """Return the friction of points, like :func:`ring_friction`, computed in the frame of the disc."""
     c, s = turned(angle)
     fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
     return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
@@ -140,8 +140,8 @@ def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
 
     Its pull has a constant part p = k²|X0| and a part q, proportional to the radius, that turns with the pin. Once
     per turn they add up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the
-    resulting slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >=
-    4K: see ``pin.slip.creeps_steadily``.
+    slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >= 4K: see
+    ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)

@@ -1,7 +1,7 @@
 """Records: the data of a lane, by name.
 
-For the compiler all fields have constant offsets from one address, so it sees that no two rows overlap and can
-vectorise loops over lanes. An array of rows or a tuple of arrays would take four times as long.
+All fields have constant offsets from one address, so the compiler sees that rows do not overlap and can vectorise
+loops over lanes. An array of rows or a tuple of arrays would take four times as long.
 """
 
 from __future__ import annotations
@@ -34,7 +34,6 @@ class Rows(Generic[Numbers]):
     """A field with the numbers of a named tuple per lane: a row for each of them, under its name."""
 
     def __getattr__(self, name: str) -> FloatArray:
-        """Return a row; compiled code only, like everything about rows."""
         raise NotImplementedError
 
 
@@ -46,7 +45,6 @@ def layout(record: type) -> np.dtype[Any]:
 
 
 def _placed(hint: Any) -> tuple[Any, ...]:
-    """Return type and shape of a field."""
     if get_origin(hint) is Annotated:
         return np.float64, (get_args(hint)[1],)
     if get_origin(hint) is Rows:
@@ -71,11 +69,10 @@ def fill(record: Any, numbers: Any) -> None:
 
 
 def clear(record: Any) -> None:
-    """Set all fields to zero; compiled code only."""
     raise NotImplementedError
 
 
-# All are unrolled over the fields of the record, because a loop would need to access fields by number.
+# They are unrolled over the fields of the record, because a loop would need to access fields by number.
 
 
 @overload(at, jit_options=INLINED, strict=False)

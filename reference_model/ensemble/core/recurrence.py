@@ -14,7 +14,7 @@ ACCURACY = 1e-4
 """Relative distance that may remain when a motion counts as converged."""
 
 STILL = 1e-2
-"""Distance between crossings, as a fraction of the distance allowed by ACCURACY, that is only noise."""
+"""Distance between crossings, as a fraction of that allowed by ACCURACY, that is only noise."""
 
 NO_WINDOW = 0
 """Kind of a window that measures nothing."""
@@ -72,18 +72,15 @@ def converged(last: float, before: float, first: float, scale: float) -> bool:
 
 @inlined
 def open_window(window: Window, kind: int, t: float, way: float, radius: float) -> None:
-    """Begin to measure."""
     window.kind, window.since, window.way = kind, t, way
     window.least, window.largest = radius, radius
 
 
 @inlined
 def see_radius(window: Window, radius: float) -> None:
-    """Include a radius in the window."""
     window.least, window.largest = min(window.least, radius), max(window.largest, radius)
 
 
 @inlined
 def measured(window: Window, t: float, way: float) -> Measures:
-    """Return the measures of the window up to the time ``t``."""
     return Measures(window.least, window.largest, (way - window.way) / (t - window.since))

@@ -1,7 +1,7 @@
 """Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
 
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff. An implicit method for all nodes of a step
-(:mod:`.core.stepping.implicit`) follows it until an explicit one can.
+Slip grows like ½κt² with its direction slaved to the pull, which is stiff. The implicit method of
+:mod:`.core.stepping.implicit` follows it until an explicit one can.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def grown(
     of zero means that the motion could not be resolved.
     """
     carried = 1j * law.disc_speed
-    change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time
+    change = -(law.stiffness + (law.damping + carried) * carried) * carried * z
     gain = (n.conjugate() * change).real
     along = np.array((n.real, n.imag, turning))
     start, rate = zeros(3), zeros(3)
@@ -64,7 +64,7 @@ def grown(
         there = position_after(z, w, step, law)
         goes = (complex(w[-1, 0], w[-1, 1]) * there.conjugate()).real
         if goes * outward < 0.0:
-            break  # ends at an extreme of the radius, which must be recorded
+            break  # at an extreme of the radius, which must be recorded
         z, outward = there, goes
         for j in range(NODES):
             turn += step * INTEGRAL[-1, j] * w[j, 2]
@@ -82,7 +82,6 @@ def grown(
 
 @scalar
 def _last_terms(f: FloatArray) -> float:
-    """Return the largest of the last two coefficients of the polynomials through ``f``."""
     largest = 0.0
     for row in (NODES - 2, NODES - 1):
         for k in range(3):

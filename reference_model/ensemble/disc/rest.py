@@ -1,7 +1,7 @@
 """End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
 A disc on a ring sticks as a whole, and its centre like a pin with the friction that the shaft's moment leaves. Stick
-is permanent if the pull never exceeds this friction (eq. 7), which is exact.
+is permanent if the pull never exceeds this friction (eq. 7).
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, set
 def _creeps_out(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
+    """End the trajectory of a disc that slips ever more slowly forever, if so; return whether it does.
 
-    This is possible only if its pull just rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
+    This requires a pull that only rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
     """
     s, left = slip_left(lanes, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
@@ -99,7 +99,6 @@ def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, se
 def points_slow(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Hand over a disc on points if it or one of its points is about to rest."""
     s, left = slip_left(lanes, lane)
     slow = s < NEAR_REST * law.friction
     if slow and _creeps_out(lanes, memory, lane, law, settings):
@@ -114,7 +113,6 @@ def points_slow(
 def points_rest(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Hand over a disc on points that rests."""
     memory.end = HANDED_OVER
     return True
 
@@ -126,7 +124,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:
         return True
-    memory.checks.count = memory.turns.count = 0  # discard earlier values
+    memory.checks.count = memory.turns.count = 0
     friction = held_friction(law)
     held = stuck_for(z, friction, law)
     if held == math.inf:
@@ -162,7 +160,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
 
 @scalar
 def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Return whether a point of contact slips slowly, decelerates, and could be held at rest."""
+    """Return whether a contact point slips slowly, decelerates, and could be held at rest."""
     _, _, ux, uy, r, angle, _, _ = state_at(lanes.trial, lane)
     k = rates_at(lanes.trial, lane)
     most = law.friction / (len(law.around) // 2)

@@ -51,7 +51,6 @@ def ring_rates(y: Tuple, law: DiscLaw) -> Tuple:
 
 @inlined
 def points_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Return the rates of a disc on points, like :func:`ring_rates`."""
     return _rates(y, law, points_friction(y[2], y[3], y[4], y[5], law))
 
 
@@ -98,7 +97,7 @@ def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
 
 @inlined
 def centre_of(law: DiscLaw, held: float) -> PinLaw:
-    """Return the pin that sticks exactly where the disc on a ring does; ``held`` is its friction."""
+    """Return the pin with the friction ``held`` that sticks exactly where the disc on a ring does."""
     return PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0)
 
 

@@ -40,7 +40,6 @@ def simulate_pins(
 
 
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    """Record the motion of a pin from ``state`` on."""
     local = tolerance_of_steps(tolerance)
 
     def run(task: Task, checkpoints: Checkpoints) -> Results:

@@ -1,40 +1,37 @@
-"""Criteria for a pin's end state during its motion, and their justification.
+"""Criteria for a pin's end state during its motion.
 
 Permanent stick
-    In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside slips once
-    per turn. If k > |ω| and it moves inward in a turn by less than the remaining distance, it creeps forever and
-    counts as stuck (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping
-    prevents it from overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while
-    slip is along the pull (``slip.creeps_slaved``).
+    In the frame of the disc, the pull that friction must balance is the sum of a constant k²X₀ and a turning part of
+    size q. Friction holds it permanently if k²|X₀| + q <= g = μN/m (eq. 7), which is exact. A pin slightly outside
+    slips once per turn. It creeps forever if k > |ω| and it moves inward per turn by less than the remaining distance
+    (``laws.creeps_by_turns``). Without offset it slips ever more slowly if damping prevents overshoot
+    (``slip.creeps_steadily``), also while slip is along the pull (``slip.creeps_slaved``). Both count as stuck.
 
 Self-centred
-    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
-    trajectories have the same parameters, ``trapping`` finds it. Otherwise it follows from an estimate. With the
-    deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
+    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. For equal
+    parameters of all trajectories ``trapping`` finds it. Otherwise it is estimated. With the deviations ξ along the
+    radius of the equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
 
     where c = β/m, s* = |ω|ρ*, and R is the nonlinear part of the direction of slip, |R| <= g·(|δw|/s*)² for |δw| <=
     s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) for each
-    oscillator, except for coupling and R, which :func:`equilibrium_region` bounds. It is small and reached late.
+    oscillator, except for coupling and R, which :func:`equilibrium_region` bounds.
 
 Whirl
-    Every closed orbit crosses the section where x is largest once per turn. If all trajectories have the same
-    parameters, the orbit and a neighbourhood that its return map contracts are known beforehand (``trapping``).
-    Otherwise the crossings must converge: if d is the distance between the last two and q the larger of its last
-    two ratios, d·q/(1 − q) remains, and must be below ACCURACY times the speed at the crossing, which would vanish
-    at an equilibrium. Distances that are only noise also count, as long as they do not grow. Because a motion may
-    come close to an unstable orbit and leave it later, the orbit must also attract, and be as close by the
-    derivative of the return map (``stability``).
+    Every closed orbit crosses the section where x is largest once per turn. For equal parameters ``trapping`` finds
+    the orbit and a neighbourhood that its return map contracts. Otherwise the crossings must converge: with the
+    distance d of the last two and the larger q of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY
+    times the speed at the crossing. Distances that are only noise also count if they do not grow. A motion may pass
+    close to an unstable orbit, so the orbit must also attract, and be as close by the derivative of the return map
+    (``stability``).
 
 Stick-slip
-    The distance from the axis at a release determines the state of a pin. So the change of that distance is judged
-    like the crossings above. Convergence shows that the cycle attracts, because a motion cannot leave it in another
-    direction.
+    The distance from the axis at a release determines the state of a pin, so the change of that distance is judged
+    like the crossings above.
 
-A motion that meets none of these criteria by the end stays undecided, for example without damping or friction, or
-close to a basin boundary.
+A motion that meets none of these criteria stays undecided, for example without damping or friction, or close to a
+basin boundary.
 """
 
 from __future__ import annotations
@@ -65,7 +62,7 @@ NOTHING = (0.0,) * FORM_SIZE
 
 @scalar
 def equilibrium_region(law: PinLaw) -> EquilibriumRegion:
-    """Return the self-centred equilibrium, with V of the module's estimate."""
+    """Return the self-centred equilibrium with the estimated V."""
     k2, c, g = law.stiffness, law.damping, law.friction
     reach = k2 * abs(law.offset)
     if k2 == 0.0 or c == 0.0 or (g > 0.0 and (g >= reach or law.disc_speed == 0.0)):

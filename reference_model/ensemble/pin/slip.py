@@ -1,7 +1,7 @@
-"""Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, the duration of rest, and the start of slip.
+"""Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, and the start of slip.
 
-As elsewhere z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ =
-dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and almost unchanged far from rest.
+It uses z = x + iy and the slip velocity w: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ = dt·(s +
+s₀)/s with s = |w| these equations are smooth, and not stiff down to s = 0.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ TERMS, MOST_TERMS = 8, 20
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
 
-Otherwise a longer series replaces many stiff steps of a short excursion.
+Otherwise a longer series replaces many stiff steps.
 """
 
 SLAVED = 0.02
@@ -79,11 +79,10 @@ def turns_steadily(law: PinLaw) -> bool:
 
 @scalar
 def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
-    """Return whether the slow slip of a pin decays forever without rest: see :func:`turns_steadily`.
+    """Return whether the slow slip of a pin decays forever without rest; requires :func:`turns_steadily`.
 
-    Its speed s is along the pull, which turns with it; e is the excess of the pull at rest over g. They satisfy s' =
-    e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, also on a disc at rest with an offset. If it is
-    overdamped and e >= c·s/2 the speed never reaches zero.
+    Its speed s is along the turning pull, whose excess over g at rest is e. They satisfy s' = e − c·s and e' = −K·s,
+    K = k² − ω²: a damped oscillator. If it is overdamped and e >= c·s/2 the speed never reaches zero.
     """
     inward = law.stiffness - law.disc_speed**2
     excess = abs(pull(z, 0j, law)) - law.friction
@@ -95,9 +94,9 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
     """Return whether slip follows the pull closely enough to decay like slow slip.
 
-    Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. s' =
-    e − c·s and e' = −K·s of :func:`creeps_steadily` keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and
-    e >= c·s/2 implies that.
+    Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. The
+    oscillator of :func:`creeps_steadily` keeps s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, which e >=
+    c·s/2 implies.
     """
     a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
     across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0
@@ -118,7 +117,7 @@ def begin_slip(
 ) -> tuple[complex, complex, float, float]:
     """Return position, slip velocity, duration and distance of slip from rest at ``z``; the slip is 0 if it ends.
 
-    It follows the series of ``stick.slip_from_rest`` as long as its last terms stay below ``tolerance``, and up to
+    It follows the series of ``stick.slip_from_rest`` while its last terms stay below ``tolerance``, for at most
     ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
     """
     terms = TERMS
@@ -175,7 +174,7 @@ def _along(
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
     a, b, c = speed[1], speed[2], speed[3]
-    if c < 0.0 < b * b - 4.0 * a * c:  # the end of slip by these terms, which is accurate if it comes soon
+    if c < 0.0 < b * b - 4.0 * a * c:
         soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
         spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing
     while not last and not ends:
@@ -202,7 +201,6 @@ def _along(
 
 @inlined
 def _sum(coefficients: NDArray[Number], first: int, terms: int, t: float) -> Number:
-    """Return the sum of coefficients·t^(k − first), for k from ``first`` on."""
     total: Number = coefficients[terms]
     for k in range(terms - 1, first - 1, -1):
         total = total * t + coefficients[k]

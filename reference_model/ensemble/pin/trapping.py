@@ -2,8 +2,8 @@
 
 Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
 stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
-points on ever larger ellipsoids, as long as each image lies in a clearly smaller ellipsoid, on a whirl without
-stick. All motions inside these ellipsoids are attracted.
+points on ever larger ellipsoids, as long as each image lies in a clearly smaller one, on a whirl without stick. All
+motions inside these ellipsoids are attracted.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ TOLERANCE = 1e-10
 """Tolerance of the maps, which are differentiated."""
 
 DIRECTIONS = 128
-"""Number of points on the surface of an ellipsoid."""
+"""Number of points on an ellipsoid."""
 
 GROWTH = 1.25
 """Linear growth from one ellipsoid to the next; the first is FIRST of the size of the motion."""
@@ -117,7 +117,7 @@ def _find_whirl_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
         for _ in range(NEWTON_STEPS):
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
-        start = _on_section(turn[np.newaxis], k)  # so that the measures are those of the orbit itself
+        start = _on_section(turn[np.newaxis], k)  # for the measures of the orbit itself
     regions["turn"], regions["measures"] = turn, tuple(found.measures[0])
     regions["reach"], regions["metric"] = _contracting_region(
         lambda points: crossing_from(turn + points) - turn, 3, radius
@@ -152,7 +152,7 @@ def _contracting_region(flow: Map, dimension: int, size: float) -> tuple[float, 
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
-    # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves room between the points.
+    # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves a margin between the points.
     allowed = 1.0 - REQUIRED_SHARE * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):

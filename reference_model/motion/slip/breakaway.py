@@ -2,8 +2,7 @@
 
 Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
 motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
-Differential Equations II, IV.5) needs only a few steps until slip is fast enough for an explicit method. Under a pull
-well above friction slip grows like time, and the first step ends the stiffness.
+Differential Equations II, IV.5) needs only a few steps until slip is fast enough for an explicit method.
 """
 
 from __future__ import annotations
@@ -62,9 +61,8 @@ def begin_slip(
 ) -> Outcome:
     """Follow slip from rest until an explicit method in standard unknowns can continue.
 
-    ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape
-    (slip,), the unit vector of the incipient slip. ``leave`` returns whether the motion needs another description,
-    for example because a point comes to rest. Raises ``SimulationError`` if the motion cannot be resolved.
+    ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape (slip,),
+    the unit vector of the incipient slip. Raises ``SimulationError`` if the motion cannot be resolved.
     """
     rest = _Rest(motion, np.array(y), np.array(drift), direction)
     return _follow(run, motion, t, rest.leading_order(), leave)
@@ -110,7 +108,6 @@ class _Rest:
 
 
 def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Leave) -> Outcome:
-    """Follow slip that began at ``t`` by collocation until an explicit method is as good."""
     start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
     while t < run.end:
         run.count_step(t)
@@ -140,9 +137,9 @@ class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
     It interpolates the values, because stiffness amplifies the residual of Newton's method in an integral of the
-    rates. ``values`` are functions of the time since the step began, and ``rates``, shape (NODES, unknowns), those
-    at the nodes. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling``
-    is True if slip decelerates.
+    rates. ``values`` are functions of the time since the step began, and ``rates``, shape (NODES, unknowns), those at
+    the nodes. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling`` is
+    True if slip decelerates.
     """
 
     values: Polynomial
@@ -159,15 +156,12 @@ class _Piece:
         return float(min(np.max(by_values), np.max(by_rates)))
 
     def change_of_step(self, tolerance: float) -> float:
-        """Return the factor for the step to reach an error of ``tolerance``."""
         return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
 
     def at(self, delays: FloatArray) -> FloatArray:
-        """Return the unknowns at ``delays`` (n,) after the start, even beyond the end, shape (n, unknowns)."""
         return self.values.beyond(delays, np.zeros(1))
 
     def beyond(self, delays: FloatArray) -> FloatArray:
-        """Return the extrapolation to ``delays`` after the end."""
         return self.at(self.values.t + delays)
 
 
@@ -214,8 +208,8 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Differences by the slip are on its own scale. Friction hardly changes with the slip speed, and Newton's method
-    needs that derivative more accurately than component-wise differences give it.
+    Friction hardly changes with the slip speed, and Newton's method needs that derivative more accurately than
+    component-wise differences give it.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 Rates = Callable[[Sequence[float]], Sequence[float]]
 
 LEAST_SLIP = 1e-100
-"""A negligible slip speed that still gives friction a direction."""
+"""Negligible slip speed that still gives friction a direction."""
 
 DIFFERENCE = 1e-7
 """Change of unknowns of order one for numerical derivatives."""
@@ -36,16 +36,14 @@ SHARE = 1e-5
 
 @dataclass(frozen=True)
 class Coordinates:
-    """The unknowns of a motion and the functions that describe it.
-
-    The last ``slip`` unknowns are a relative velocity that friction may bring to rest.
+    """The unknowns of a motion, the last ``slip`` of them a slip velocity, and the functions that describe it.
 
     Parameters
     ----------
     rates, many
-        Takes the unknowns and returns their rates in 1/T, never at zero slip; vectorised for arrays of shape (k,).
+        Return the rates of the unknowns in 1/T, never at zero slip; the latter for arrays of shape (k,).
     slow
-        Takes the unknowns and returns the speed limit of slow slip.
+        Returns the speed limit of slow slip.
     pace
         Largest rate of everything except the slip, in 1/T.
     standard
@@ -53,11 +51,11 @@ class Coordinates:
     angle
         Index of an angle, which has an absolute tolerance.
     turning
-        Index of a relative velocity apart from the slip. Friction may change on its scale, however small it is.
+        Index of another relative velocity. Friction may change on its scale, however small it is.
     leverage
         Derivative of the velocity of the centre by the slip.
     grip
-        Returns the margin of a held friction force; the motion ends where it falls to zero.
+        Returns the margin of a held friction force, which ends the motion at zero.
     surfaces
         Surfaces of continuous but not smooth friction or support.
 
@@ -76,11 +74,9 @@ class Coordinates:
     surfaces: tuple[SwitchingSurface, ...] = ()
 
     def rates_at(self, unknowns: FloatArray) -> FloatArray:
-        """Return the rates for many ``unknowns``, shape (unknowns, k)."""
         return np.array(self.many(unknowns))
 
     def speed(self, y: Sequence[float]) -> float:
-        """Return the slip speed."""
         return math.hypot(*y[-self.slip :])
 
     def differences(self, unknowns: FloatArray) -> FloatArray:
@@ -96,7 +92,7 @@ class Coordinates:
 
         ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
         tolerances. An implicit step bounds the error of s instead of ln s, because slip that decays for a long time
-        would need many steps otherwise.
+        would otherwise need many steps.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance

@@ -2,8 +2,7 @@
 
 While slip is fast or grows, its components are unknowns. While it approaches zero it is written s·n with a unit
 vector n, and the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so
-these equations are smooth and not stiff down to s = 0. There n tends to a limit direction (Antali and Stépán 2019),
-and the remaining time is s over its rate of decrease.
+these equations are smooth and not stiff down to s = 0, where n tends to a limit direction (Antali and Stépán 2019).
 """
 
 from __future__ import annotations
@@ -121,7 +120,6 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
 def _stretched(
     motion: Coordinates, start: float, s0: float, dense: DenseOutput, times: FloatArray
 ) -> FloatArray:
-    """Return the standard unknowns in a step in stretched time, which starts at ``start``."""
     d = motion.slip
     stretched = dense(_stretched_times(dense, times - start, s0))
     n = stretched[-2 - d : -2]

@@ -61,8 +61,7 @@ def slide_stiffly(
         ended = slip_ends(run, motion, t, y) if slow else None
         if ended is not None:
             return ended
-        # Explicit steps in stretched time are proportional to slow slip, and limited by that rather than by
-        # stability.
+        # Explicit steps in stretched time are proportional to slow slip, which limits them more than stability.
         explicit = step * motion.speed(y) / first if slowly else step
         if solver.settled and (t - before < COST * explicit or (solver.stiffness < WORTH and not slowly)):
             run.patience *= 2
@@ -71,7 +70,7 @@ def slide_stiffly(
 
 
 def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_step: float) -> Stepper:
-    """Return the implicit stepper from ``y`` on, for unknowns that contain slip as n and ln s."""
+    """Return the implicit stepper for unknowns that contain slip as n and ln s."""
     d = motion.slip
     others = len(y) - d
 
@@ -111,7 +110,6 @@ def _one(others: int, polar: list[float]) -> list[float]:
 
 
 def _unknowns(others: int, polar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unknowns, direction n and slip speed s for ``polar`` unknowns of shape (n, k)."""
     n = polar[others:-1]
     size = np.sqrt((n * n).sum(axis=0))
     n = n / np.where(size > 0.0, size, 1.0)

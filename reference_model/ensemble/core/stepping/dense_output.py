@@ -48,7 +48,7 @@ def size_of(z: complex) -> float:
 
 
 class Motion(NamedTuple):
-    """Position, velocity, acceleration and jerk at one time."""
+    """Position, velocity, acceleration and jerk."""
 
     place: complex
     velocity: complex
@@ -58,7 +58,6 @@ class Motion(NamedTuple):
 
 @scalar
 def dense_output(span: float, first: Motion, last: Motion) -> DenseOutput:
-    """Return the motion of the duration ``span`` between two ends."""
     v0, a0, j0 = first.velocity * span, first.acceleration * span**2, first.jerk * span**3
     v1, a1, j1 = last.velocity * span, last.acceleration * span**2, last.jerk * span**3
     z0, z1 = first.place, last.place
@@ -100,13 +99,11 @@ def _slope(p: Polynomial, u: float) -> float:
 
 @inlined
 def position_on(step: DenseOutput, u: float) -> complex:
-    """Return z(u)."""
     return complex(_value(step.x, u), _value(step.y, u))
 
 
 @inlined
 def velocity_on(step: DenseOutput, u: float) -> complex:
-    """Return ż(u)."""
     return complex(_slope(step.x, u), _slope(step.y, u)) / step.span
 
 
@@ -118,7 +115,7 @@ def rightward(step: DenseOutput, u: float) -> float:
 
 @inlined
 def outward(step: DenseOutput, u: float) -> float:
-    """Return ρρ̇ times the duration of the step, which is zero where the radius is largest or smallest."""
+    """Return ρρ̇ times the duration of the step, which is zero where the radius is extreme."""
     return _value(step.x, u) * _slope(step.x, u) + _value(step.y, u) * _slope(step.y, u)
 
 

@@ -4,8 +4,8 @@ Creeping slip draws its direction to that of the pull at the rate g/s, and a str
 β/m. These rates limit an explicit step, but not this method.
 
 The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative
-−g·P'' of friction is symmetric and zero along the slip, because P is a potential of degree one. Rounding would spoil
-the component along the slip, so it is removed from the differences.
+−g·P'' of friction is symmetric and zero along the slip, because P is a potential of degree one. So its component
+along the slip, which is only rounding, is removed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from reference_model.systems import FloatArray
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
-"""PLACES are the nodes in [0, 1]."""
+"""Nodes in [0, 1]."""
 
 APART = 1e-7
 """Relative change of slip for the derivative of friction."""
@@ -128,7 +128,6 @@ def _complete(slopes: FloatArray, along: FloatArray, size: float, law: DiscLaw) 
 
 @scalar
 def _turns(disc_speed: float, step: float) -> ComplexArray:
-    """Return e^(iωt) at the nodes."""
     turns = complex_zeros(NODES)
     for j in range(NODES):
         turn = disc_speed * step * PLACES[j]
@@ -190,7 +189,6 @@ def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
 def pin_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return the friction of a pin, which does not spin, like ``laws.ring_friction``."""
     s = math.sqrt(ux * ux + uy * uy)
     return -ux / s, -uy / s, 0.0, s
 
@@ -210,7 +208,6 @@ def _collocation(friction: Friction, compiled: Callable[[Collocation], Collocati
 collocate_pin = _collocation(pin_friction, written_out)
 collocate_ring = _collocation(ring_friction, scalar)
 collocate_points = _collocation(points_friction, written_out)
-"""Collocation of a pin, and of a disc on a ring or on points."""
 
 
 @written_out
@@ -260,26 +257,24 @@ def stride_with(
 
 @inlined
 def first_try(planned: float, least: float, left: float) -> float:
-    """Return the first step to try, > 0; ``planned`` is the proposed step, if positive."""
+    """Return the first step to try, > 0: ``planned`` if positive."""
     return min(planned if planned > 0.0 else max(FIRST_SPAN, 2.0 * least), left)
 
 
 @inlined
 def failed(planned: float) -> float:
-    """Return the code that replaces ``planned`` after a failure: minus the number of successive failures."""
+    """Return ``planned`` after another failure: minus the number of successive failures."""
     return max(min(planned, 0.0) - 1.0, -MOST_FAILURES)
 
 
 @inlined
 def patience(planned: float) -> float:
-    """Return the number of short steps to make after failures."""
     steps: float = PATIENCE * 2.0**-planned
     return steps
 
 
 @scalar
 def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
-    """Return the position of the centre at the end of a step."""
     return _position_at_node(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 

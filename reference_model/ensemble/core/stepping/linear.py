@@ -1,4 +1,4 @@
-"""Compiled linear algebra for a few unknowns, because NumPy's takes longer to compile than all its uses."""
+"""Compiled linear algebra for a few unknowns, because NumPy's takes long to compile."""
 
 from __future__ import annotations
 
@@ -21,19 +21,16 @@ VANISHED, GROWN = 1e-6, 1e6
 
 @scalar
 def zeros(n: int) -> FloatArray:
-    """Return an array of zeros, shape (n,), which may be reshaped."""
     return np.zeros(n)
 
 
 @scalar
 def complex_zeros(n: int) -> ComplexArray:
-    """Return an array of complex zeros, shape (n,), which may be reshaped."""
     return np.zeros(n, dtype=np.complex128)
 
 
 @scalar
 def length_of(vector: FloatArray) -> float:
-    """Return the Euclidean norm."""
     total = 0.0
     for value in vector:
         total += value * value
@@ -82,7 +79,7 @@ def solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 @scalar
 def powers_vanish(matrix: FloatArray) -> bool:
-    """Return whether the powers of a square matrix vanish, so that all its eigenvalues have a modulus below 1."""
+    """Return whether the powers of a square matrix vanish: all its eigenvalues have a modulus below 1."""
     n = len(matrix)
     power, square = matrix.copy(), zeros(n * n).reshape(n, n)
     for _ in range(SQUARINGS):

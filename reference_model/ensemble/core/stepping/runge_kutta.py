@@ -38,14 +38,13 @@ hundred tolerances.
 """
 
 LOCAL = 0.1
-"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs."""
+"""Tolerance of a step over that of a motion, in single runs and ensembles."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 """Bounds on the ratio of successive steps, and safety factor of the error estimate."""
 
 
 def tolerance_of_steps(tolerance: float) -> float:
-    """Return the tolerance of each step of a motion with the accuracy ``tolerance``."""
     return max(LOCAL * tolerance, TIGHTEST)
 
 
@@ -54,7 +53,7 @@ def tolerance_of_steps(tolerance: float) -> float:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return Σ weights[j]·rates[j] of every unknown; compiled code only."""
+    """Return Σ weights[j]·rates[j] of every unknown."""
     size = len(rates[0])
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -67,7 +66,7 @@ def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[...,
 
 @intrinsic  # type: ignore[untyped-decorator]
 def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return y + h·Σ weights[j]·rates[j], where rates may be longer than y; compiled code only."""
+    """Return y + h·Σ weights[j]·rates[j], where rates may be longer than y."""
     size = len(y)
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -98,7 +97,7 @@ def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> An
 
 
 def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
-    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,) over the unknowns; compiled code only."""
+    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,) over the unknowns."""
     raise NotImplementedError
 
 
