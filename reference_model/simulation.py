@@ -28,23 +28,22 @@ def simulate(
     Parameters
     ----------
     system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
+        Parameters.
     initial_state : array-like of shape (4,) or (6,)
         State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s
-        for a disc. A state that turns with the master disc starts in stick if friction can hold it.
+        for a disc. A state that turns with the master disc sticks if friction can hold it.
     times : array-like of shape (n,)
         Increasing times in s.
     tolerance : float
-        Target relative accuracy, from 1e-14 to 1e-2. Positions are measured in a length L, velocities and the spin
-        times the radius of gyration in L/T (:class:`motion.nondimensional.Units`), the angle in rad. With damping or
-        rest errors stay within a small multiple of the tolerance: at most 13 in random motions, 68 in compiled ones.
-        Otherwise they accumulate, to some 40 times the tolerance after 10,000 steps. In unstable motions they grow
-        with the instability. contact : Contact or None
+        Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
+        :class:`motion.nondimensional.Units`. With damping or rest errors stay within a small multiple of the
+        tolerance: at most 13 in random motions, 68 in compiled ones. Otherwise they accumulate, to some 40 times the
+        tolerance after 10,000 steps, and grow with any instability.
+    contact : Contact or None
         Friction law of a disc; None for the law of the parameters.
     compiled : bool or None
-        Whether to use the faster kernel of :mod:`ensemble`, which supports linear supports and the laws of the
-        parameters. Its first run with a kind of contact on a machine compiles it. None: use it if it supports the
-        system.
+        Whether to use the faster kernel of :mod:`ensemble`, for linear supports and the laws of the parameters. Its
+        first run on a machine compiles it. None: use it if it supports the system.
 
     """
     if compiled is None:

@@ -27,7 +27,7 @@ MOST_RATIO = 1e25
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """Base class of pin and disc: a mass on springs and dampers, pressed on a disc that turns at constant speed."""
+    """A mass on springs and dampers, pressed on a disc that turns at constant speed."""
 
     mass: float
     stiffness: float
@@ -99,7 +99,7 @@ class _SupportedMass:
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
-        """Return formula and value (SI units) of each bounded ratio, by the parameter that an error names."""
+        """Return formula and value of each bounded ratio, by the parameter that an error names."""
         return {
             "stiffness": ("√(stiffness/mass)", self.natural_frequency),
             "stop_stiffness": ("√(stop_stiffness/mass)", math.sqrt(self.stop_stiffness / self.mass)),
@@ -248,7 +248,7 @@ ANGLE = 2
 
 
 def finite_number(name: str, value: Any) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` with its name if it is not a finite number."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is a finite number."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -320,7 +320,7 @@ def require_system(system: System, *allowed: type[System]) -> None:
 
 
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
-    """Return ``initial_state`` as an array of shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
+    """Return ``initial_state`` as an array, shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
     require_system(system)
     state = _float_array("initial_state", initial_state)
     if state.shape != (system.state_size,):
@@ -339,7 +339,7 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
 
 
 def checked_times(times: ArrayLike) -> FloatArray:
-    """Return ``times`` in s as an array of shape (n,); raise ``ValueError`` unless they increase."""
+    """Return ``times`` in s, shape (n,); raise ``ValueError`` unless they increase."""
     result = _float_array("times", times)
     if result.ndim != 1 or result.size == 0:
         raise ValueError(f"times has shape {result.shape}: it must be a list of at least one time")

@@ -16,28 +16,28 @@ from reference_model.systems import finite_number, require_whole
 CLUSTERING = 3
 """Exponent q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.
 
-With dr ∝ t^(q−1)·dt it turns x·ln x into t^(2q−1)·ln t, and Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
+It turns x·ln x into t^(2q−1)·ln t. Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
 """
 
 ORDER = 4 * CLUSTERING
 """Order of convergence of force and moment in ``rings``, if r₀ lies in the annulus or near it."""
 
 SLOPE_ORDER = 2 * CLUSTERING
-"""Order of convergence of their slopes, which contain ln x instead of x·ln x."""
+"""Order of convergence of their slopes."""
 
 
 @dataclass(frozen=True)
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    Force and moment of :class:`reference_model.contact.contact_law.Ring` are averaged over the load by Gauss's rule.
-    The rule is split and clustered at the kink r₀ = U/|S|, where a point is at rest. With n rings its error falls
-    like n^(−12), to about 1e-12 for n = 16. The error of the slopes falls like n^(−6), to about 1e-7.
+    Friction is that of a :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's rule,
+    which is split at the radius r₀ = U/|S| of a point at rest. Its error falls like n^(−12), to about 1e-12 for n =
+    16 rings; that of the slopes falls like n^(−6), to about 1e-7.
 
     Parameters
     ----------
     inner_radius, outer_radius : float
-        Radii in m, 0 <= inner < outer; 0 for a full disc.
+        Radii in m, 0 <= inner < outer.
     rings : int
         Number n >= 1 on either side of r₀.
     pressure : callable, optional
@@ -86,7 +86,7 @@ class Annulus(IsotropicContact):
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             rim = radius * abs(relative_spin)
             if rim == slip_speed:
-                continue  # rounding at r₀, the end of the range: a logarithm times a load of 1e-16
+                continue  # rounding at r₀: a logarithm times a load of 1e-16
             curvatures = mean_curvatures(slip_speed, rim)
             by_slip += share * curvatures[0]
             mixed += share * radius * curvatures[1]
@@ -103,7 +103,7 @@ class Annulus(IsotropicContact):
         return max(slip_speed / spin, self.inner_radius)
 
     def _loads(self, centre: float) -> list[tuple[float, float]]:
-        """Return the radii of the rings in m and their shares of the load, clustered about ``centre``."""
+        """Return radii and shares of the load of the rings, clustered about ``centre``."""
         loads = list(self._rings(centre))
         total = math.fsum(load for _, load in loads)
         if total == 0.0:

@@ -1,4 +1,4 @@
-"""Friction laws of :mod:`reference_model.contact.contact_law` for arrays, for implicit methods."""
+"""Friction laws for arrays, for implicit methods."""
 
 from __future__ import annotations
 
@@ -57,7 +57,6 @@ class PointsAtOnce:
         return np.asarray(np.multiply.outer(np.array(self.law.arms(0.0)), np.exp(1j * angle)))
 
     def _friction(self, arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Return force and moment for arrays of shape (points, k)."""
         friction = velocities * (-np.array(self.shares)[:, np.newaxis] / (abs(velocities) + NONE))
         moments = arms.real * friction.imag - arms.imag * friction.real
         return friction.sum(axis=0), moments.sum(axis=0)

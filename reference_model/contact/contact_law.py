@@ -36,8 +36,7 @@ class Contact(Protocol):
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         """Return force (N per N of μN) and moment (m) on the disc.
 
-        ``slip`` is u of the centre, (ẋ + ωy) + i(ẏ − ωx) in m/s, ``relative_spin`` S = ω − φ̇ in rad/s, ``angle`` φ
-        in rad.
+        ``slip`` is u = (ẋ + ωy) + i(ẏ − ωx) in m/s, ``relative_spin`` S = ω − φ̇ in rad/s, ``angle`` φ in rad.
         """
         ...
 
@@ -111,7 +110,7 @@ class IsotropicContact(ABC):
 
 @dataclass(frozen=True)
 class Pin(IsotropicContact):
-    """Contact in one point, the centre (1): full friction against slip, no moment."""
+    """Point contact at the centre (1): full friction against slip, no moment."""
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
@@ -164,9 +163,8 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
     """The paper's approximation (23) of the ring of ``radius`` R > 0 in m: three terms of (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α, F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and M = R·sin α·(1 − ½cos²α +
-    ¾cos²α·sin²α). Their potential is ν̄·P(α), P = 1 − ¼cos²α·sin²α, the mean slip speed to the same order. It is
-    convex, so the approximation never feeds in power. The largest error is 0.10, near U = 0.77·R|S| for the force and
-    at the reciprocal ratio for the moment.
+    ¾cos²α·sin²α). Their potential ν̄·(1 − ¼cos²α·sin²α) is convex, so the approximation never feeds in power. The
+    largest error is 0.10, near U = 0.77·R|S| for the force and at the reciprocal ratio for the moment.
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:

@@ -1,8 +1,8 @@
 """First and second derivatives of the mean slip speed on a circle, by complete elliptic integrals.
 
 If the centre slips with U and the rim turns with W = R·|S| relative to the master disc, the mean slip speed is P(U,
-W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and friction is the derivative of P. P is symmetric in U and W and of degree 1.
-For k = W/U <= 1 and m = k² Landen's transformation turns P into (2/π)·U·[2E(m) − (1 − m)·K(m)], so::
+W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ. Friction is the derivative of P, which is symmetric in U and W and of degree 1.
+For k = W/U <= 1 and m = k² Landen's transformation gives P = (2/π)·U·[2E(m) − (1 − m)·K(m)], so::
 
     ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
 
@@ -21,10 +21,10 @@ from scipy.special import ellipe, ellipkm1
 from reference_model.systems import FloatArray
 
 SMALL = 0.05
-"""Parameter m below which B and D come from their series, because the differences would lose digits."""
+"""Parameter m below which series replace the differences in B and D, which would lose digits."""
 
 TERMS = 13
-"""Number of terms of the series: the first omitted term is below SMALL^13 = 1e-17."""
+"""Number of terms of the series; the first omitted term is below SMALL^13 = 1e-17."""
 
 
 def mean_directions(slip: float, rim: float) -> tuple[float, float]:

@@ -2,10 +2,9 @@
 
 A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN) if F·u +
 M·w <= P(u, w) for every slip, where P is the mean of |v_j| weighted by the shares of the load. P is of degree one, so
-this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the centre of the load P is at least
-|u|, so h >= 0 for |F| <= 1 and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F.
-Its solution may be a vertex, u = −i·a_j: then the disc begins to turn about the resting point j, and the limit
-surface has a flat face.
+this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the centre of the load h >= 0 for
+|F| <= 1, and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F. If its solution is
+a vertex, u = −i·a_j, the disc begins to turn about the resting point j, and the limit surface has a flat face.
 
 Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra confirmed only partially how
 two-tier discs come to rest.
@@ -40,7 +39,7 @@ ROUNDING = 4e-16
 def wrench_of_slip(contact: IsotropicContact | Points, slip: complex, spin: float) -> tuple[complex, float]:
     """Return the force (N per N of μN) and the moment (m) about the centre that drive a slip of a disc at φ = 0.
 
-    They lie on the limit surface, whose normal there is the slip: u of the centre in m/s, and w = φ̇ − ω in rad/s.
+    The slip, u of the centre in m/s and w = φ̇ − ω in rad/s, is normal to the limit surface there.
     """
     friction, moment = contact.force_and_moment(slip, -spin, 0.0)
     return -friction, -moment
@@ -51,8 +50,8 @@ def largest_wrench(
 ) -> tuple[complex, float]:
     """Return the largest multiple of a force and a moment that friction can hold at φ = 0.
 
-    ``force`` and ``moment`` give the direction: any force, and a moment about the centre in m times its unit. The
-    result is the force in N per N of μN and the moment in m. Raises ``ValueError`` if both are zero.
+    ``force`` and ``moment``, about the centre in m times the unit of the force, give the direction. The result is in
+    N per N of μN and in m. Raises ``ValueError`` if both are zero.
     """
     if force == 0.0 and moment == 0.0:
         raise ValueError("force and moment are 0: they must have a direction")
@@ -65,7 +64,7 @@ def largest_wrench(
 
 def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -> float:
     lever = contact.shares(0.0, 1.0).moment
-    if lever == 0.0:  # a pin
+    if lever == 0.0:
         return 0.0 if moment > 0.0 else 1.0 / force
 
     def load(alpha: float) -> tuple[float, float]:
@@ -83,7 +82,7 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 
 @dataclass(frozen=True, eq=False)
 class PointsLimit:
-    """The limit surface of points with the ``arms`` (n,) in the frame of the disc and ``shares`` (n,) of the load."""
+    """The limit surface of points with ``arms`` (n,) in the frame of the disc and ``shares`` (n,) of the load."""
 
     arms: ComplexArray
     shares: FloatArray
@@ -124,7 +123,7 @@ class PointsLimit:
         return sense * (slip - 1j * self.centre), sense
 
     def factor(self, force: complex, moment: float) -> float:
-        """Return the largest multiple of ``force`` and ``moment``, not both zero, that friction can hold."""
+        """Return the largest multiple of ``force`` and ``moment`` that friction can hold."""
         lever = float(self.shares @ abs(self.arms - self.centre))
         most = 1.0 / max(abs(force), abs(float(self._about_centre(force, moment))) / lever)
 
@@ -136,10 +135,10 @@ class PointsLimit:
     def greatest(self, forces: ComplexArray) -> tuple[FloatArray, ComplexArray]:
         """Return the squares of the largest moments that can be held with ``forces`` (t,), and the slips for w = 1.
 
-        Moments and slips are those about the centre of the load. Where the force alone is too large the squares
-        continue as (1 − |F|)·R², their leading term for |F| < 1, so they pass through zero with a finite slope.
+        Both are those about the centre of the load. Where the force alone is too large the squares continue as (1 −
+        |F|)·R², so they pass through zero with a finite slope.
         """
-        # A point is the pivot if it can supply the force that friction of the other points leaves over.
+        # A point is the pivot if it can supply the force that the other points leave over.
         at_vertex = abs(forces[:, np.newaxis] - self._pulls) <= self.shares
         pivots = at_vertex.any(axis=1)
         too_much = abs(forces) >= 1.0
@@ -162,7 +161,7 @@ class PointsLimit:
     def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
         """Minimise the mean distance minus F·u, which is convex, where the minimum is not at a vertex.
 
-        Armijo's rule halves Newton's steps. A step of Weiszfeld's method replaces a halved one that descends less.
+        Armijo's rule halves Newton's steps; Weiszfeld's method replaces a halved step that descends less.
         """
         # Exact in the limit of large |u| for points with the same spread in all directions.
         u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
@@ -200,7 +199,7 @@ class PointsLimit:
 
 
 SINGULAR = 1e-15
-"""Smallest ratio of determinant to squared trace of a Hessian, which vanishes for points on one line."""
+"""Smallest ratio of determinant to squared trace of a Hessian; points on one line make it zero."""
 
 ARMIJO = 1e-4
 """Smallest ratio of a step's descent to that of its slope."""
@@ -208,9 +207,8 @@ ARMIJO = 1e-4
 MOST_HALVINGS = 60
 
 FLAT = 1e-9
-"""Share of rotation in the slip of a disc whose force alone is too large: almost none."""
+"""Share of rotation in the slip of a disc whose force alone is too large."""
 
 
 def _directions(slips: ComplexArray) -> ComplexArray:
-    """Return unit vectors along ``slips``, zero where they vanish."""
     return np.asarray(slips / np.maximum(abs(slips), 1e-300))

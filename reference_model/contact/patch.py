@@ -1,4 +1,4 @@
-"""A patch under uniform pressure as contact points: a quadrature over the area of a polygon."""
+"""Contact points of a patch under uniform pressure: a quadrature over a polygon."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971,
 def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Points:
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
-    Each triangle of the polygon is cut into ``divisions``² equal ones (>= 1) with three points each. With their
-    longest side h the error falls like h⁴ if the centre of rotation lies outside the patch. If it lies inside,
-    friction jumps there and the error falls like h² on average. ``corners`` are x and y in m of at least three
-    corners in the frame of the disc, in order around the polygon.
+    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Each
+    of its triangles is cut into ``divisions``² >= 1 equal ones with three points each. With their longest side h the
+    error falls like h⁴ if the centre of rotation lies outside the patch; otherwise friction jumps and the error falls
+    like h² on average.
 
     Raises ``ValueError`` if a number is invalid or the polygon has no area or intersects itself.
     """
@@ -70,7 +70,7 @@ def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
 
 
 def _doubled_area(a: Any, b: Any, c: Any) -> Any:
-    """Return twice the area of triangles, negative if the corners are in clockwise order."""
+    """Return twice the area, negative if the corners are in clockwise order."""
     return (np.conj(b - a) * (c - a)).imag
 
 

@@ -1,4 +1,4 @@
-"""Friction of a contact in single points, which turn with the disc, so the law depends on the angle φ."""
+"""Friction in single points, which turn with the disc, so it depends on the angle φ."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Points:
 
     @cached_property
     def _seen_from(self) -> dict[int | None, tuple[_Friction, ...]]:
-        """For each point requested so far all others, seen from it; for None all points, seen from the centre."""
+        """All other points, seen from each point requested so far; for None all points, seen from the centre."""
         return {None: tuple((arm, arm.conjugate(), share) for arm, share in self._loaded)}
 
     @property
@@ -57,7 +57,6 @@ class Points:
         return zip(self._arms, self.shares, strict=True)
 
     def arm(self, point: int, angle: float) -> complex:
-        """Return the position of a point relative to the centre, in m."""
         return cmath.exp(1j * angle) * self._arms[point]
 
     def arms(self, angle: float) -> list[complex]:
@@ -70,7 +69,7 @@ class Points:
         return float(np.delete(distances, point).min())
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """Like :meth:`Contact.force_and_moment`; a point at rest has set-valued friction and contributes nothing."""
+        """Like :meth:`Contact.force_and_moment`; a point at rest contributes nothing."""
         return _friction_of(self._seen_from[None], slip, relative_spin, angle)
 
     def friction_of_others(
@@ -105,7 +104,7 @@ class Points:
             result[0] += friction.real
             result[1] += friction.imag
             result[2] += (arm.conjugate() * friction).imag
-            result[2, 3] += share * ((1j * arm).conjugate() * -direction).imag  # the arm turns too
+            result[2, 3] += share * ((1j * arm).conjugate() * -direction).imag
         return result
 
 

@@ -15,10 +15,10 @@ from reference_model.systems import FloatArray
 class EndState(IntEnum):
     """The long-term motion of a trajectory.
 
-    ``SELF_CENTRED``: a sliding equilibrium (section 2). ``STUCK``: permanent stick, also as the limit of ever shorter
-    slips. ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick. ``MODULATED``: a whirl
-    whose radius oscillates slowly (section 4; discs only). ``STICK_SLIP``: sticking and slipping again and again.
-    ``UNDECIDED``: not certain.
+    ``SELF_CENTRED``: a sliding equilibrium. ``STUCK``: permanent stick, also as the limit of ever shorter slips.
+    ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick. ``MODULATED``: a whirl whose
+    radius oscillates slowly (discs only). ``STICK_SLIP``: sticking and slipping again and again. ``UNDECIDED``: not
+    certain.
     """
 
     UNDECIDED = 0
@@ -33,7 +33,7 @@ UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (int(end) for end
 """The end states as integers, for compiled code."""
 
 HANDED_OVER = 255
-"""Marker in place of an end state where compiled code stops following the motion, see :mod:`.disc.driver`."""
+"""Marker in place of an end state where compiled code stops, see :mod:`.disc.driver`."""
 
 
 @dataclass(frozen=True, eq=False)

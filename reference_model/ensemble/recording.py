@@ -1,7 +1,7 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the checkpoint before it, with the same step, cut
-short. So the motion does not depend on the requested times.
+The state at a requested time is the end of a short trajectory from the checkpoint before it, with the same step, so
+the motion does not depend on the requested times.
 """
 
 from __future__ import annotations
@@ -34,15 +34,14 @@ ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration or of the unit of time, whichever is longer."""
 
 STAGES = 12
-"""Number of evaluations of the equations of motion per step."""
 
 
 @dataclass
 class Recording:
     """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
 
-    ``states``, shape (n, 4) or (n, 6), is filled as far as computed. ``phases`` are (kind, start, state) so far.
-    ``steps`` and ``evaluations`` include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
+    ``states``, shape (n, 4) or (n, 6), is filled as far as computed. ``phases`` are (kind, start, state). ``steps``
+    and ``evaluations`` include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
     """
 
     times: FloatArray
@@ -115,7 +114,7 @@ class Recording:
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
-        """Begin a phase, unless it is of the current kind; drop a phase that lasts no longer than rounding."""
+        """Begin a phase unless it is of the current kind; drop one that lasts no longer than rounding."""
         if self.phases and t - self.phases[-1][1] <= self.rounding:
             t = self.phases.pop()[1]
         if not self.phases or self.phases[-1][0] != kind:

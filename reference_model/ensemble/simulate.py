@@ -22,7 +22,6 @@ from reference_model.systems import (
 )
 
 UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
-"""Parameters of a nonlinear support."""
 
 MOST_POINTS = 24
 """Largest number of contact points: their sum is unrolled, which takes long to compile for more."""
@@ -40,8 +39,8 @@ def simulate_ensemble(
 ) -> Ensemble:
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. A result does not depend, bit by bit, on the other
-    trajectories or on the number of threads. Raises ``ValueError`` if an argument is invalid.
+    The physics is that of :func:`reference_model.simulate`. Results do not depend, bit by bit, on other trajectories
+    or the number of threads. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------

@@ -16,8 +16,8 @@ CHUNK = 512
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
 """Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.
 
-They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
-and the length of an implicit step.
+They are the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and the
+length of an implicit step.
 """
 
 PACE_SIZE = SPAN + 1
@@ -39,13 +39,13 @@ class Task(NamedTuple):
 def parameter_table(
     system: System, names: Sequence[str], varied: Mapping[str, FloatArray] | None = None
 ) -> FloatArray:
-    """Return the named parameters, shape (1 or n, parameters); those ``varied``, (n,), have a row per trajectory."""
+    """Return the named parameters, shape (1 or n, parameters); those ``varied`` (n,) have a row per trajectory."""
     columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
     return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)
 
 
 def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
-    """Call ``run(first, last)`` for all of ``n`` trajectories; it must release the global interpreter lock."""
+    """Call ``run(first, last)``, which must release the interpreter lock, for all of ``n`` trajectories."""
     firsts = range(0, n, CHUNK)
     if threads == 1:
         for first in firsts:

@@ -23,7 +23,6 @@ from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
-"""Names of a pin's parameters."""
 
 
 def pin_of(disc: DiscOnDisc, **others: float) -> PinOnDisc:
@@ -39,9 +38,8 @@ def shaft_torque(disc: DiscOnDisc) -> float:
 def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
     """Return ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
 
-    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. Its average over the ring, times the slip
-    velocity of the point, is (23). ``slip`` is (ẋ + ωy) + i(ẏ − ωx) and ``rim_speed`` R(ω − φ̇), both in m/s;
-    ``place`` is φ + χ in rad.
+    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …, which leads to (23). ``slip`` is (ẋ + ωy)
+    + i(ẏ − ωx) and ``rim_speed`` R(ω − φ̇), both in m/s; ``place`` is φ + χ in rad.
     """
     small = _expanded(slip, rim_speed, place)
     return 1.0 - small + 1.5 * small**2
@@ -55,8 +53,8 @@ def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float)
 def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
     """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
-    Friction must supply the constant moment b(ω − Ω), which leaves the force F of the limit surface in place of μN in
-    (7) to (9). So ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
+    The constant moment b(ω − Ω) leaves the force F of the limit surface in place of μN in (7) to (9). So
+    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
 
     Raises ``ValueError`` if friction cannot supply the moment or the disc rests on single points.
     """
@@ -88,7 +86,7 @@ class ReducedParameters(NamedTuple):
 
 
 def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Return left side minus right side of (4), in m², which holds for the self-centred disc as for the pin."""
+    """Return left side minus right side of (4), in m², which holds as for the pin."""
     return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
@@ -173,7 +171,7 @@ def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Posi
     difference = reduced_parameters(disc).speed_difference
 
     def excess(alpha: float) -> float:
-        """Return the residual of the first line of (26), multiplied by cos α because A grows like its reciprocal."""
+        """Return the residual of the first line of (26) times cos α, because A grows like its reciprocal."""
         distance = math.sqrt(max(squared(disc, alpha), 0.0))
         return (speed_difference_at(disc, distance, alpha) - abs(difference)) * math.cos(alpha)
 
@@ -202,15 +200,14 @@ class WhirlAtRatio(NamedTuple):
 def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = None) -> WhirlAtRatio:
     """Return the whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of rim and centre slip.
 
-    A circle of radius ρ satisfies three balances. The radial one contains no friction, so the frequency is κ = ±k, as
-    for the pin. Along the circle βkρ = μN·F(α), in the sense of ω and only for |ω| > k, as in (11), so U = (|ω| −
-    k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S| = U·tan α. Together they give the load, see
-    :func:`whirl_arm`::
+    The radial balance contains no friction, so the frequency is κ = ±k, as for the pin. Along the circle βkρ =
+    μN·F(α), in the sense of ω and only for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) =
+    μN·M(α) with S = ω − φ̇, R|S| = U·tan α. Together they give the load::
 
         μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
 
     ``alpha`` is in rad, 0 < α < π/2. The result does not depend on ``friction_force``. ``contact`` None means the law
-    of the parameters; use :class:`reference_model.contact.contact_law.ThreeTermRing` for (23).
+    of the parameters; :class:`reference_model.contact.contact_law.ThreeTermRing` is (23).
 
     Raises ``ValueError`` if α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <= k;
     or if the disc rests on single points or a nonlinear support.
@@ -242,10 +239,8 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
     """Return b|ω − Ω|/μN in m of the whirl as a function of slip and rim >= 0, whose ratio is U : R|ω − φ̇|.
 
-    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit, b|ω − Ω| over the onset load, at slip = 0.
-
-    Raises ``ValueError`` if there is no whirl at any load (zero stiffness or damping, or |ω| <= k), or if the support
-    is not linear.
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit, b|ω − Ω| over the onset load, at slip = 0. Raises
+    ``ValueError`` if stiffness or damping is zero, |ω| <= k, or the support is not linear.
     """
     require_linear_support(disc)
     per_load = pin_formulas.whirl_radius(pin_of(disc, friction_force=1.0))

@@ -1,4 +1,4 @@
-"""Energy and power balance of a trajectory, which checks any engine without a reference solution."""
+"""Energy balance of a trajectory, which checks any engine without a reference solution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ComplexArray = NDArray[np.complex128]
 SPLINE_DEGREE = 5
 
 CROWDED = 0.05
-"""Samples closer to the end of a phase than this fraction of their usual distance are omitted."""
+"""Samples closer to the end of a phase than this fraction of their distance are omitted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,14 +69,13 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     """Return the energy balance of ``trajectory``, whose times must be close enough to resolve the motion.
 
     In slip phases the friction heat is μN·∫P dt with the mean slip speed P: |w| for a pin, −F·u + M·S (per newton of
-    μN) for a disc. In stick phases it is the work of the holding force and moment of eq. 6 on the engine's creep,
-    zero for exact friction. The drive's work is ω times the angular impulse on the body about the axis, ∫M dt =
-    [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So
-    the residual vanishes only if friction acts against the slip with the magnitude μN, damping and springs are right,
-    and the integrator conserves energy.
+    μN) for a disc. In stick phases it is the work of the holding force and moment of eq. 6 on the engine's creep. The
+    drive's work is ω times the angular impulse on the body about the axis, ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y
+    dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual vanishes only if
+    friction, damping and springs are right and the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
-    power of the sampling interval, or more slowly if the slip of a point is near zero or a stop begins to act. Raises
+    power of the sampling interval, or more slowly near zero slip of a point and where a stop begins. Raises
     ``ValueError`` if the trajectory has only one time.
     """
     if len(trajectory.times) < 2:
@@ -109,7 +108,7 @@ def _shaft_of(body: System) -> tuple[float, float, float]:
 
 
 def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times (n,), states (n, 4 or 6) and the integrals of :func:`_rates` since the start (n, 6)."""
+    """Return times (n,), states (n, 4 or 6) and the integrals of :func:`_rates` (n, 6)."""
     times, states, integrals = [], [], []
     total = np.zeros(6)
     for kind, t, state in _spans(trajectory):
@@ -122,7 +121,7 @@ def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatA
 
 
 def _rates(trajectory: Trajectory, law: Contact, kind: str, state: FloatArray) -> FloatArray:
-    """Return friction power, |v|², r×v, C·y, φ̇ − Ω and its square for the states of a phase, shape (n, 6)."""
+    """Return friction power, |v|², r×v, C·y, φ̇ − Ω and its square in a phase, shape (n, 6)."""
     body = trajectory.system
     omega, X0 = body.disc_speed, body.offset
     _, b, Omega = _shaft_of(body)
@@ -146,7 +145,7 @@ def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> Float
 
 
 def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:
-    """Return z, φ, ż and φ̇, each (n,); angle and spin of a pin are zero."""
+    """Return z, φ, ż and φ̇, each (n,); φ = 0 for a pin."""
     places, velocities = np.split(state, 2, axis=1)
     z, v = (pair[:, 0] + 1j * pair[:, 1] for pair in (places, velocities))
     if isinstance(body, DiscOnDisc):
@@ -155,7 +154,7 @@ def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, 
 
 
 def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return the mean slip speed of the contact from the power of its friction, shape (n,)."""
+    """Return the mean slip speed from the power of friction, shape (n,)."""
     result = np.empty(len(u))
     for i, (slip, spin, phi) in enumerate(
         zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)

@@ -3,8 +3,8 @@
 Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio its
 force μN·F and its moment μN·M are known, which leaves one equation to solve over all ratios.
 
-Two facts narrow the search. The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the
-sign of S. And M grows with W : U for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
+The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the sign of S. M grows with W : U
+for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
         resistance, moment = at(slip, rim)
         deflection, spare_moment = support.deflection(load * resistance), largest_moment - moment
         squared_place = (offset - deflection) * (offset + deflection)
-        # U : W is slip : rim by both balances. Their size comes from the balance that keeps more digits.
+        # The size comes from the balance that keeps more digits.
         if spare_moment * offset**2 > squared_place * largest_moment:
             size = load * radius / disc.shaft_damping * spare_moment / rim
         else:
@@ -91,8 +91,7 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
     They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, except pure spin. On a nonlinear support
-    circle and slip are not proportional to the load, and the arm is that of this load. Raises ``ValueError`` if
-    :func:`whirl_arm` does, or without damping or friction.
+    the arm depends on the load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)
@@ -125,7 +124,7 @@ def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
 
 
 def _difference(one: float, other: float) -> float:
-    """Return one − other, or zero within rounding, which would otherwise count as several solutions."""
+    """Return one − other, zero within rounding, which would otherwise count as several solutions."""
     difference = one - other
     return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
 
@@ -137,8 +136,8 @@ def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
     """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip, where ``allowed`` >= 0.
 
-    The larger of slip and rim is 1, so the ratio keeps its relative accuracy. The two halves meet where the friction
-    of a ring has a kink.
+    The larger of slip and rim is 1, which keeps the relative accuracy. The two halves meet at the kink of a ring's
+    friction.
     """
     end = 1.0 if allowed(1.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(1.0, q), 0.0, 1.0)
     for q in zeros_between(lambda q: balance(1.0, q), 0.0, end):

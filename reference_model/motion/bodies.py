@@ -74,7 +74,6 @@ class Body(ABC):
         self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
     def go(self, y: list[float]) -> tuple[float, list[float]]:
-        """Run from the unknowns ``y`` at t = 0; return the final time and unknowns."""
         run, t = self.run, 0.0
         run.record(t, lambda _: np.array([y]).T)
         self.begin(y)
@@ -118,7 +117,6 @@ class Body(ABC):
         directions = [b - c for b, c in zip(moving[:-d], resting[:-d], strict=True)]
 
         def next_to_rest(way: float) -> list[float]:
-            """Return the unknowns after a distance along n, with almost no slip."""
             there = [a + way * b for a, b in zip(y[:-d], directions, strict=True)]
             return [*there, *[LEAST_SLIP * part for part in n]]
 

@@ -26,7 +26,6 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
 SAMPLES_PER_TURN = 360
-"""Samples per turn of the margin of a stuck disc."""
 
 
 class PointsBody(DiscBody):
@@ -162,16 +161,15 @@ class PointsBody(DiscBody):
         if margin(0.0) < -ROUNDING:
             return 0.0
         if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
-            return math.inf  # relative to the disc, nothing turns
+            return math.inf
         delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), SAMPLES_PER_TURN + 1)
         margins = self.limit.margins(*self._share(y, delays))
         if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
-            return 0.0  # already at the limit
+            return 0.0
         for k in range(1, SAMPLES_PER_TURN + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
-                # Next to a local minimum of the samples the margin may dip by as much as it changes to the next
-                # samples.
+                # Near a local minimum of the samples the margin may dip by as much as it changes to the next samples.
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue

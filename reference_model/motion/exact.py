@@ -1,7 +1,6 @@
 """Event-driven simulation of pin and disc with set-valued Coulomb friction.
 
-- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`). The slip of a disc has
-  three components: two of its centre and one of its rim.
+- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`).
 - An implicit method takes over for stiff slip (:mod:`.slip.stiff`). Slip that decays forever ends in closed form
   (:mod:`.bodies`).
 - In stick, the body turns with the master disc up to the first root of eq. 7 (:mod:`.stick`).
@@ -114,8 +113,8 @@ def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Un
 class _Frame:
     """Conversion between states in SI units and scaled unknowns relative to the master disc.
 
-    ``lengths`` are the units of the positions, shape (2,) or (3,): m, and rad for the angle. ``speeds`` are those of
-    the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
+    ``lengths``, shape (2,) or (3,), are the units of the positions in m, and of the angle in rad. ``speeds`` are
+    those of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
     """
 
     disc_speed: float

@@ -47,14 +47,14 @@ class Units:
             # The largest deflection that the speed or friction can cause.
             reach = max(place, support.circle(speed**2), support.deflection(friction))
             hard = math.sqrt(support.tangent(reach)) if reach < math.inf else 0.0
-        if rate == 0.0:  # free on a disc at rest
+        if rate == 0.0:
             rate = hard or (friction / slip if friction > 0.0 < slip else 1.0)
         length = max(place, speed / rate, friction / rate**2)
         faster = max(hard / rate, 1.0)
         return cls((length if length > 0.0 else 1.0) / faster, 1.0 / (faster * rate))
 
     def springs(self, system: System) -> float:
-        """Return the natural frequency of linear springs in these units; 1 without springs or with nonlinear ones."""
+        """Return the natural frequency of linear springs in these units; else 1."""
         if system.stiffness == 0.0 or not Support.of(system).linear:
             return 1.0
         return system.natural_frequency * self.time

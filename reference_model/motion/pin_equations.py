@@ -32,7 +32,6 @@ class SlipMotion:
 
     @classmethod
     def of(cls, system: System) -> SlipMotion:
-        """Return the equations of motion of a pin, or of the centre of a disc."""
         return cls(
             system.damping / system.mass,
             Support.of(system).scaled(1.0 / system.mass),

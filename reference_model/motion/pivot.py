@@ -1,9 +1,10 @@
 """A disc on single points that turns about one of them, which slips slowly or rests.
 
-The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. All other points follow:
-v_j = v + i(r/κ)(a_j − a_i) with the arms a. So v keeps its relative accuracy down to zero. The point accelerates by B
-+ Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
-slip λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, as long as this is at most gq.
+The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point, which so keeps its
+relative accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point
+accelerates by B + Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 +
+(i·a_i)⊗(i·a_i)/κ². In slip λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, as long as this is
+at most gq.
 """
 
 from __future__ import annotations
@@ -96,7 +97,7 @@ class OnePoint:
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
-        """Return the relative margin of the point's friction over the friction required to hold it."""
+        """Return the relative margin of the point's friction over that required to hold it."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
@@ -151,7 +152,7 @@ class OnePoint:
     def _without_friction(
         self, unknowns: Sequence[float], v: complex
     ) -> tuple[tuple[float, float, float], float, complex, complex]:
-        """Return the rates of x, y, φ, the rate of r, the arm and B, without the friction of this point."""
+        """Return the rates of x, y, φ and r, the arm and B, without the friction of this point."""
         x, y, angle, r = unknowns[:4]
         motion, kappa = self.motion, self.motion.gyration
         omega, g = motion.centre.disc_speed, motion.centre.friction

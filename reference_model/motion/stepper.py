@@ -1,4 +1,4 @@
-"""The state of a running simulation: thresholds, records, and the steps of its integrators."""
+"""Thresholds, records, and steps of a running simulation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from reference_model.trajectory import SimulationError, StepCount
 
 Kind = Literal["slip", "pivot", "stick"]
 Sampler = Callable[[FloatArray], FloatArray]
-"""Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
+"""Takes times (n,) and returns the motion, shape (unknowns, n)."""
 
 STABLE = 3.0
 """Product of step and largest decay rate where stability begins to limit DOP853; the limit is 6."""
@@ -89,11 +89,10 @@ class Thresholds:
 
 @dataclass
 class Run:
-    """A simulation from t = 0 on, in scaled times and unknowns.
+    """A simulation from t = 0 on, in scaled times and unknowns, half of them relative velocities.
 
-    ``times``, shape (n,), are the requested times, the first of them 0. Half of the ``unknowns`` are relative
-    velocities. ``seconds`` converts a scaled time to s, and ``springs`` is the natural frequency in 1/T. The run ends
-    if a slip phase lasts for ``slipping``.
+    ``times``, shape (n,), are the requested times, the first of them 0. ``seconds`` converts a scaled time to s, and
+    ``springs`` is the natural frequency in 1/T. The run ends if a slip phase lasts for ``slipping``.
     """
 
     times: FloatArray
@@ -156,10 +155,10 @@ class Run:
 
 
 class SwitchingSurface(NamedTuple):
-    """A surface of continuous but not smooth rates.
+    """A surface where the rates are continuous but not smooth.
 
-    ``value`` takes the unknowns and changes sign on the surface. ``trend`` takes the unknowns and their rates and
-    returns a number with the sign of the rate of ``value``, which detects steps that cross the surface and come back.
+    ``value`` changes sign on the surface. ``trend`` takes the unknowns and their rates and returns a number with the
+    sign of the rate of ``value``, which detects steps that cross the surface and come back.
     """
 
     value: Callable[[list[float]], float]
@@ -173,10 +172,9 @@ class SwitchingSurface(NamedTuple):
 class Stepper:
     """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
-    The error estimate of a step across such a surface is unreliable, so the step is repeated up to it. ``rates``
-    takes one state for the explicit method, and is vectorised for collocation. ``y`` are the initial unknowns, and
-    ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the first
-    step to try.
+    A step across such a surface has an unreliable error estimate and is repeated up to it. ``rates`` takes one state
+    for the explicit method, and is vectorised for collocation. ``tolerated`` returns the allowed errors of a step.
+    ``implicit`` contains the scales of the unknowns and the first step to try.
     """
 
     def __init__(
@@ -195,7 +193,7 @@ class Stepper:
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._stiff_steps = 0  # stiff steps minus other steps
+        self._stiff_steps = 0
         self._tolerated = tolerated
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond it
@@ -220,10 +218,9 @@ class Stepper:
         return isinstance(self._solver, Radau) and self._solver.settled
 
     def stiff_for_long(self, change: float) -> bool:
-        """Return whether the explicit method has taken many stiff steps.
+        """Return whether the explicit method has taken many stiff steps; ``change`` is the relative change of slip.
 
-        ``change`` is the relative change of slip in the last step. Stiff steps are limited by stability, or by
-        accuracy because something decays much faster than slip changes.
+        Stiff steps are limited by stability, or by accuracy because something decays much faster than slip changes.
         """
         stiffness = self.stiffness
         stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change) or change < SHORT
@@ -236,7 +233,7 @@ class Stepper:
         return self._solver.stiffness
 
     def dense_output(self) -> DenseOutput | OdeSolution:
-        """Return the interpolant of the last step, as accurate as the end of the step."""
+        """Return the interpolant of the last step, as accurate as its end."""
         if self._dense is None:
             solver = self._solver
             self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)

@@ -54,26 +54,26 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     p, q, g = abs(constant), abs(turning), motion.friction
     if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
         return math.inf
-    # The angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle form
-    # of the law of cosines is accurate where an arccos would lose digits.
+    # Angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle form is
+    # accurate where an arccos would lose digits.
     angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
     limit = 2.0 * math.atan2(
         math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
     )
     turn = (-limit - angle) % (2.0 * math.pi)
     if 2.0 * math.pi - turn < ROUNDING:
-        turn = 0.0  # already at the limit
+        turn = 0.0
     return turn / abs(motion.disc_speed)
 
 
 def _first_release(motion: SlipMotion, z: complex) -> float:
     """Return the delay of :func:`release_delay` by a search for the first root over one turn of the disc.
 
-    While the disc turns by h the offset moves by X0·h relative to it, so the margin of friction over the pull changes
-    by at most Λh. Here Λ is |X0| times the tangent stiffness at the largest deflection on the way or, relative to the
-    ground, |z| times the sum of that stiffness and |ω² − iωβ/m|. The deflection is at most the mean of its values at
-    both ends plus min(|X0|, |z|)·h/2. This bounds the margin from below between two angles. Where the bound is
-    negative the interval is halved, the first half first, until it can contain only one root.
+    While the disc turns by h the margin of friction over the pull changes by at most Λh. Here Λ is |X0| times the
+    tangent stiffness at the largest deflection on the way or, relative to the ground, |z| times the sum of that
+    stiffness and |ω² − iωβ/m|. The deflection is at most the mean of its values at both ends plus min(|X0|, |z|)·h/2.
+    Where this bound allows a negative margin the interval is halved, the first half first, until it can contain only
+    one root.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
         return math.inf  # the pull turns but keeps its size
@@ -117,8 +117,8 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
     """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface at that moment. The limit surface contains the force and moment at
-    all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    Its friction is the force on the limit surface at that moment. Along the limit surface U = cos α falls, S ~ sin α
+    grows, the moment grows and the force falls.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
@@ -145,7 +145,7 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
     strength, g = abs(pull), motion.centre.friction
 
     def growth(beta: float) -> tuple[float, float]:
-        """Return the components of a − g∇P along n (growth of slip) and across it (rotation of n)."""
+        """Return the components of a − g∇P along n and across it."""
         c, s = math.cos(beta), math.sin(beta)
         shares = contact.shares(motion.length * c, -s / motion.gyration)
         force = strength - g * shares.resistance
@@ -175,7 +175,6 @@ class SlipStart:
     rest: float
 
     def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Return z and w at ``delays`` after the start, each of shape (n,)."""
         powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
         return powers @ self.positions, powers @ self.slip
 
@@ -185,8 +184,8 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
     With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. If the pull exceeds friction, slip
     grows linearly and the series converges. If they are equal (release from stick), slip grows quadratically with its
-    direction slaved to the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. Both
-    cases obey the recurrence at order t^k: (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
+    direction slaved to the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. In both
+    cases order t^k satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
 
     Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
     """

@@ -1,8 +1,8 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
-the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). It is as accurate between the nodes as
-at the end. SciPy's ``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). It is as accurate in between. SciPy's
+``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Matrix from values at the start and the nodes to Legendre coefficients."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
-"""Limits on Newton iterations and on Jacobians, which take most of the work, before the step is reduced."""
+"""Limits on Newton iterations and on Jacobians, which take most of the work."""
 
 CONVERGED = 0.01
-"""Change of the unknowns, as a share of their tolerances, of a converged Newton iteration."""
+"""Change of the unknowns in a converged Newton iteration, as a share of their tolerances."""
 
 STALLED = 0.3
 """Ratio of successive changes above which Newton's method needs a new Jacobian."""
@@ -45,7 +45,7 @@ LARGEST_GROWTH = 2.0
 """Largest ratio of successive steps."""
 
 SETTLED = 5
-"""Steps without much growth after a transient until the step size has settled."""
+"""Number of steps without much growth until the step size has settled."""
 
 LEAST_SHARE = 1e-8
 """Smallest step as a share of the first."""
@@ -86,7 +86,7 @@ class Scales(NamedTuple):
 
 
 class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
-    """The motion in a step from ``first`` to ``last`` as a Legendre series with ``coefficients`` (NODES + 1, n)."""
+    """The motion in a step as a Legendre series with ``coefficients`` (NODES + 1, n)."""
 
     def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
         super().__init__(first, last)
@@ -149,7 +149,7 @@ class Radau:
         return self._polynomial
 
     def step(self) -> str | None:
-        """Take one step, as long as the tolerances allow; return an error message, or None."""
+        """Take one step; return an error message, or None."""
         h, most = self._next, LARGEST_GROWTH
         while True:
             h = min(h, self.t_bound - self.t)
@@ -179,9 +179,9 @@ class Radau:
             self.status = "finished"
         return None
 
-    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
+    @np.errstate(over="ignore", divide="ignore", invalid="ignore")
     def _collocate(self, h: float) -> Polynomial | None:
-        """Solve for the unknowns at the nodes of a step; return None if Newton's method does not converge."""
+        """Solve for the unknowns at the nodes of a step; return None without convergence."""
         places = self.t + 0.5 * h * (POINTS + 1.0)
         if self._polynomial is None:
             values = self.y + np.outer(places - self.t, self.f)
@@ -210,7 +210,7 @@ class Radau:
             size = float(np.max(abs(change) / self._tolerated))
             if not math.isfinite(size):
                 return None
-            if size < CONVERGED or STALLED * last < size < 0.5:  # the latter at the level of rounding
+            if size < CONVERGED or STALLED * last < size < 0.5:
                 self._jacobian = jacobians[-1]
                 coefficients = FROM_START @ np.vstack((self.y, values))
                 return Polynomial(self.t, self.t + h, coefficients)

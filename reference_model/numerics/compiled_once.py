@@ -1,7 +1,7 @@
 """Functions called from Python, compiled once per machine and kept on disk until their sources change.
 
 numba's cache checks only the file of the function itself, although functions and constants of other files are
-compiled into it. So each package keeps its compiled functions in a folder named after a digest of all its sources.
+compiled into it. So each package keeps compiled functions in a folder named after a digest of its sources.
 """
 
 from __future__ import annotations
@@ -77,7 +77,6 @@ def compiled_for(
 
 @contextmanager
 def _cached_in(folder: str) -> Iterator[None]:
-    """Make numba cache functions in ``folder`` that are decorated in this context."""
     before = config.CACHE_DIR
     config.CACHE_DIR = folder
     try:

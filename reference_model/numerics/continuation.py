@@ -31,7 +31,6 @@ TURN = 0.97
 """Smallest cosine of the angle between the tangents at neighbouring points."""
 
 SHORTEST = 1e-9
-"""Smallest step, in units of the scales."""
 
 
 class ContinuationError(RuntimeError):
@@ -88,8 +87,6 @@ def follow(
 
 @dataclass(frozen=True, eq=False)
 class _Tracer:
-    """The continuation in units of the scales."""
-
     equations: Function
     limits: Function
     scales: FloatArray

@@ -18,7 +18,7 @@ Rates = Callable[[list[float]], Sequence[float]]
 """Takes the unknowns and returns their rates; the equations are autonomous."""
 
 Tolerated = Callable[[FloatArray], FloatArray]
-"""Takes the unknowns and returns the allowed errors of a step, of the same shape."""
+"""Takes the unknowns and returns the allowed errors of a step."""
 
 TIGHTEST = 3e-14
 """Smallest relative tolerance that SciPy's integrators accept."""

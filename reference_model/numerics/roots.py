@@ -27,9 +27,8 @@ def nodes_between(left: float, right: float) -> FloatArray:
 def zeros_between(function: Callable[[float], float], left: float, right: float) -> list[float]:
     """Return the zeros of a continuous ``function`` on [left, right] in increasing order.
 
-    A zero shows as a change of sign between two of the :func:`nodes_between`, or as one of a pair in a dip towards
-    zero. Only two dips between three neighbouring nodes could hide zeros. Neighbouring nodes that are zeros count as
-    one zero.
+    A zero shows as a change of sign between two of the :func:`nodes_between`, or in a dip towards zero. Only two dips
+    between three neighbouring nodes could hide zeros. Neighbouring nodes that are zeros count as one zero.
     """
     return sorted(set(_zeros(function, nodes_between(left, right).tolist())))
 
@@ -40,7 +39,7 @@ def zero_between(function: Callable[[float], float], left: float, right: float) 
 
 
 def largest_between(function: Callable[[float], float], left: float, right: float) -> float:
-    """Return the largest value of a continuous ``function`` on [left, right], searched for like the zeros."""
+    """Return the largest value of a continuous ``function`` on [left, right]."""
     nodes = nodes_between(left, right).tolist()
     values = [function(node) for node in nodes]
     best = int(np.argmax(values))
@@ -69,7 +68,7 @@ def _zeros(function: Callable[[float], float], nodes: list[float]) -> Iterator[f
 
 
 def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
-    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if the run contains it."""
+    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if it contains it."""
     last = next((i for i in range(first, len(nodes)) if values[i] != 0.0), len(nodes)) - 1
     if first == 0:
         return nodes[0]

@@ -2,7 +2,7 @@
 
 If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
 eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
-boundary is the root of an equation. End states show the side of a start, which brackets the root.
+boundary is the root of an equation, which end states bracket.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ NEAR = 0.3
 """Angle in rad within which a release counts as near that of the orbit; roots do not depend on it."""
 
 SPARE = 0.1
-"""Error that the search for a point may leave, over the tolerance of the orbit."""
+"""Error of a point, over the tolerance of the orbit."""
 
 DISTINCT = 0.1
 """Smallest relative difference in radius that distinguishes two motions."""
@@ -114,7 +114,7 @@ def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -
     """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
     The boundary is the stable set of the saddle ``orbit``, whose tolerance is that of the point. Raises
-    ``ValueError`` if the orbit is not a saddle that separates two motions, or both starts lead to the same motion;
+    ``ValueError`` if the orbit does not separate two motions, or both starts lead to the same motion;
     ``RuntimeError`` if something other than this stable set separates them.
     """
     separatrix = Separatrix.of(orbit)
@@ -132,8 +132,8 @@ def basin_boundary(
     """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
     Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
-    Raises ``ValueError`` if the orbit is not a saddle that separates two motions, or an argument is invalid;
-    ``RuntimeError`` if a boundary is not in the stable set of this orbit, or a curve cannot be followed.
+    Raises ``ValueError`` if the orbit does not separate two motions, or an argument is invalid; ``RuntimeError`` if a
+    boundary is not in the stable set of this orbit, or a curve cannot be followed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Continuation of orbits in the load: the branch of whirls or modulated cycles, and the fold where whirls end."""
+"""Continuation of orbits in the load, to the fold where whirls end."""
 
 from __future__ import annotations
 
@@ -70,11 +70,11 @@ def last_whirl(
     tolerance: float = 1e-12,
     precision: float = 0.0,
 ) -> Orbit:
-    """Return the whirl at the smallest load with a whirl: the fold of the branch.
+    """Return the whirl at the smallest load with a whirl: the fold, where it meets the unstable whirl.
 
-    There the whirl meets the unstable whirl that separates it from the other motions. The branch is followed from the
-    load of ``system`` towards the axis, to the minimum of the load over the crossing x. Arguments and errors are
-    those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before it folds.
+    The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the crossing
+    x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before it
+    folds.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

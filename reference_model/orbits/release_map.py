@@ -2,8 +2,8 @@
 
 At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of the
 pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the orbits,
-and its slope there is their multiplier. The map has gaps, where the pin never sticks again or sticks permanently, and
-jumps where the next stick phase vanishes.
+with its slope as multiplier. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
+where the next stick phase vanishes.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ JUMP = 1e-4
 """Smallest residual in rad of a sign change that is a jump and not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
-"""Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used."""
+"""Steps in rad of the central differences for the multiplier; the first that meets no gap is used."""
 
 
 class Release(NamedTuple):
@@ -110,7 +110,7 @@ class ReleaseMap:
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)
 
     def first(self, state: ArrayLike, wanted: Callable[[Release], bool]) -> tuple[Release | None, FloatArray]:
-        """Return the first ``wanted`` release after ``state``, shape (4,), or None, and the last state reached."""
+        """Return the first ``wanted`` release after ``state``, or None, and the last state."""
         for turns in SEARCH_TIMES:
             times = [0.0, turns * self.turn]
             trajectory = REFERENCE(self.pin, state, times, tolerance=self.tolerance)
@@ -127,7 +127,7 @@ class ReleaseMap:
 
     def after(self, angle: float) -> Release | None:
         """Return the release after one at ``angle``; None if the pin never sticks again."""
-        # Because of rounding the pin may be held for another moment.
+        # Rounding may hold the pin for another moment.
         return self.first(self.state(angle), lambda release: release.time > release.stick_time)[0]
 
     def slope(self, angle: float) -> float:
@@ -220,10 +220,9 @@ def stick_slip_orbits(
 ) -> tuple[StickSlipOrbit, ...]:
     """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
-    The stable ones are stick-slip cycles. An orbit with a multiplier > 1 is a saddle: its stable set separates the
-    starts that lead to two other motions. There are none without offset or friction, or on a disc at rest.
-    Trajectories have ``samples`` intervals. Raises ``ValueError`` if an argument is invalid, or the support is not
-    linear.
+    The stable ones are stick-slip cycles. One with a multiplier > 1 is a saddle, whose stable set separates the
+    starts that lead to two other motions. There are none without offset or friction, or on a disc at rest. Raises
+    ``ValueError`` if an argument is invalid, or the support is not linear.
     """
     require_system(pin, PinOnDisc)
     require_linear_support(pin)

@@ -28,7 +28,7 @@ SIZES = np.geomspace(1e-4, 1.0, 96)
 """Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset."""
 
 PERIODS = 500.0
-"""Longest time to an end state, in periods of the free oscillation, unless the start lies on the boundary."""
+"""Longest time to an end state, in free periods, unless the start lies on the boundary."""
 
 COARSE, FINE = 1e-2, 1e-7
 """Relative widths of bisection: for the direction, and to check the result."""
@@ -136,7 +136,7 @@ def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatAr
 
 
 def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each angle two sizes that bracket the onset of the whirl; inf if none leads there."""
+    """Return for each angle two sizes that bracket the onset of the whirl, or inf."""
     reach = abs(pin.disc_speed) * max(
         abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
     )
@@ -153,7 +153,6 @@ def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tu
 def _bisected(
     pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
 ) -> FloatArray:
-    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``."""
     sizes = np.full(len(angles), math.inf)
     there = np.flatnonzero(np.isfinite(high))
     low, high, angles = low[there].copy(), high[there].copy(), angles[there]

@@ -1,10 +1,10 @@
 """Periodic orbits by shooting, with any engine's ``simulate``.
 
-With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
-offset a motion may recur up to a rotation about the axis.
+With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period, without
+offset up to a rotation about the axis.
 
-Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 return maps, each a simulation, to fail
-without an orbit near the guess, compared with 10 to 16 here.
+Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 simulations to fail without an orbit
+near the guess, compared with 10 to 16 here.
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc withou
 MOST_ITERATIONS = 25
 
 CONVERGED = 1e-9
-"""Largest relative residual of an orbit; Newton's method continues below it until rounding stops it."""
+"""Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""Largest residual over an engine's precision, if that is more: a residual contains its noise several times."""
+"""Largest residual over an engine's precision, because a residual contains its noise several times."""
 
 SLOW = 0.3
 """Share of the residual that may remain after an iteration without new derivatives."""
@@ -101,7 +101,7 @@ class ShootingProblem:
         return rotated(without_angle(end), -float(unknowns[TURN])) - unknowns[:PERIOD]
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
-        """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
+        """Return the derivatives of ``miss`` by the ``sought`` unknowns."""
         step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise of the map
         columns = []
         for i in sought:
@@ -138,10 +138,9 @@ class ShootingProblem:
 class Orbit:
     """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
-    ``state``, shape (4,) or (6,), is the initial state, on the x axis unless the guess started elsewhere; the angle
-    of a disc is zero. ``period`` is in s. ``residual`` is the distance between start and end, relative to the size of
-    the orbit. ``turn`` is the rotation of the motion about the axis in a period, in rad, including whole turns; 0 if
-    it recurs without rotation.
+    ``state``, shape (4,) or (6,), is the initial state, with the angle zero. ``period`` is in s. ``residual`` is the
+    distance between start and end, relative to the size of the orbit. ``turn`` is the rotation about the axis in a
+    period, in rad, including whole turns; 0 if the motion recurs without rotation.
     """
 
     system: System
@@ -227,7 +226,7 @@ def shoot(
         miss = problem.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
         if smallest < problem.converged and size >= 0.5 * smallest:
-            break  # rounding level reached
+            break
         if size < smallest:
             best, smallest = unknowns, size
         if slopes is None or size > SLOW * last:
@@ -297,6 +296,6 @@ def size_of(system: System, part: FloatArray) -> FloatArray:
 
 
 def rotated(part: FloatArray, angle: float) -> FloatArray:
-    """Return the state without angle, rotated about the axis by ``angle`` in rad."""
+    """Return the state without angle, rotated by ``angle`` in rad."""
     z, v = (complex(part[i], part[i + 1]) * cmath.exp(1j * angle) for i in (X, VX))
     return np.array([z.real, z.imag, v.real, v.imag, *part[SPIN:]])

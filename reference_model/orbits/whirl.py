@@ -34,7 +34,7 @@ RECURRENCE = 0.05
 """Largest relative difference of two recurrent states."""
 
 LEAST_MODULATION = 1e-6
-"""Smallest relative oscillation of the radius of a modulated cycle; a whirl found to ``CONVERGED`` has less."""
+"""Smallest relative oscillation of the radius of a modulated cycle; a converged whirl has less."""
 
 
 def whirl_orbit(
@@ -49,16 +49,16 @@ def whirl_orbit(
 ) -> Orbit:
     """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
-    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, with
-    differences for the derivatives of the flow Φ and the y of the guess. Orbits with stick phases are found too.
+    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, at
+    the y of the guess. Orbits with stick phases are found too.
 
     Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points; ``RuntimeError``
-    if Newton's method does not converge, because such an orbit does not exist near the guess.
+    if Newton's method does not converge.
 
     Parameters
     ----------
     system
-        Parameters of a system with a whirl without offset: |ω| > k on a linear support.
+        A system with a whirl without offset: |ω| > k on a linear support.
     simulate
         The engine, such as ``functools.partial(simulate, contact=...)`` for another friction law.
     guess
@@ -104,8 +104,8 @@ def modulated_cycle(
 ) -> Orbit:
     """Return the cycle of a whirl whose radius oscillates, X0 = 0 only, by shooting (Fig. 11).
 
-    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts
-    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts at
+    an extreme of the radius, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
     ``guess`` is the cycle for nearby parameters, or a simulation that ends close to the cycle, covers more than a
     period of the modulation and resolves a revolution. Other arguments are those of :func:`whirl_orbit`.

@@ -2,7 +2,7 @@
 
 This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
 up to its torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this
-makes three unknowns. A boundary has two equations, the balance and one of
+makes three unknowns for two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -52,10 +52,9 @@ SLOWEST = 3e-3
 """Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; below it the pair is about to become real."""
 
 NODES = 41
-"""Number of ratios tried on each line."""
 
 SAME = 3e-3
-"""Largest distance of a start from a known curve to lie on it, in units of the scales."""
+"""Largest distance from a known curve of a start that lies on it, in units of the scales."""
 
 LINES = 9
 """Number of starting lines in each direction of the plane."""
@@ -68,9 +67,9 @@ INSET = 1e-6
 class ParameterPlane:
     """A rectangle in two parameters of a disc; all others are those of ``disc``.
 
-    ``names`` are two parameters of ``DiscOnDisc``, except contact, offset and nonlinear support, with the ranges from
-    ``lower`` to ``upper``. Raises ``ValueError`` if a name is not allowed, a range is empty or includes parameters
-    without a whirl at any load, or there is an offset or a nonlinear support.
+    ``names`` are two parameters except contact, offset and nonlinear support, with ranges from ``lower`` to
+    ``upper``. Raises ``ValueError`` if a name is not allowed, a range is empty or includes parameters without a whirl
+    at any load, or there is an offset or a nonlinear support.
     """
 
     disc: DiscOnDisc
@@ -133,9 +132,9 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
-    The search starts from ``LINES`` lines in each direction and misses only closed curves between neighbouring lines.
-    ``step`` is the largest distance of neighbouring points, in units of the ranges; ``contact`` None means the law of
-    the parameters. Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
+    The search starts from ``LINES`` lines in each direction and misses only closed curves between them. ``step`` is
+    the largest distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the
+    parameters. Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
     """
     return tuple(
         boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)
@@ -222,7 +221,6 @@ class _Condition:
         return characteristic_coefficients(self.disc(unknowns), *self.ratio(unknowns), self.law)
 
     def margin(self, unknowns: FloatArray) -> float:
-        """Return the second residual of the boundary."""
         found = self.coefficients(unknowns)
         return found.hurwitz if self.kind == "Hopf" else found.constant
 
@@ -251,7 +249,6 @@ class _Condition:
                 yield from self.crossings(across, value)
 
     def crossings(self, across: int, value: float) -> Iterator[FloatArray]:
-        """Yield the points of the curves for a ``value`` of one parameter."""
         found = [self.whirl(across, value)] if self.kind == "onset" else self.zeros(across, value)
         for point in found:
             if point is not None and np.all(self.limits(point) > 0.0):
@@ -283,7 +280,7 @@ class _Condition:
         return (value, other) if across == 0 else (other, value)
 
     def whirl(self, across: int, value: float, *nearness: float) -> FloatArray | None:
-        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter; None if none exists."""
+        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter, or None."""
         along = 1 - across
         low, high = self.plane.lower[along], self.plane.upper[along]
 

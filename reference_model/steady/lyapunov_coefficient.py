@@ -1,9 +1,9 @@
 """The first Lyapunov coefficient of a whirl at its Hopf boundary: soft or hard onset of modulation.
 
-Near a Hopf boundary the motion is ż = λz + c·z|z|² in one complex amplitude z, in suitable coordinates. If Re c < 0 a
-small stable cycle grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl
-before the boundary, and beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied
-bifurcation theory, sections 3.5 and 5.4).
+Near a Hopf boundary the motion is ż = λz + c·z|z|² in a complex amplitude z. If Re c < 0 a small stable cycle grows
+out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl before the boundary, and
+beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied bifurcation theory, sections 3.5
+and 5.4).
 """
 
 from __future__ import annotations

@@ -29,11 +29,10 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
-    """Return the derivative of the right side of eq. 1 or 19 by the state, for a sliding contact.
+    """Return the derivative of the right side of eq. 1 or 19 by the state for a sliding contact, (4, 4) or (6, 6).
 
-    ``state``, shape (4,) or (6,), is that of :class:`reference_model.Trajectory`; the result has shape (4, 4) or (6,
-    6). Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the
-    state is invalid or exactly at the stop of the support; or if a contact is given for a pin.
+    Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the state
+    is invalid or exactly at the stop of the support; or if a contact is given for a pin.
     """
     state = checked_state(system, state)
     size = system.state_size // 2
@@ -115,9 +114,8 @@ def turning_frame_jacobian(
 ) -> FloatArray:
     """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
-    The unknowns are the position in m and the absolute velocity in m/s, both in components along the turning axes,
-    and the spin of a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) −
-    κ×v.
+    The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
+    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v.
 
     ``state`` lies on the whirl, with the centre on the x axis: y = vx = 0. A pin needs none. Raises ``ValueError`` as
     :func:`sliding_jacobian`, and if a pin has no whirl or the state cannot lie on one.
@@ -139,8 +137,8 @@ def whirl_eigenvalues(
     """
     state = _state_on_whirl(system, state)
     jacobian = turning_frame_jacobian(system, state, contact)
-    # A rotation of the whole motion is the free phase: (0, 1) in position, (−κ, 0) in velocity. Deflating this
-    # direction keeps the rounding error of a zero eigenvalue out of the others.
+    # A rotation of the whole motion is the free phase: (0, 1) in position, (−κ, 0) in velocity. Deflation keeps the
+    # rounding error of its zero eigenvalue out of the others.
     phase = np.zeros(len(jacobian))
     phase[1], phase[2] = 1.0, -_frequency(system, state)
     others = [i for i in range(len(jacobian)) if i != 1]
@@ -151,15 +149,14 @@ def whirl_eigenvalues(
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the largest μN in N for a stable rotation of a centred disc about the axis.
 
-    With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the moment
-    of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that turns with
-    the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
+    With the centre on the axis b(ω − Ω − S) = μN·M sign S, where M is the moment of pure spin (R for a ring). Against
+    a small slip u of the centre friction is a damper μN·g/|S| that turns with the master disc, g/|S| = ∂F/∂U at U = 0
+    (1/(2R|S|) for a ring)::
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
-    C is the stiffness for small deflections. A motion z ~ exp(±ikt) in the sense of ω neither grows nor decays if
-    μN·g(|ω| − k) = βk|S|, which is linear in μN. The instability ends at the load b|ω − Ω| = μN·M, above which the
-    disc sticks.
+    A motion z ~ exp(±ikt) in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN.
+    The instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
     The result does not depend on ``friction_force``. Raises ``ValueError`` if there is an offset; if |ω| <= k, where
     the rotation is stable at every load; or if b = 0 or Ω = ω, where the disc may stick at every load.
@@ -186,7 +183,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
 
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
-    """Return the eigenvalues by decreasing real part, then by decreasing imaginary part."""
+    """Return the eigenvalues by decreasing real part, then imaginary part."""
     return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
 
 

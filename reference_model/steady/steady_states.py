@@ -95,7 +95,7 @@ def resting(x: float, y: float, spin: float) -> FloatArray:
 
 
 def circling(radius: float, frequency: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its circling centre, which is on the x axis."""
+    """Return the state of a disc that spins about its centre, which circles from the x axis."""
     return np.array([radius, 0.0, 0.0, 0.0, frequency * radius, spin])
 
 
@@ -118,13 +118,13 @@ def self_centred_equilibria(
 
     A pin has at most one: that of (3). It has none
 
-    - if μN >= C·|X0|, which includes X0 = 0; at equality the pin would stick on the axis;
+    - if μN >= C·|X0|; at equality the pin would stick on the axis;
     - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring it
-    is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² + (μN·F)² =
-    (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. It has none
+    A disc on a ring has one: at a given radius the torsional balance allows one spin, and the balance of forces,
+    (Cρ)² + (μN·F)² = (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. It
+    has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
@@ -135,7 +135,7 @@ def self_centred_equilibria(
 
     ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` if a disc
     rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as the rim of a
-    continuous ring, where eigenvalues do not exist.
+    ring, where eigenvalues do not exist.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
@@ -175,7 +175,7 @@ def whirls(system: DiscOnDisc, contact: IsotropicContact | None = None) -> tuple
 def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whirl, ...]:
     """Return every motion of ``system`` on a circle about the axis with permanent slip; X0 = 0 only.
 
-    A pin has at most one: that of (11) if |ω| > k, in the sense of the disc's rotation. There is none
+    A pin has at most one: that of (11). It has none
 
     - if |ω| <= k: the pin would overtake the disc, and friction would brake it as the damping does;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
@@ -185,12 +185,12 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     A disc may have several, the largest first, all with the pin's frequency ±k and smaller than the pin's. The same
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
-    On a nonlinear support the frequency grows with the circle. The pin's circle, with the speed μN/β, is a whirl if
-    the disc turns faster; otherwise, and if β = 0, the pin finally sticks. The circles of a disc are smaller and
-    slower, because its friction acts only partly along the circle, so a disc may have whirls where a pin sticks.
+    On a nonlinear support the frequency grows with the circle. The pin's circle, with the speed μN/β, is a whirl only
+    if the disc turns faster. The circles of a disc are smaller and slower, because its friction acts only partly
+    along the circle, so a disc may have whirls where a pin sticks.
 
-    Raises ``ValueError`` if the offset is not zero, where the orbit is not a circle about the axis; otherwise
-    arguments and errors are those of :func:`self_centred_equilibria`.
+    Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
+    :func:`self_centred_equilibria`.
     """
     _require_centred(system)
     if isinstance(system, PinOnDisc):
@@ -278,11 +278,9 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    It is the smallest load of :func:`reference_model.formulas.disc.whirl_at` over all ratios: either that of a whirl
-    of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold, where two whirls meet.
-
-    The result does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at any load, or if
-    the support is not linear, where whirls may begin and end at several loads.
+    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold,
+    where two whirls meet. It does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at
+    any load, or if the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)

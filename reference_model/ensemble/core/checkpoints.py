@@ -27,7 +27,7 @@ Independently of these, they store the increasing ``requested`` times.
 
 
 def empty_checkpoints(n: int, state_size: int, requested: FloatArray | tuple[()] = ()) -> Checkpoints:
-    """Return ``n`` checkpoints, none of them taken, with up to n ``requested`` times in s."""
+    """Return ``n`` unused checkpoints with up to n ``requested`` times in s."""
     room = np.zeros(n, dtype=_layout(state_size))
     room["requested"] = np.inf
     room["requested"][: len(requested)] = requested
@@ -59,7 +59,7 @@ def next_requested(memory: Any, settings: Any) -> float:
 
 @scalar
 def mark_requested(lanes: Any, moment: Any, memory: Any, lane: int, until: float, settings: Any) -> bool:
-    """Return whether times up to ``until`` are requested; mark them as passed, and store the pace of ``moment``."""
+    """Return whether times up to ``until`` are requested; mark them as passed and store the pace of ``moment``."""
     before = memory.passed
     while memory.passed < settings.checkpoints.size and next_requested(memory, settings) <= until:
         memory.passed += 1

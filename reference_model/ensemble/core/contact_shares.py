@@ -1,9 +1,8 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
-Both are resistances, as shares of μN, to slip of the centre and of the rim (the moment over R).
-
-Those of the ring are complete elliptic integrals by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With
-k the smaller over the larger of U = |u| and the rim's |W|, and c the halved differences of a and g::
+Both are resistances, as shares of μN, to slip of the centre and of the rim. Those of the ring are elliptic integrals
+by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the smaller over the larger of U = |u| and the
+rim's |W|, and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
@@ -28,10 +27,10 @@ NEAREST = 1e-16
 """Smallest relative distance from U = |W| that makes a difference."""
 
 SMALL = 1e-4
-"""k² below which the terms after c₁² in the sum over k² are less than their own rounding."""
+"""k² below which the terms after c₁² in the sum over k² are below rounding."""
 
 HALVINGS = 7
-"""Number of means of a and g; both then agree to rounding for all k."""
+"""Number of means of a and g, which then agree to rounding for all k."""
 
 QUARTER = (
     float.fromhex("0x1.921fb54400000p+0"),
@@ -110,7 +109,7 @@ def turned(angle: float) -> tuple[float, float]:
     for coefficient in COSINE[1:]:
         cosine = cosine * m + coefficient
     sine *= x
-    turn = quarters - 4.0 * np.rint(0.25 * quarters)  # -2 to 2
+    turn = quarters - 4.0 * np.rint(0.25 * quarters)
     odd = abs(turn) == 1.0
     c = sine if odd else cosine
     s = cosine if odd else sine

@@ -1,10 +1,9 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
 Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
-inlined functions of numbers and tuples. The step is also compiled for one lane, for single trajectories.
-
-A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
-release, the end), which scalar code handles. Results are the same bit by bit in every lane and next to any others.
+inlined functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events
+(rest, release, the end) a lane raises a flag, which scalar code handles. Results are the same bit by bit in every
+lane.
 """
 
 from __future__ import annotations
@@ -38,11 +37,11 @@ Kind = TypeVar("Kind")
 
 
 Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
-"""Writes the start of a trajectory, given by its number, to the trial of a lane; returns whether it has ended."""
+"""Writes the start of a trajectory, given by its number, to a lane's trial; returns whether it has ended."""
 Advance = Callable[[Lanes, Kind], None]
 """Makes a trial step in all lanes, or in the first one only."""
 HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
-"""Handles a lane with a flag and may change its trial; returns whether the trajectory has ended."""
+"""Handles a flag and may change the trial; returns whether the trajectory has ended."""
 Store = Callable[[Lanes, Memory, int, Results], None]
 """Writes the result of a trajectory from the trial of its lane."""
 Idle = Callable[[Lanes, int], None]
@@ -107,14 +106,12 @@ def run(
 
 @inlined
 def row_of(values: FloatArray, number: int) -> FloatArray:
-    """Return the row of a trajectory in an array with a row for each, or a single one for all."""
     row: FloatArray = values[number if values.shape[0] > 1 else 0]
     return row
 
 
 @scalar
 def store_end(lanes: Any, memory: Any, lane: int, results: Results) -> None:
-    """Write the end of a lane in SI units, except for its state."""
     number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
     results.times[number] = lanes.trial.state.time[lane] / rate
     results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])

@@ -11,10 +11,10 @@ from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
 ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
-"""Relative slip that counts as none: a body that moves with the disc to rounding error sticks."""
+"""Largest relative slip of a body that counts as sticking, from rounding."""
 
 CREEP = 0.1
-"""Largest excess of the pull for creeping slip, as a fraction of the pull's change in a turn or of g."""
+"""Largest excess of the pull of creeping slip, as a fraction of the pull's change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):
@@ -64,7 +64,7 @@ Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, f
 def units(
     k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float
 ) -> tuple[float, float]:
-    """Return the unit of length in m and the inverse unit of time in 1/s, as ``units.Units.of`` for a pin."""
+    """Return the unit of length in m and the inverse unit of time in 1/s, as ``Units.of`` for a pin."""
     rate = max(k, abs(omega))
     if rate == 0.0:
         rate = c
@@ -76,7 +76,6 @@ def units(
 
 @inlined
 def pull(z: complex, w: complex, law: Law) -> complex:
-    """Return a(z, w), the relative acceleration without friction."""
     v = w + 1j * law.disc_speed * z
     acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
     return acceleration
@@ -106,7 +105,7 @@ def points_friction(
 
 @scalar
 def release_delay(z: complex, law: PinLaw) -> float:
-    """Return how long a pin at rest at ``z`` sticks, like ``stick.release_delay``: eq. 7; inf for permanent stick."""
+    """Return how long a pin at rest at ``z`` sticks, like ``stick.release_delay``: eq. 7."""
     constant = law.stiffness * law.offset
     turning = pull(z, 0j, law) - constant
     p, q, g = abs(constant), abs(turning), law.friction
@@ -128,7 +127,7 @@ def release_delay(z: complex, law: PinLaw) -> float:
 
 @scalar
 def sticking_radius(law: PinLaw) -> float:
-    """Return the largest distance from the axis with permanent stick of a pin (9), where p + q = g."""
+    """Return the largest distance from the axis with permanent stick of a pin (9)."""
     turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
     spare = law.friction - law.stiffness * abs(law.offset)
     return spare / turning if turning > 0.0 else math.inf
@@ -138,9 +137,9 @@ def sticking_radius(law: PinLaw) -> float:
 def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     """Return whether a pin released at the radius ``last`` and then at ``radius`` creeps inward forever.
 
-    Its pull has a constant part p = k²|X0| and a part q, proportional to the radius, that turns with the pin. Once
-    per turn they add up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the
-    slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >= 4K: see
+    Its pull has a constant part p = k²|X0| and a turning part q, proportional to the radius. Once per turn they add
+    up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the slip reduces δ by
+    4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >= 4K: see
     ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2

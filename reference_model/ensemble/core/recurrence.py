@@ -1,4 +1,4 @@
-"""Recurrence of a motion: convergence of successive values, and measures from one value to the next."""
+"""Convergence of successive values of a motion, and measures from one value to the next."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ACCURACY = 1e-4
 """Relative distance that may remain when a motion counts as converged."""
 
 STILL = 1e-2
-"""Distance between crossings, as a fraction of that allowed by ACCURACY, that is only noise."""
+"""Distance between crossings that is only noise, as a fraction of that allowed by ACCURACY."""
 
 NO_WINDOW = 0
 """Kind of a window that measures nothing."""
@@ -30,7 +30,7 @@ class Series(Record):
 
 
 class Measures(NamedTuple):
-    """Measures of an end state: smallest and largest radius, and mean slip speed."""
+    """Smallest and largest radius, and mean slip speed in an end state."""
 
     least: float
     largest: float
@@ -49,7 +49,7 @@ class Window(Record):
 
 @scalar
 def compared(series: Series, values: Tuple, scale: float) -> bool:
-    """Compare with earlier values of the same kind; return whether less than ACCURACY·scale remains to converge."""
+    """Compare with earlier values; return whether less than ACCURACY·scale remains to converge."""
     square = 0.0
     for i in range(5):
         square += (values[i] - series.values[i]) ** 2
@@ -62,7 +62,7 @@ def compared(series: Series, values: Tuple, scale: float) -> bool:
 
 @scalar
 def converged(last: float, before: float, first: float, scale: float) -> bool:
-    """Return whether the last three distances between crossings imply that less than ACCURACY·scale remains."""
+    """Return whether three successive distances imply that less than ACCURACY·scale remains."""
     allowed = ACCURACY * scale
     if max(last, before, first) < STILL * allowed and not last > before > first:
         return True  # near a saddle they are small too, but grow

@@ -1,8 +1,4 @@
-"""Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
-
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff. The implicit method of
-:mod:`.core.stepping.implicit` follows it until an explicit one can.
-"""
+"""Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`."""
 
 from __future__ import annotations
 
@@ -25,7 +21,7 @@ from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
-"""Allowed contribution of the last terms of the polynomials, in the kernel's units."""
+"""Allowed contribution of the last terms of the polynomials, in units."""
 
 
 @scalar
@@ -35,8 +31,8 @@ def grown(
     """Return position, slip, rotation, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
     It ends where an explicit method can continue, or after ``longest``. ``first`` is the initial rate of slip. The
-    rotation is relative to the master disc and multiplied by κ; the work is that of friction per newton. A duration
-    of zero means that the motion could not be resolved.
+    rotation is relative to the master disc, times κ; the work is that of friction per newton. The duration is zero if
+    the motion could not be resolved.
     """
     carried = 1j * law.disc_speed
     change = -(law.stiffness + (law.damping + carried) * carried) * carried * z

@@ -1,4 +1,4 @@
-"""Ensembles of discs and single discs: from parameters to results.
+"""Ensembles of discs and single discs.
 
 Compiled code does not follow contact points that come to rest. The plain reference continues such a trajectory until
 all points slip.
@@ -41,7 +41,6 @@ def simulate_discs(
     n: int,
     threads: int,
 ) -> Results:
-    """Simulate ``n`` discs like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
     task = Task(parameter_table(disc, PARAMETERS, varied), starts, np.full(1, duration))
     return _run_through(disc, task, n, settings, varied, tolerance, threads)
@@ -139,8 +138,8 @@ def _through_rest(
 ) -> Iterator[tuple[Trajectory, bool]]:
     """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
-    Each part includes the requested ``times`` within it, and whether the disc has been stuck for a turn of the master
-    disc, which counts as permanent.
+    Each part includes the requested ``times`` within it, and whether the disc has been stuck for a turn, which counts
+    as permanent.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration

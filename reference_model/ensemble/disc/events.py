@@ -1,9 +1,9 @@
 """End states of a disc, detected during its motion.
 
 Self-centred
-    The state is checked once per free period. It converges if d·q/(1 − q) is small, with the distance d between
-    checks and q the larger of its last two ratios (:mod:`.core.recurrence`). A motion may pass close to an unstable
-    equilibrium, as some of Fig. 11 do, so the equilibrium must also attract, and be as close by Newton's method
+    The state, checked once per free period, converges: d·q/(1 − q) is small, with the distance d between checks and q
+    the larger of its last two ratios (:mod:`.core.recurrence`). A motion may pass close to an unstable equilibrium,
+    as some of Fig. 11 do, so the equilibrium must also attract, and be as close by Newton's method
     (:mod:`.stability`).
 Whirl
     The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
@@ -129,7 +129,7 @@ def found(
 
 @inlined
 def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
-    """Return r in the last step, by the cubic through r and its rate at both ends."""
+    """Return r in the last step, by a cubic."""
     r0, r1 = lanes.now.state.r[lane], lanes.trial.state.r[lane]
     k0, k1 = lanes.now.rates, lanes.trial.rates
     d0, d1 = span * k0.r[lane] / k0.time[lane], span * k1.r[lane] / k1.time[lane]
@@ -142,7 +142,6 @@ def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
 def record_extreme(
     lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Record where x is largest, or the radius is extreme."""
     if memory.end != UNDECIDED:
         return False
     step = last_step(lanes, lane)
@@ -190,7 +189,6 @@ def record_turn(
 def check_due(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings, attracts: Attracts
 ) -> bool:
-    """Check the motion, once per free period and at the end."""
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
     if recorded(settings):
         record_requested(lanes, lanes.now, memory, lane, t, settings)
@@ -203,7 +201,7 @@ def check_due(
         lanes.watch[lane] = UNWATCHED
         return settings.early
     if t < due:
-        return False  # at the end
+        return False
     lanes.due[lane] = due + memory.tick
     if memory.end != UNDECIDED:
         return False
@@ -234,7 +232,7 @@ def check_due(
 
 @scalar
 def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: DiscSettings) -> bool:
-    """Return whether the motion is in a known trapping region, and store its end state."""
+    """Return whether the motion is in a known trapping region; if so store its end state."""
     length, speed = memory.length, memory.length * memory.rate
     for region in settings.regions:
         if region.circle:

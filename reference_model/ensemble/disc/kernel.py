@@ -1,4 +1,4 @@
-"""The kernel of discs on rings or points: load and store a lane, and run all trajectories."""
+"""The kernel of discs on rings or points."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ STRETCHING_TIME = 0.5
 """s₀ over g, in units of time."""
 
 WATCHED_STEP = 1e-3
-"""Step below which the points of a disc are checked for one that comes to rest."""
+"""Step below which points of a disc may be about to rest."""
 
 
 @inlined
@@ -198,7 +198,7 @@ def run_points(task: Task, settings: DiscSettings, results: Results, first: int,
 
 @inlined
 def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories: as a separate function it takes a fifth longer to compile and runs a sixth faster."""
+    """Run the trajectories: a separate function compiles a fifth longer and runs a sixth faster."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,

@@ -40,8 +40,8 @@ class Moment(Record):
 class DiscLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, and ``due`` an earlier
-    time of a check. ``watch`` and ``short`` are those of a pin.
+    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, and ``due`` the time of an
+    earlier check.
     """
 
     now: Moment
@@ -64,7 +64,7 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""Degrees of watching: flags where x is largest, where the radius is largest or smallest, or both."""
+"""Degrees of watching: flags where x is largest, where the radius is extreme, or both."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up, as for a pin."""
@@ -77,7 +77,7 @@ SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
-"""Share of a step within which the edge must lie for the step to count as ending on it."""
+"""Distance from the edge, as a share of a step, of a step that ends on it."""
 
 AT_END = 1e-13
 """Time, in units, that is neglected at the end."""
@@ -104,8 +104,8 @@ def advance_with(
 ) -> None:
     """Make a trial step in the first ``count`` lanes; where it is rejected the trial is the old state.
 
-    A step that crosses the ``edge`` of friction has an unreliable error estimate and is repeated up to the edge;
-    likewise at the end. A step smaller than ``small_step`` also raises a flag.
+    A step across the ``edge`` of friction has an unreliable error estimate and is repeated up to the edge; likewise
+    at the end. A step smaller than ``small_step`` also raises a flag.
     """
     wide_vectors()
     now, trial = lanes.now, lanes.trial
@@ -153,10 +153,7 @@ def advance_with(
 def error_of_slip(
     state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
 ) -> float:
-    """Return the error of a step as a multiple of the tolerance, see :func:`.core.stepping.runge_kutta.error_of`.
-
-    The error of small slip is relative, because its direction decides when it ends.
-    """
+    """Return the error of a step over the tolerance, relative for small slip, whose direction decides its end."""
     slip = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     small = (slip + law.free) / (SLOW * law.friction + LEAST)
     high = low = 0.0
@@ -170,7 +167,7 @@ def error_of_slip(
 
 @inlined
 def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
-    """Return the share of a step that leads to the edge, by a parabola for the distance from it."""
+    """Return the share of a step up to the edge, by a parabola for the distance from it."""
     slope = approach * h
     bend = after - before - slope
     root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))
@@ -220,7 +217,6 @@ def rates_at(moment: Moment, lane: int) -> DiscState:
 
 @inlined
 def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> None:
-    """Prepare the lane whose trial contains the position, with a first step."""
     trial = lanes.trial
     put(trial.rates, lane, rates(state_at(trial, lane)[:6], law))
     trial.step[lane] = FIRST_STEP
@@ -289,7 +285,7 @@ def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
 
 @scalar
 def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
-    """Begin slip of a disc on a ring from rest at ``z``; return whether the motion could be resolved."""
+    """Begin slip of a disc on a ring from rest; return whether the motion could be resolved."""
     trial = lanes.trial
     n, turning, first, taken = direction(z, law)
     way = trial.state.way[lane]

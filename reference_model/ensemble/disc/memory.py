@@ -32,11 +32,7 @@ class Region(Record):
 
 
 class DiscMemory(Record):
-    """Scalar data of a lane.
-
-    ``tick`` is the period of checks; ``checks``, ``turns`` and ``peaks`` contain the motion at checks, at the largest
-    x and at the largest radius. Other fields are those of a pin.
-    """
+    """Scalar data of a lane; ``checks``, ``turns``, ``peaks``: the motion at checks, largest x and largest radius."""
 
     number: int
     length: float
@@ -54,11 +50,7 @@ class DiscMemory(Record):
 
 
 class DiscSettings(NamedTuple):
-    """Settings for scalar code.
-
-    ``around`` is that of the law, ``regions`` (m,) are trapping regions, and ``checkpoints`` are those of a single
-    trajectory, empty if not requested.
-    """
+    """Settings for scalar code; ``checkpoints`` are those of a single trajectory, empty if not requested."""
 
     tolerance: float
     early: bool

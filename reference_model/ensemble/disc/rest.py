@@ -1,7 +1,7 @@
 """End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
-A disc on a ring sticks as a whole, and its centre like a pin with the friction that the shaft's moment leaves. Stick
-is permanent if the pull never exceeds this friction (eq. 7).
+A disc on a ring sticks like a pin with the friction that the shaft's moment leaves, permanently if the pull never
+exceeds this friction (eq. 7).
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_ra
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
-"""Shortest time to rest, in units, of slow slip of a disc or of a point that creeps."""
+"""Shortest time to rest, in units, of slow slip of a creeping disc or point."""
 
 SPENT_SHARE = 0.1
 """Share of the tolerance for the remaining slip that decays forever."""
@@ -61,7 +61,7 @@ def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, set
 def _creeps_out(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """End the trajectory of a disc that slips ever more slowly forever, if so; return whether it does.
+    """End the trajectory if the disc slips ever more slowly forever; return whether it does.
 
     This requires a pull that only rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
     """
@@ -119,7 +119,6 @@ def points_rest(
 
 @scalar
 def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Keep a disc on a ring at rest while friction holds it, then begin slip; return whether its trajectory ends."""
     x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:
@@ -170,7 +169,7 @@ def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
         v = complex(ux, uy) + 1j * eta * r * arm
         if 0.0 < abs(v) < SOON * most:
             rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
-            # Acceleration without its own friction, and the friction that would hold it: see
+            # Acceleration without its own friction, and the friction that would hold it, as in
             # reference_model.motion.pivot.
             free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
             holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free

@@ -2,10 +2,8 @@
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
 fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used.
-
-A disc on points oscillates about the motion on a ring, so there only spheres down to INNER of the size must be
-crossed inwards, at all angles.
+smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used. A disc on points
+oscillates about the motion on a ring, so only spheres down to INNER of the size must be crossed.
 """
 
 from __future__ import annotations
@@ -34,7 +32,7 @@ APART = 1e-6
 """Differences for the linearisation, in these units."""
 
 INNER = 0.3
-"""Size of the part of a region where a disc on points finally remains, as a share of the region's size."""
+"""Share of a region's size where a disc on points finally remains."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Golden ratio, whose multiples are spread evenly over [0, 1]."""

@@ -1,16 +1,16 @@
 """Criteria for a pin's end state during its motion.
 
 Permanent stick
-    In the frame of the disc, the pull that friction must balance is the sum of a constant k²X₀ and a turning part of
-    size q. Friction holds it permanently if k²|X₀| + q <= g = μN/m (eq. 7), which is exact. A pin slightly outside
-    slips once per turn. It creeps forever if k > |ω| and it moves inward per turn by less than the remaining distance
-    (``laws.creeps_by_turns``). Without offset it slips ever more slowly if damping prevents overshoot
-    (``slip.creeps_steadily``), also while slip is along the pull (``slip.creeps_slaved``). Both count as stuck.
+    In the frame of the disc the pull is the sum of a constant k²X₀ and a turning part of size q. Friction holds it
+    permanently if k²|X₀| + q <= g = μN/m (eq. 7). A pin slightly outside slips once per turn, and creeps forever if k
+    > |ω| and it moves inward per turn by less than the remaining distance (``laws.creeps_by_turns``). Without offset
+    it slips ever more slowly if damping prevents overshoot (``slip.creeps_steadily``, ``slip.creeps_slaved``). Both
+    count as stuck.
 
 Self-centred
-    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. For equal
-    parameters of all trajectories ``trapping`` finds it. Otherwise it is estimated. With the deviations ξ along the
-    radius of the equilibrium and η across, eq. 1 is a cascade::
+    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V, which
+    ``trapping`` finds for equal parameters of all trajectories. Otherwise it is estimated. With the deviations ξ
+    along the radius of the equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
 
@@ -19,16 +19,14 @@ Self-centred
     oscillator, except for coupling and R, which :func:`equilibrium_region` bounds.
 
 Whirl
-    Every closed orbit crosses the section where x is largest once per turn. For equal parameters ``trapping`` finds
-    the orbit and a neighbourhood that its return map contracts. Otherwise the crossings must converge: with the
-    distance d of the last two and the larger q of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY
-    times the speed at the crossing. Distances that are only noise also count if they do not grow. A motion may pass
-    close to an unstable orbit, so the orbit must also attract, and be as close by the derivative of the return map
-    (``stability``).
+    A closed orbit crosses the section where x is largest once per turn. For equal parameters ``trapping`` finds the
+    orbit and a neighbourhood that its return map contracts. Otherwise the crossings must converge: with the distance
+    d of the last two and the larger q of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY times
+    the speed there. Distances that are only noise also count. A motion may pass close to an unstable orbit, so the
+    orbit must also attract, and be as close by the derivative of the return map (``stability``).
 
 Stick-slip
-    The distance from the axis at a release determines the state of a pin, so the change of that distance is judged
-    like the crossings above.
+    The distance from the axis at a release determines the state, so its change is judged like the crossings above.
 
 A motion that meets none of these criteria stays undecided, for example without damping or friction, or close to a
 basin boundary.
@@ -99,7 +97,6 @@ def _least_share(a: float) -> float:
 
 @scalar
 def depth(z: complex, w: complex, law: PinLaw, equilibrium: complex, form: FloatArray | Tuple) -> float:
-    """Return V of a motion about an ``equilibrium``."""
     size = abs(equilibrium)
     along = equilibrium.conjugate() / size if size > 0.0 else 1.0 + 0j
     place = (z - equilibrium) * along

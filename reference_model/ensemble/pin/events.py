@@ -75,10 +75,10 @@ from reference_model.ensemble.pin.stability import orbit_attracts
 from reference_model.ensemble.pin.stride import stride
 
 SERIES_SHARE = 0.1
-"""Share of the tolerance for the last terms of the series of beginning slip."""
+"""Share of the tolerance for the last terms of the series of slip."""
 
 SPENT_SHARE = 0.1
-"""Share of the tolerance for the remaining slip and distance of a pin that creeps forever."""
+"""Share of the tolerance for the remaining slip of a pin that creeps forever."""
 
 REVERSAL_SLIP = 1e-13
 """Slip, in units, below which slip that friction cannot hold counts as reversed."""
@@ -161,7 +161,6 @@ def record_crossing(
     law: PinLaw,
     settings: Settings,
 ) -> bool:
-    """Record a crossing of the section at u in a step."""
     if memory.end != UNDECIDED:
         return False
     z, speed = position_on(step, u), velocity_on(step, u).imag
@@ -198,7 +197,7 @@ def record_crossing(
 
 @scalar
 def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings: Settings) -> bool:
-    """Return whether the motion crosses the section in the trapping region of the known whirl."""
+    """Return whether the motion crosses the section in the trapping region of the whirl."""
     regions, turn, length = settings.regions, settings.regions.turn, memory.length
     if regions.reach <= 0.0:
         return False

@@ -1,4 +1,4 @@
-"""The kernel of pins: load and store a lane, and run all trajectories."""
+"""The kernel of pins."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def run_pins(task: Task, settings: Settings, results: Results, first: int, last:
 
 @inlined
 def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories: as a separate function it takes a fifth longer to compile and runs a sixth faster."""
+    """Run the trajectories: a separate function compiles a fifth longer and runs a sixth faster."""
     run(
         load, advance, advance_alone, handle_flag, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,

@@ -34,8 +34,8 @@ class Moment(Record):
 class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, ``watch`` the degree
-    of watching, and ``short`` the number of successive short steps.
+    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, and ``short`` the
+    number of successive short steps.
     """
 
     now: Moment
@@ -52,7 +52,7 @@ class PinLanes(Record):
 
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
-"""Degrees of watching: flags also where x is largest, or in addition where the radius is largest or smallest."""
+"""Degrees of watching: flags also where x is largest, or where the radius is extreme too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up: slip is about to end; the due time has come; x or the radius had an extreme; the step size or
@@ -60,12 +60,12 @@ the number of steps is out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
-"""Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
+"""Largest number of steps of a motion, a constant plus a number per unit of time; then it is undecided."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
 """Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
 
-One implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
+An implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
 """
 
 SMALLEST_STEP = 1e-13
@@ -74,7 +74,7 @@ LANDING = 1e-9
 """Distance from the end, in units of time, that is bridged by the rates, with an error of its square."""
 
 FIRST_STEP = 0.3
-"""First step of a trajectory and after a rest, in units of time, if slip is fast."""
+"""First step of fast slip, in units of time."""
 
 
 @written_out
@@ -172,7 +172,6 @@ def slip_at(moment: Moment, lane: int) -> complex:
 
 @scalar
 def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Write a slipping pin to the trial of a lane, with a first step."""
     put_motion(lanes.trial, lane, z, w, law)
     lanes.short[lane] = 0.0
     h = FIRST_STEP

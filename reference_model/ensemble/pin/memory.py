@@ -53,8 +53,7 @@ class PinMemory(Record):
     """Scalar data of a lane.
 
     ``tick`` is the time between checks, ``turns`` x, y and ẏ at crossings of the section, ``releases`` the radii of
-    releases, ``span`` the proposed implicit step; ``checkpoints`` and ``passed`` count checkpoints and requested
-    times.
+    releases, ``span`` the proposed implicit step.
     """
 
     number: int
@@ -79,7 +78,7 @@ class Settings(NamedTuple):
     """Settings for scalar code; few arrays, because each costs time in every call.
 
     ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section.
-    ``series`` is work space. ``checkpoints`` are those of a single trajectory, empty if not requested.
+    ``checkpoints`` are those of a single trajectory, empty if not requested.
     """
 
     tolerance: float
@@ -141,7 +140,7 @@ def record_requested(
     law: PinLaw,
     settings: Settings,
 ) -> None:
-    """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
+    """Store a checkpoint of ``moment`` if times until ``until`` are requested."""
     if mark_requested(lanes, moment, memory, lane, until, settings):
         t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
         take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)

@@ -1,7 +1,7 @@
 """Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, and the start of slip.
 
-It uses z = x + iy and the slip velocity w: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ = dt·(s +
-s₀)/s with s = |w| these equations are smooth, and not stiff down to s = 0.
+The position z = x + iy and the slip velocity w satisfy ż = w + iωz and ẇ = a(z, w) − g·w/|w|. In the stretched time
+dτ = dt·(s + s₀)/s, s = |w|, these equations are smooth and not stiff down to s = 0.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series of beginning slip, usually and where it stays slow, see STIFF."""
+"""Number of terms of the series of beginning slip, usually and where it stays slow."""
 
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
@@ -55,8 +55,8 @@ def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
 def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float:
     """Return the time to the end of slip, or inf if it is not yet known to ``tolerance``.
 
-    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g², whatever the direction of slip. So slip ends after (g·s +
-    Re(ā·w))/(g² − |a|²). The change of a meanwhile adds ȧ·t²/2 to w.
+    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g². So slip ends after (g·s + Re(ā·w))/(g² − |a|²). The change
+    of a meanwhile adds ȧ·t²/2 to w.
     """
     g, s = law.friction, abs(w)
     a = pull(z, w, law)
@@ -67,7 +67,7 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
     v = w + 1j * law.disc_speed * z
     acceleration = a - g * w / s + 1j * law.disc_speed * v
     change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
-    turn = abs(a) * s  # rotation of the position if the direction of slip changes completely
+    turn = abs(a) * s  # of the position if the direction of slip changes completely
     return left if left * left * (change + turn / s) < tolerance else math.inf
 
 
@@ -94,9 +94,8 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
     """Return whether slip follows the pull closely enough to decay like slow slip.
 
-    Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. The
-    oscillator of :func:`creeps_steadily` keeps s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, which e >=
-    c·s/2 implies.
+    Friction draws the direction of slip to the pull at the rate g/s, far above all other rates. The oscillator of
+    :func:`creeps_steadily` keeps s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, which e >= c·s/2 implies.
     """
     a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
     across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0
@@ -106,7 +105,7 @@ def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeping_ends(z: complex, law: PinLaw) -> complex:
-    """Return where on the disc friction holds a pin that :func:`creeps_steadily` from ``z``."""
+    """Return where on the disc a pin that :func:`creeps_steadily` from ``z`` ends."""
     a = pull(z, 0j, law)
     return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 
@@ -132,7 +131,7 @@ def begin_slip(
 def _series(
     z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: ComplexArray
 ) -> float:
-    """Write the terms from ``first`` on to ``work``, which contains the earlier ones; return the valid duration."""
+    """Write the terms from ``first`` on to ``work``; return the valid duration."""
     position, velocity, acceleration, slip, direction = work[0], work[1], work[2], work[3], work[4]
     theta, speed = work[5].real, work[5].imag
     omega = 1j * law.disc_speed
@@ -170,7 +169,7 @@ def _series(
 def _along(
     position: ComplexArray, slip: ComplexArray, speed: FloatArray, terms: int, duration: float
 ) -> tuple[complex, complex, float, float]:
-    """Return position, slip velocity, duration and distance at the end of the series, or where slip ends earlier."""
+    """Return position, slip velocity, duration and distance at the end of the series or of slip."""
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
     a, b, c = speed[1], speed[2], speed[3]

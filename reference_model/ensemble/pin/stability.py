@@ -4,8 +4,8 @@ Small deviations (δz, δv) of a motion satisfy the linear equations::
 
     δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
-where w = s·n is the slip velocity, whose direction n changes with the component of δw across it. Three deviations on
-the section where x is largest are followed for one turn with the motion, by the classical Runge-Kutta method.
+where w = s·n is the slip velocity. Three deviations on the section where x is largest are followed for one turn with
+the motion, by the classical Runge-Kutta method.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MOST_STRIDES = 20_000
 """Largest number of steps in a turn; more are needed only if slip almost ends."""
 
 COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0))
-"""Per stage, how far its rates carry the next stage, and their weight in the step."""
+"""How far the rates of each stage carry the next one, and their weight in the step."""
 
 
 @written_out

@@ -28,7 +28,7 @@ from reference_model.ensemble.pin.memory import PinMemory
 
 @written_out
 def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Replace the trial step and its flags by an implicit step, if that goes much further."""
+    """Replace the trial step by an implicit step if that goes much further."""
     now, trial = lanes.now, lanes.trial
     t, share = now.state.time[lane], now.rates.time[lane]
     short = now.step[lane] * share

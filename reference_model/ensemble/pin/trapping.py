@@ -2,8 +2,7 @@
 
 Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
 stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
-points on ever larger ellipsoids, as long as each image lies in a clearly smaller one, on a whirl without stick. All
-motions inside these ellipsoids are attracted.
+points on ever larger ellipsoids, as long as each image lies in a clearly smaller one, on a whirl without stick.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ DIFFERENCE = 1e-4
 
 @lru_cache(maxsize=64)
 def trapping_regions(pin: PinOnDisc) -> NDArray[Any]:
-    """Return the trapping regions of ``pin``, shape (1,), with zeros where none is known."""
+    """Return the trapping regions of ``pin``, shape (1,), zero where unknown."""
     regions = no_regions()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
         _find_equilibrium_region(pin, regions)
@@ -152,7 +151,7 @@ def _contracting_region(flow: Map, dimension: int, size: float) -> tuple[float, 
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
-    # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves a margin between the points.
+    # The linear map reduces xᵀPx by |x|². A share of this leaves a margin between the points.
     allowed = 1.0 - REQUIRED_SHARE * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):

@@ -1,6 +1,6 @@
 """The closed forms of sections 2 and 3 of the paper, one function per equation.
 
-Signs ----- The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
+The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 
 - If ω < 0 the motion is mirrored in the x axis: a formula is evaluated for |ω|, and y, angles and senses of rotation
   change sign.
@@ -8,9 +8,8 @@ Signs ----- The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 
 The balances (3) and (11) also hold for a support that hardens or has a stop. All other formulas refuse it.
 
-A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16),
-which the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where ω/(ω − k) is undefined.
-
+A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16) are
+defined without a whirl, for ω < k too: they refuse |ω| = k, where ω/(ω − k) is undefined.
 """
 
 from reference_model.formulas.pin.rest import (

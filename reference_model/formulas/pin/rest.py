@@ -114,13 +114,13 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
     """Return the rotation of the disc until release in rad, the first root of (7) with equality.
 
-    The holding force is the third side of a triangle. The first two sides are the force that carries the pin round on
+    The holding force is the third side of a triangle. The other two are the force that carries the pin round on
     springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle
     between these two changes, and it grows as the disc turns.
 
-    ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is >= 0 for
-    either sense of rotation: ``inf`` for permanent stick, 0 if friction cannot hold the pin at the start. Raises
-    ``ValueError`` if ``radius`` is negative or the support not linear.
+    ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is ``inf`` for
+    permanent stick, 0 if friction cannot hold the pin at the start. Raises ``ValueError`` if ``radius`` is negative
+    or the support not linear.
     """
     require_linear_support(pin)
     if radius < 0.0:
@@ -137,7 +137,7 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     lead = math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
     half_turn = math.pi if pin.offset < 0.0 else 0.0
     start = math.remainder(direction * (start_angle + lead) + half_turn, 2.0 * math.pi)
-    # The law of cosines for half the angle is accurate for a flat triangle, where an arccos loses digits.
+    # For half the angle the law of cosines is accurate for a flat triangle, where an arccos loses digits.
     opening = 2.0 * math.atan2(
         math.sqrt((friction - excess) * (friction + excess)),
         math.sqrt((carry + pull - friction) * (carry + pull + friction)),

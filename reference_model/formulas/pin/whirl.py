@@ -28,7 +28,7 @@ def speed_ratio(pin: PinOnDisc) -> float:
 
 
 def require_positive(pin: PinOnDisc, *names: str) -> None:
-    """Raise ``ValueError`` unless these parameters are > 0, which every whirl requires."""
+    """Raise ``ValueError`` unless these parameters are > 0."""
     for name in names:
         if getattr(pin, name) == 0.0:
             raise ValueError(f"{name} = 0: it must be > 0 for a whirl to exist")
@@ -176,7 +176,7 @@ def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
     :func:`first_order_whirl_shift`.
     """
     require_whirl(pin)
-    half = _relative_damping(pin) * speed_ratio(pin) / 2.0  # βω/(2mk(ω − k))
+    half = _relative_damping(pin) * speed_ratio(pin) / 2.0
     x = pin.offset / (1.0 + half**2)
     return x, turning_direction(pin) * half * x
 

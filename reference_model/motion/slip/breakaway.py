@@ -1,8 +1,8 @@
 """The beginning of slip from rest, for any law.
 
-Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
-Differential Equations II, IV.5) needs only a few steps until slip is fast enough for an explicit method.
+Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. As the
+motion is smooth, implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary Differential Equations II,
+IV.5) needs only a few steps until slip is fast enough for an explicit method.
 """
 
 from __future__ import annotations
@@ -33,7 +33,6 @@ FIRST_STEP = 0.01
 """First step in units of time; it shrinks until the motion is resolved."""
 
 LEAST_STEP = 1e-12
-"""Smallest step in units of time."""
 
 MOMENT = 1e-6
 """Time, in units, for the difference quotient of the pull."""
@@ -42,7 +41,7 @@ TURN = 1e-7
 """Change of direction for the difference quotient of friction."""
 
 STIFF = 10.0
-"""Stiffness of a step (rate times length) below which an explicit method is as efficient as this one."""
+"""Stiffness of a step (rate times length) below which an explicit method is as efficient."""
 
 FASTER = 0.01
 """Relative change of the slip speed for the derivative along the slip."""
@@ -84,7 +83,7 @@ class _Rest:
         """Return the unknowns to leading order in time.
 
         Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change
-        − J·turning). J need not be symmetric, so gain is not the component of change along the direction.
+        − J·turning), where J need not be symmetric.
         """
         others, carried, direction, first = self._others, self._carried, self._direction, self._first
         axes, along = np.eye(len(direction)), np.outer(direction, direction)
@@ -113,7 +112,7 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
         if piece is None and t > since:
-            break  # friction changes sharply within a step, as where one of several points hardly slips
+            break  # as where one of several points hardly slips
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:
@@ -137,9 +136,8 @@ class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
     It interpolates the values, because stiffness amplifies the residual of Newton's method in an integral of the
-    rates. ``values`` are functions of the time since the step began, and ``rates``, shape (NODES, unknowns), those at
-    the nodes. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling`` is
-    True if slip decelerates.
+    rates. ``rates`` have the shape (NODES, unknowns). At the end ``stiffness`` is the relaxation rate of the
+    direction of slip in 1/T, and ``falling`` is True if slip decelerates.
     """
 
     values: Polynomial
@@ -169,7 +167,7 @@ def _sample(motion: Coordinates, piece: _Piece, t: float, times: FloatArray) -> 
     return motion.standard(piece.at(times - t).T)
 
 
-@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
@@ -208,8 +206,7 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Friction hardly changes with the slip speed, and Newton's method needs that derivative more accurately than
-    component-wise differences give it.
+    Friction hardly changes with the slip speed, so component-wise differences are too inaccurate for that derivative.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

@@ -80,7 +80,7 @@ class Coordinates:
         return math.hypot(*y[-self.slip :])
 
     def differences(self, unknowns: FloatArray) -> FloatArray:
-        """Return the changes of ``unknowns`` (k, n), which may have more columns, for numerical derivatives."""
+        """Return the changes of ``unknowns`` (k, n or more) for numerical derivatives."""
         changes = np.full(unknowns.shape, DIFFERENCE)
         if self.turning is not None:
             own = SHARE * abs(unknowns[:, self.turning]) + LEAST_SLIP
@@ -91,8 +91,8 @@ class Coordinates:
         """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
         ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
-        tolerances. An implicit step bounds the error of s instead of ln s, because slip that decays for a long time
-        would otherwise need many steps.
+        tolerances. An implicit step bounds the error of s instead of ln s, because long decay would otherwise need
+        many steps.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
@@ -148,7 +148,7 @@ FAST_AGAIN = 1.2
 """Ratio to the slow slip speed above which slip is fast again."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
-"""Largest remaining distance of lingering slip that has ended: as a share of the local tolerance, and in units."""
+"""Largest remaining distance of slip that has ended: as a share of the local tolerance, and in units."""
 
 LONG = 0.01
 """Smallest time to rest, in units, of lingering slip."""

@@ -74,7 +74,6 @@ def _between(
 ) -> Polynomial:
     """Return the polynomial with the value f0 and the derivatives f1, f2, f3 at 0 and g0 to g3 at 1."""
     c2, c3 = f2 / 2.0, f3 / 6.0
-    # Residuals of the Taylor polynomial at the end, and of its derivatives.
     e0, e1 = g0 - (f0 + f1 + c2 + c3), g1 - (f1 + f2 + 3.0 * c3)
     e2, e3 = g2 - (f2 + f3), g3 - f3
     d2 = (e2 - 8.0 * e1 + 20.0 * e0) / 2.0
@@ -109,19 +108,19 @@ def velocity_on(step: DenseOutput, u: float) -> complex:
 
 @inlined
 def rightward(step: DenseOutput, u: float) -> float:
-    """Return ẋ(u) times the duration of the step, which is zero where x is largest."""
+    """Return ẋ(u) times the duration of the step."""
     return _slope(step.x, u)
 
 
 @inlined
 def outward(step: DenseOutput, u: float) -> float:
-    """Return ρρ̇ times the duration of the step, which is zero where the radius is extreme."""
+    """Return ρρ̇ times the duration of the step."""
     return _value(step.x, u) * _slope(step.x, u) + _value(step.y, u) * _slope(step.y, u)
 
 
 @scalar
 def where_rightmost(step: DenseOutput) -> float:
-    """Return the u of the largest x; the rate of x changes sign between the ends."""
+    """Return the u of the largest x, between ends where the rate of x has different signs."""
     return _zero_of(rightward, step)
 
 

@@ -1,11 +1,11 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
 Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit an explicit step, but not this method.
+β/m. These rates limit only explicit steps.
 
-The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative
-−g·P'' of friction is symmetric and zero along the slip, because P is a potential of degree one. So its component
-along the slip, which is only rounding, is removed.
+The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative −g·P'' of friction
+is symmetric and zero along the slip, because P is a potential of degree one, so its rounding error along the slip is
+removed.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ WORTH = 10.0
 """Number of explicit steps whose total time an implicit step must exceed."""
 
 FIRST_SPAN = 0.1
-"""First implicit step, in units of time, unless twice the smallest worthwhile step is longer."""
+"""First implicit step, in units of time, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""Short steps to make after an implicit step failed to pay, doubled with each failure up to a largest number."""
+"""Number of short steps after an implicit step failed to pay, doubled with each failure up to a largest number."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """Largest ratio of successive steps, and safety factor of the error estimate."""
@@ -54,7 +54,7 @@ GROWTH, CAUTION = 4.0, 0.8
 Collocation = Callable[
     [complex, float, FloatArray, float, DiscLaw, FloatArray, FloatArray, FloatArray], float
 ]
-"""Solves for the slip at the nodes of a step, as :func:`collocate_with` with a given friction."""
+""":func:`collocate_with` with a given friction."""
 
 
 @written_out
@@ -174,7 +174,7 @@ def _linearise(
 
 @scalar
 def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
-    """Subtract the Newton correction (NODES, d) from the slip; return whether it was only rounding."""
+    """Subtract the Newton correction (NODES, d); return whether it was only rounding."""
     converged = True
     for i in range(NODES):
         size = length_of(change[i])
@@ -217,8 +217,8 @@ def stride_with(
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
-    ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns position, slip,
-    angle, duration (zero if the step is not worthwhile), slip distance and the proposed next step.
+    ``start`` (2 or 3,) is the initial slip, ``guess`` an estimate of it soon after. Returns position, slip, angle,
+    duration (zero if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
@@ -280,7 +280,7 @@ def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> comp
 
 @inlined
 def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
-    """Return the position of the centre at a node; relative to the master disc it depends on slip only."""
+    """Return the position of the centre, which depends only on slip relative to the master disc."""
     way = 0j
     for j in range(NODES):
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])
@@ -290,7 +290,6 @@ def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: 
 
 @inlined
 def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
-    """Project a direction of length ``size`` out of a symmetric matrix from both sides."""
     d = len(along)
     for i in range(d):
         part = 0.0
@@ -317,7 +316,7 @@ def _size_of(matrix: FloatArray) -> float:
 
 @scalar
 def _turns_back(start: FloatArray, w: FloatArray) -> bool:
-    """Return whether slip turns by more than a right angle, so that it came to rest on the way."""
+    """Return whether slip turns by more than a right angle: it came to rest on the way."""
     before = start
     for i in range(NODES):
         along = 0.0
@@ -331,7 +330,7 @@ def _turns_back(start: FloatArray, w: FloatArray) -> bool:
 
 @scalar
 def _last_term(start: FloatArray, w: FloatArray) -> float:
-    """Return the largest last coefficient of the polynomials through the slip at the start and the nodes."""
+    """Return the largest last coefficient of the polynomials through the slip."""
     largest = 0.0
     for k in range(len(start)):
         term = LAST_TERM[0] * start[k]

@@ -39,7 +39,7 @@ def length_of(vector: FloatArray) -> float:
 
 @scalar
 def quadratic_form(upper: FloatArray | Tuple, x: Tuple) -> float:
-    """Return xᵀAx for a symmetric matrix A; ``upper`` is its upper half, row by row."""
+    """Return xᵀAx for a symmetric matrix A, given its upper half row by row."""
     total, k = 0.0, 0
     for i in range(len(x)):
         own, others = upper[k], 0.0
@@ -53,7 +53,6 @@ def quadratic_form(upper: FloatArray | Tuple, x: Tuple) -> float:
 
 @scalar
 def solve(matrix: FloatArray, right: FloatArray) -> bool:
-    """Solve a linear system in place by elimination with pivoting; return whether it succeeded."""
     n = len(right)
     for k in range(n):
         pivot = k
@@ -79,7 +78,7 @@ def solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 @scalar
 def powers_vanish(matrix: FloatArray) -> bool:
-    """Return whether the powers of a square matrix vanish: all its eigenvalues have a modulus below 1."""
+    """Return whether all eigenvalues of a square matrix have a modulus below 1."""
     n = len(matrix)
     power, square = matrix.copy(), zeros(n * n).reshape(n, n)
     for _ in range(SQUARINGS):
