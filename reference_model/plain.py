@@ -51,7 +51,7 @@ def by_law(load: float, law: Contact) -> Friction:
 
 
 def stiffness(system: System, w_x: Any, w_y: Any) -> Any:
-    """Return the paper's C, plus hardening and stop, as the secant stiffness in N/m at the deflection w."""
+    """Return the secant stiffness in N/m at the deflection w: the paper's C, plus hardening and stop."""
     squared = w_x**2 + w_y**2
     d = np.sqrt(squared)
     beyond = (d - system.stop_gap) / d if d.real > system.stop_gap else 0.0
@@ -76,14 +76,14 @@ def simulate(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
     """Return the motion like :func:`reference_model.simulate`, but with creep instead of stick phases."""
-    # With a finer tolerance Radau cannot resolve the creep, because slip is the difference of two velocities.
+    # With a finer tolerance Radau cannot resolve the creep: slip is the difference of two velocities.
     clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), 1e-10)
     start, times = checked_state(system, initial_state), checked_times(times)
     (x, y, *_), (vx, vy, *_) = np.split(start, 2)
     R, points = 0.0, 1
     if isinstance(
         system, DiscOnDisc
-    ):  # where a point of a ring rests, the error of the mean is about 1/points²
+    ):  # the error of the mean where a point of a ring rests is about 1/points²
         R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
     size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
     speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0

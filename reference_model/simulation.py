@@ -22,7 +22,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system, and
+    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system;
     ``SimulationError`` if the integrator fails.
 
     Parameters
@@ -36,9 +36,8 @@ def simulate(
         Increasing times in s.
     tolerance : float
         Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
-        :class:`motion.nondimensional.Units`. With damping or rest errors stay within a small multiple of the
-        tolerance: at most 13 in random motions, 68 in compiled ones. Otherwise they accumulate, to some 40 times the
-        tolerance after 10,000 steps, and grow with any instability.
+        :class:`motion.nondimensional.Units`. With damping or rest errors stay within 13 times the tolerance in random
+        motions, 68 times in compiled ones. Otherwise they accumulate, to some 40 times after 10,000 steps.
     contact : Contact or None
         Friction law of a disc; None for the law of the parameters.
     compiled : bool or None

@@ -40,7 +40,7 @@ class Support:
         return cls(system.stiffness, system.offset, system.hardening, system.stop_gap, system.stop_stiffness)
 
     def scaled(self, factor: float, length: float = 1.0) -> Support:
-        """Return the support with all forces multiplied by ``factor``, in units of ``length``."""
+        """Return the support with forces multiplied by ``factor``, in units of ``length``."""
         return Support(
             self.stiffness * factor,
             self.offset / length,
@@ -80,7 +80,7 @@ class Support:
         return self.stiffness + self.hardening * d * d + self.stop_stiffness * stop
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force with respect to the deflection; at the stop, from outside."""
+        """Return the derivative of the force by the deflection; at the stop, from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 
@@ -88,7 +88,7 @@ class Support:
         """Return the negative derivative of the force with respect to (x, y), shape (2, 2).
 
         It is the tangent stiffness along the deflection and the secant stiffness across it. Raises ``ValueError``
-        exactly at the stop, where the derivative does not exist.
+        exactly at the stop.
         """
         w = z - self.offset
         d = abs(w)

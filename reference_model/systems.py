@@ -19,10 +19,10 @@ MOST_POINTS = 1000
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest positive parameter and largest size of any, so that products of several stay finite."""
+"""Smallest positive parameter and largest size of any: products of several stay finite."""
 
 MOST_RATIO = 1e25
-"""Largest rate in 1/s and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
+"""Largest rate in 1/s and largest m·R²/J: powers stay finite, and no integrator could follow faster rates."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ class _SupportedMass:
         for (
             name,
             least,
-        ) in self._least:  # parameter searches create many systems, so valid values must pass quickly
+        ) in self._least:  # valid values must pass quickly, because searches create many systems
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
                 self._check_numbers()
@@ -121,26 +121,25 @@ class _SupportedMass:
 class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
 
-    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not a finite number or is out of
-    range.
+    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not finite or out of range.
 
     Parameters
     ----------
-    mass : float
+    mass
         m in kg, > 0.
-    stiffness : float
+    stiffness
         C of the support in N/m, >= 0, equal in all radial directions.
-    damping : float
+    damping
         β of the support in N s/m, >= 0.
-    friction_force : float
+    friction_force
         μN in N, >= 0.
-    disc_speed : float
+    disc_speed
         ω in rad/s, of either sign.
-    offset : float
+    offset
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
-    hardening : float
+    hardening
         C₃ in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
-    stop_gap, stop_stiffness : float
+    stop_gap, stop_stiffness
         Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap.
 
     """
@@ -153,20 +152,20 @@ class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
     A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
-    rad, vx, vy in m/s and the spin in rad/s. Errors and all other parameters are those of :class:`PinOnDisc`; μN is
-    that of the whole ring and ω the speed of the master disc.
+    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are those of :class:`PinOnDisc`; ω is the
+    speed of the master disc.
 
     Parameters
     ----------
-    polar_inertia : float
+    polar_inertia
         J in kg m², > 0.
-    contact_radius : float
+    contact_radius
         R of the ring in m, > 0.
-    shaft_damping : float
+    shaft_damping
         b of the torsional damper in N m s/rad, >= 0.
-    shaft_speed : float
+    shaft_speed
         Ω of the shaft in rad/s, of either sign.
-    contact_points : int or None
+    contact_points
         Number n of contact points, from 3 to 1000. Point i lies at φ + 2πi/n and carries N/n. None: the continuous
         ring of (20).
 
@@ -241,14 +240,14 @@ SMALLEST_TOLERANCE = 1e-14
 """Smallest tolerance that double precision can reach."""
 
 LARGEST_STATE = 1e50
-"""Largest state component in SI units, so that energies and forces of hardening springs stay finite."""
+"""Largest state component in SI units: forces and energies of hardening springs stay finite."""
 
 ANGLE = 2
 """Index of the angle in the state of a disc."""
 
 
 def finite_number(name: str, value: Any) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` unless it is a finite number."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is finite."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -312,7 +311,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
 
 
 def require_system(system: System, *allowed: type[System]) -> None:
-    """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default of either class."""
+    """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default either class."""
     allowed = allowed or (PinOnDisc, DiscOnDisc)
     if not isinstance(system, allowed):
         names = " or a ".join(kind.__name__ for kind in allowed)
@@ -354,7 +353,7 @@ def checked_times(times: ArrayLike) -> FloatArray:
 
 
 def checked_tolerance(tolerance: float) -> float:
-    """Return ``tolerance``; raise ``ValueError`` if double precision cannot reach it or it exceeds 1e-2."""
+    """Return ``tolerance``; raise ``ValueError`` unless it lies between 1e-14 and 1e-2."""
     number = finite_number("tolerance", tolerance)
     if not SMALLEST_TOLERANCE <= number <= 1e-2:
         raise ValueError(f"tolerance = {number:g}: it must lie between {SMALLEST_TOLERANCE} and 1e-2")

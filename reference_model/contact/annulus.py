@@ -1,4 +1,4 @@
-"""Friction of an annulus, such as a clutch facing, as a sum of rings that share the load."""
+"""Friction of an annulus, such as a clutch facing, as a sum of rings."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ class Annulus(IsotropicContact):
 
     Parameters
     ----------
-    inner_radius, outer_radius : float
+    inner_radius, outer_radius
         Radii in m, 0 <= inner < outer.
-    rings : int
+    rings
         Number n >= 1 on either side of r₀.
-    pressure : callable, optional
+    pressure
         Pressure in any unit as a smooth function of the radius in m, such as ``lambda r: 1 / r`` for a worn-in
         facing. None: uniform.
 
@@ -103,7 +103,6 @@ class Annulus(IsotropicContact):
         return max(slip_speed / spin, self.inner_radius)
 
     def _loads(self, centre: float) -> list[tuple[float, float]]:
-        """Return radii and shares of the load of the rings, clustered about ``centre``."""
         loads = list(self._rings(centre))
         total = math.fsum(load for _, load in loads)
         if total == 0.0:

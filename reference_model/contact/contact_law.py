@@ -2,8 +2,8 @@
 
 A law returns force (N per N of μN) and moment (m) on the disc while its centre slips with u over the master disc,
 which turns with S = ω − φ̇ relative to it. A point at r·exp(iα) from the centre slips with u − i·S·r·exp(iα) (21).
-Plane vectors are complex numbers. Laws depend only on the ratio of u and S (degree 0). Laws of circles are also
-*isotropic*: the force is opposite to u, and nothing depends on the direction of u or on the angle φ.
+Plane vectors are complex numbers. Laws depend only on the ratio of u and S. Laws of circles are also *isotropic*: the
+force is opposite to u, and nothing depends on the direction of u or on the angle φ.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Added to speeds before division, so that a point at rest gets zero friction."""
+"""Added to speeds before division, which gives a point at rest zero friction."""
 
 
 class Contact(Protocol):
@@ -69,16 +69,16 @@ class IsotropicContact(ABC):
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """Radii r in m with infinite slopes at U = r|S|, where a point rests and a step must end."""
+        """Radii r in m with infinite slopes at U = r|S|, where steps must end."""
         return ()
 
     @abstractmethod
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Return F and M for U >= 0 and S of either sign, not both zero; F is zero at U = 0."""
+        """Return F and M for U >= 0 and S of either sign, not both zero; F(0, S) = 0."""
 
     @abstractmethod
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Return the derivatives of F and M, at U = 0 from the side U > 0; ``ValueError`` where there are none."""
+        """Return the derivatives of F and M, at U = 0 from above; raise ``ValueError`` where there are none."""
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         speed = abs(slip)
@@ -134,7 +134,7 @@ class Ring(_OnCircle, IsotropicContact):
     """Contact on the whole circle of ``radius`` R > 0 in m (20), in closed form.
 
     With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S), see
-    :mod:`reference_model.contact.elliptic`. Both are accurate to rounding for all ratios of U and W.
+    :mod:`reference_model.contact.elliptic`, both accurate to rounding.
     """
 
     @property
@@ -187,10 +187,7 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
 
 
 def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | Points:
-    """Return ``contact``, or if it is None the friction law of the parameters of ``system``.
-
-    Raises ``ValueError`` if the system cannot have this law.
-    """
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` if the system cannot have it."""
     require_system(system)
     if isinstance(system, PinOnDisc):
         if contact is not None:
@@ -208,7 +205,7 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
 
 
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
-    """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` if it is a law of points."""
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` for a law of points."""
     require_system(system, DiscOnDisc)
     law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):

@@ -21,10 +21,10 @@ from scipy.special import ellipe, ellipkm1
 from reference_model.systems import FloatArray
 
 SMALL = 0.05
-"""Parameter m below which series replace the differences in B and D, which would lose digits."""
+"""Parameter m below which B and D are series, because differences would lose digits."""
 
 TERMS = 13
-"""Number of terms of the series; the first omitted term is below SMALL^13 = 1e-17."""
+"""Number of terms; the first omitted one is below SMALL^13 = 1e-17."""
 
 
 def mean_directions(slip: float, rim: float) -> tuple[float, float]:
@@ -65,7 +65,7 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     else:
         complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m to full precision
         integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
-    # Derivatives by the smaller argument; the others follow because first derivatives have degree 0.
+    # Derivatives by the smaller argument. The others follow, because first derivatives have degree 0.
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)

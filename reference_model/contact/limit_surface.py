@@ -4,7 +4,7 @@ A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force 
 M·w <= P(u, w) for every slip, where P is the mean of |v_j| weighted by the shares of the load. P is of degree one, so
 this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the centre of the load h >= 0 for
 |F| <= 1, and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F. If its solution is
-a vertex, u = −i·a_j, the disc begins to turn about the resting point j, and the limit surface has a flat face.
+a vertex, u = −i·a_j, the disc begins to turn about the resting point j.
 
 Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra confirmed only partially how
 two-tier discs come to rest.
@@ -93,7 +93,7 @@ class PointsLimit:
 
     @cached_property
     def centre(self) -> complex:
-        """Centre of the load c. Moments about it and its slip separate force and moment where |F| = 1."""
+        """Centre of the load, about which moments and slips separate force and moment where |F| = 1."""
         return complex(self.shares @ self.arms)
 
     @cached_property
@@ -159,11 +159,11 @@ class PointsLimit:
         return np.asarray(mean - (forces.conj() * u).real)
 
     def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
-        """Minimise the mean distance minus F·u, which is convex, where the minimum is not at a vertex.
+        """Minimise the mean distance minus F·u, which is convex, away from vertices.
 
         Armijo's rule halves Newton's steps; Weiszfeld's method replaces a halved step that descends less.
         """
-        # Exact in the limit of large |u| for points with the same spread in all directions.
+        # Exact for large |u| and points with the same spread in all directions.
         u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
         value = self._objective(forces, u)
         for _ in range(MOST_ITERATIONS):
@@ -199,7 +199,7 @@ class PointsLimit:
 
 
 SINGULAR = 1e-15
-"""Smallest ratio of determinant to squared trace of a Hessian; points on one line make it zero."""
+"""Smallest ratio of determinant to squared trace of a Hessian, zero for points on one line."""
 
 ARMIJO = 1e-4
 """Smallest ratio of a step's descent to that of its slope."""

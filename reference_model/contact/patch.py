@@ -14,7 +14,7 @@ from reference_model.systems import finite_number, require_whole
 ComplexArray = NDArray[np.complex128]
 
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
-"""Weights of a triangle's corners in the three points of the rule of degree 2, which have equal shares.
+"""Weights of a triangle's corners in the three points of the rule of degree 2.
 
 A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971, rule T2:2-1.
 """
@@ -51,7 +51,7 @@ def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
 
 
 def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
-    """Cut ears off a polygon: triangles of neighbours that turn left and contain no other corner."""
+    """Cut off ears: triangles of neighbours that turn left and contain no other corner."""
     left = list(around)
     result: list[tuple[complex, ...]] = []
     while len(left) > 2:

@@ -96,8 +96,7 @@ class Points:
                 )
             direction = velocity / speed
             across = 1j * direction
-            # Derivatives of the point's slip by u_x, u_y, S, φ. Friction changes only with the component across its
-            # direction.
+            # Derivatives of the point's slip by u_x, u_y, S, φ. Only the component across the slip changes friction.
             by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
             turning = -share * ((by_unknowns * across.conjugate()).real / speed)
             friction = turning * across
@@ -130,7 +129,7 @@ class PointsOnRing(Points):
 
 
 _Friction = tuple[complex, complex, float]
-"""Position of a point relative to the one whose slip is given, conjugate of its arm, and its share."""
+"""Position relative to the point whose slip is given, conjugate of the arm, and share."""
 
 
 def _friction_of(

@@ -56,7 +56,7 @@ def simulate_ensemble(
     parameters : mapping from a parameter's name to an array-like of shape (n,), optional
         Parameters that differ between trajectories.
     early_end
-        Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
+        Whether a trajectory ends as soon as its end state is certain (:mod:`.pin.end_states`).
     threads
         Number of threads; by default one per processor.
 

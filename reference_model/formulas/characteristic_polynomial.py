@@ -33,7 +33,7 @@ def characteristic_coefficients(
 ) -> Coefficients:
     """Return the coefficients of the characteristic equation of a disc's whirl without offset: (13) for the disc.
 
-    With the deviations ξ of the radius, w of the speed along the circle and σ of the spin, (19) is::
+    With the deviations ξ of the radius, w of the circumferential speed and σ of the spin, (19) is::
 
         ξ̈ + Dξ̇ − 2kw = 0,   ẇ + 2kξ̇ + ew − fξ + gσ = 0,   σ̇ + cσ + h(w − dξ) = 0
 

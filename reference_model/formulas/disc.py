@@ -201,8 +201,8 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
     """Return the whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of rim and centre slip.
 
     The radial balance contains no friction, so the frequency is κ = ±k, as for the pin. Along the circle βkρ =
-    μN·F(α), in the sense of ω and only for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) =
-    μN·M(α) with S = ω − φ̇, R|S| = U·tan α. Together they give the load::
+    μN·F(α) for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S|
+    = U·tan α. Together they give the load::
 
         μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
 

@@ -28,15 +28,15 @@ class PowerBalance:
 
     Parameters
     ----------
-    times : array
+    times
         Times of the trajectory and bounds of its phases, in s.
-    drive_work : array
+    drive_work
         Work of the drive of the (master) disc.
-    friction_heat, damper_heat : array
+    friction_heat, damper_heat
         Heat of friction and of the dampers, including a friction disc's shaft damper.
-    shaft_work : array
-        Work that a friction disc delivers to its shaft behind the damper; zero for a pin.
-    stored_energy : array
+    shaft_work
+        Work that a friction disc delivers to its shaft behind the damper.
+    stored_energy
         Kinetic energy plus energy of the springs.
 
     """
@@ -75,8 +75,8 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     friction, damping and springs are right and the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
-    power of the sampling interval, or more slowly near zero slip of a point and where a stop begins. Raises
-    ``ValueError`` if the trajectory has only one time.
+    power of the sampling interval, or more slowly near zero slip and where a stop begins. Raises ``ValueError`` if
+    the trajectory has only one time.
     """
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")

@@ -1,7 +1,7 @@
 """All solutions of the force and moment balances of a disc in steady motion.
 
-Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio its
-force μN·F and its moment μN·M are known, which leaves one equation to solve over all ratios.
+Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio
+force μN·F and moment μN·M are known, which leaves one equation to solve over all ratios.
 
 The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the sign of S. M grows with W : U
 for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.

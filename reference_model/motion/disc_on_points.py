@@ -1,8 +1,7 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
 A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
-exceed its share: a pivot phase with one degree of freedom (:mod:`reference_model.motion.pivot`). If two points rest,
-the whole disc sticks.
+exceed its share: a pivot phase (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 """
 
 from __future__ import annotations
@@ -69,7 +68,7 @@ class PointsBody(DiscBody):
         return t, y
 
     def _rest(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Bring the disc to rest as a whole, so slow that the order of its points is irrelevant."""
+        """Bring the disc to rest as a whole; it is so slow that the order of its points does not matter."""
         rates = self.coordinates.rates(y)
         speed = self.coordinates.speed(y)
         falling = -sum(a * b for a, b in zip(y[3:], rates[3:], strict=True)) / speed

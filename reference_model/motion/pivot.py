@@ -1,10 +1,9 @@
 """A disc on single points that turns about one of them, which slips slowly or rests.
 
-The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point, which so keeps its
-relative accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point
-accelerates by B + Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 +
-(i·a_i)⊗(i·a_i)/κ². In slip λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, as long as this is
-at most gq.
+The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. So v keeps its relative
+accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point accelerates by B +
+Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In slip
+λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, up to gq.
 """
 
 from __future__ import annotations
@@ -101,7 +100,7 @@ class OnePoint:
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
-        """Return the slip speed that the point would gain, for lack of friction, until the disc rests, or inf."""
+        """Return the slip speed that a point without enough friction gains before the disc rests, or inf."""
         r = unknowns[3]
         falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
         if falling <= 0.0:

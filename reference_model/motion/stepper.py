@@ -56,21 +56,21 @@ class StepError(SimulationError):
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between descriptions of the motion, which results do not depend on.
+    """Thresholds between descriptions of the motion; results do not depend on them (tested).
 
     Parameters
     ----------
     slow_slip
-        Upper limit of slow slip, in g·T (T: unit of time), which uses slip-polar coordinates.
+        Upper limit of slow slip, which uses slip-polar coordinates, in g·T with the unit T of time.
     stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time
         Largest error in T of the closed form for the time of coming to rest.
     reversal_slip
-        Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
+        Slip speed, in units, below which slip that friction cannot hold counts as reversed.
     common_rest
-        Slip speed, in units of length per T, below which all points of a disc rest together. A point slips from rest
-        only if it can gain this speed before the disc rests.
+        Slip speed, in units, below which all points of a disc rest together. A point slips from rest only if it can
+        gain this speed before the disc rests.
     series
         Size of the last terms of the initial series of slip.
     safety

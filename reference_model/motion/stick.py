@@ -28,7 +28,7 @@ An excess δ moves the pin by about g·δ²/ω², far less than the rounding of 
 NARROW = 1e-5
 """Smallest angle in rad that the search for the first release resolves.
 
-Over a smaller angle of release the pin would move by about NARROW³ of its path.
+A pin released over a smaller angle moves by about NARROW³ of its path.
 """
 
 ROUNDING = 1e-12
@@ -44,8 +44,7 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position: a single harmonic, whose first upward crossing has a closed form. A nonlinear support requires a
-    search.
+    of the position: a single harmonic, whose first upward crossing has a closed form on a linear support.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -72,8 +71,7 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
     While the disc turns by h the margin of friction over the pull changes by at most Λh. Here Λ is |X0| times the
     tangent stiffness at the largest deflection on the way or, relative to the ground, |z| times the sum of that
     stiffness and |ω² − iωβ/m|. The deflection is at most the mean of its values at both ends plus min(|X0|, |z|)·h/2.
-    Where this bound allows a negative margin the interval is halved, the first half first, until it can contain only
-    one root.
+    An interval where this allows a negative margin is halved, the first half first, down to NARROW.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
         return math.inf  # the pull turns but keeps its size
@@ -185,9 +183,8 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
     With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. If the pull exceeds friction, slip
     grows linearly and the series converges. If they are equal (release from stick), slip grows quadratically with its
     direction slaved to the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. In both
-    cases order t^k satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k.
-
-    Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
+    cases order t^k satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k. Within ``duration`` its last terms
+    stay below ``tolerance``.
     """
     omega = 1j * motion.disc_speed
     position = np.zeros(terms + 1, dtype=complex)

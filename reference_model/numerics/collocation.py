@@ -1,8 +1,8 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
-the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). It is as accurate in between. SciPy's
-``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Tolerances down to 1e-14 need its order
+15; SciPy's ``Radau`` has order 5.
 """
 
 from __future__ import annotations

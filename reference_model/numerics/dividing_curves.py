@@ -42,8 +42,8 @@ def dividing_curves(
 ) -> tuple[Curve, ...]:
     """Return the curves in a rectangle where ``function`` changes sign, with points of shape (n, 2).
 
-    Each curve names the limits where it ends: 0 and 1 are the lower limits of both variables, 2 and 3 the upper.
-    Raises ``ContinuationError`` if a curve ends inside or others are much closer than a cell.
+    Ends of a curve are limits: 0 and 1 are the lower limits of both variables, 2 and 3 the upper. Raises
+    ``ContinuationError`` if a curve ends inside or others are much closer than a cell.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ DISTINCT = 0.1
 
 @dataclass(frozen=True)
 class Separatrix:
-    """The two sides of the stable set of a saddle orbit; ``releases`` is the release map of the pin."""
+    """The two sides of the stable set of a saddle orbit; ``releases`` is the pin's release map."""
 
     orbit: StickSlipOrbit
     releases: ReleaseMap
@@ -138,9 +138,9 @@ def basin_boundary(
     Parameters
     ----------
     orbit
-        The saddle whose stable set is the boundary, with the tolerance of the points.
+        The saddle, with the tolerance of the points.
     components : (str, str)
-        State components that vary in the rectangle: two of "x", "y", "vx", "vy".
+        Components that vary in the rectangle: two of "x", "y", "vx", "vy".
     ranges : pair of (float, float)
         Their ranges in m or m/s.
     others : array-like of shape (4,)
@@ -156,7 +156,7 @@ def basin_boundary(
     state = checked_state(orbit.system, others)
     require_whole("cells", cells, least=2)
 
-    @functools.cache  # searches evaluate their ends again, and curves their points
+    @functools.cache  # searches repeat their ends, and curves their points
     def miss(*point: float) -> float:
         start = state.copy()
         start[places] = point

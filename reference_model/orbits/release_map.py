@@ -2,7 +2,7 @@
 
 At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of the
 pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the orbits,
-with its slope as multiplier. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
+and its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
 where the next stick phase vanishes.
 """
 
@@ -27,19 +27,19 @@ from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, re
 from reference_model.trajectory import Trajectory
 
 SEARCH_TIMES = (1.5, 16.0)
-"""Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
+"""Search times for a release, in the longer of a turn of the disc and a free period of the pin.
 
 A pin that does not stick within the second is taken never to do so.
 """
 
 NODES = 48
-"""Number of initial nodes of the map; gaps and orbits less than π/NODES apart may be missed."""
+"""Number of initial nodes; gaps and orbits less than π/NODES apart may be missed."""
 
 NODES_OF_PIECE = 32
-"""Number of spline nodes between two gaps, which also resolve two neighbouring fixed points."""
+"""Number of spline nodes between two gaps, enough to resolve neighbouring fixed points."""
 
 ROUNDING = 1e-12
-"""Pull of a stuck pin, per distance and as a fraction of ω², within rounding of zero, as for ω = k and β = 0."""
+"""Pull per distance, as a fraction of ω², within rounding of zero, as for ω = k and β = 0."""
 
 EDGE = 1e-5
 """Tolerance in rad of the edges of the gaps."""
@@ -48,7 +48,7 @@ ROUGH = 1e-6
 """Tolerance of the search for fixed points, which are then refined."""
 
 JUMP = 1e-4
-"""Smallest residual in rad of a sign change that is a jump and not a fixed point."""
+"""Smallest residual in rad of a jump, which is not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
 """Steps in rad of the central differences for the multiplier; the first that meets no gap is used."""
@@ -77,7 +77,7 @@ class ReleaseMap:
 
     @property
     def turn(self) -> float:
-        """The longer of a turn of the disc and a period of the pin on its springs, in s."""
+        """The longer of a turn of the disc and a free period of the pin, in s."""
         return 2.0 * math.pi / min(abs(self.pin.disc_speed), self.pin.natural_frequency)
 
     @property
@@ -185,7 +185,7 @@ class ReleaseMap:
         return [float(zero) for zero in spline.roots(extrapolate=False)]
 
     def change(self, angle: float) -> float:
-        """Return the change of the angle from one release to the next; nan without a next release."""
+        """Return the change of the angle from one release to the next, or nan."""
         release = self.after(angle) if 0.0 < angle < math.pi else None
         return math.nan if release is None else release.angle - angle
 

@@ -25,7 +25,7 @@ DIRECTIONS = 64
 """Number of directions that are tried first, about a tenth of a radian apart."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset."""
+"""Sizes of the shocks that are tried first, over the speed of the disc at the whirl or at the offset."""
 
 PERIODS = 500.0
 """Longest time to an end state, in free periods, unless the start lies on the boundary."""
@@ -34,7 +34,7 @@ COARSE, FINE = 1e-2, 1e-7
 """Relative widths of bisection: for the direction, and to check the result."""
 
 ANGLE = 1e-4
-"""Tolerance of the direction in rad; the size has a minimum there and depends on its square."""
+"""Tolerance of the direction in rad; the smallest size depends on its square."""
 
 
 @dataclass(frozen=True)

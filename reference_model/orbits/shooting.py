@@ -44,9 +44,9 @@ PERIOD, LOAD, TURN = -3, -2, -1
 """Indices of the other unknowns of shooting: T, μN, and the angle θ of a rotation about the axis."""
 
 CENTRAL = 3e-4
-"""Relative step of the fourth-order central differences for multipliers.
+"""Relative step of the central differences for multipliers.
 
-The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with an offset.
+The measured error is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with an offset.
 """
 
 MOST_ITERATIONS = 25
@@ -64,7 +64,7 @@ FARTHEST_PERIOD = 0.5
 """Largest relative change of the period of an orbit near the guess."""
 
 COLLAPSED = 1e-6
-"""Smallest size relative to the guess; below it the pin has collapsed onto the axis."""
+"""Smallest size relative to the guess, below which the pin has collapsed onto the axis."""
 
 
 @dataclass(frozen=True)
@@ -186,7 +186,7 @@ class Orbit:
 
     @cached_property
     def multipliers(self) -> tuple[complex, ...]:
-        """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
+        """Floquet multipliers, largest first.
 
         One is 1, for a shift in time, and a second one if the motion recurs up to a rotation.
         """
@@ -210,7 +210,7 @@ def shoot(
 ) -> Orbit:
     """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit.
 
-    Raises ``NoOrbitError`` if the iteration does not converge.
+    Raises ``NoOrbitError`` without convergence.
     """
     scale, period = problem.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
@@ -256,7 +256,7 @@ def shoot(
 
 
 def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Fix x at y = 0 and make the load unknown, starting from that of a ``guess`` that is an orbit."""
+    """Fix x at y = 0 and make the load unknown, starting from that of an orbit as ``guess``."""
     unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):

@@ -62,13 +62,12 @@ def whirl_orbit(
     simulate
         The engine, such as ``functools.partial(simulate, contact=...)`` for another friction law.
     guess
-        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset.
-        With a large offset the whirl of a disc no longer crosses the x axis: use :meth:`Orbit.from_the_right` of the
-        orbit for a nearby offset.
+        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset. If
+        the whirl does not cross the x axis, use :meth:`Orbit.from_the_right` of the orbit for a nearby offset.
     at_crossing
-        Fixed value of x at y = 0, in m. The load μN becomes unknown in its place, which lets a branch turn at folds.
+        Fixed value of x at y = 0, in m, with the load μN as an unknown, so that a branch can turn at folds.
     tolerance, samples
-        Tolerance for ``simulate``, and number of intervals of the returned trajectory.
+        Those of ``simulate``, and number of intervals of the trajectory.
     precision
         Relative noise of the engine's states, such as 1e-6 in single precision.
 

@@ -1,8 +1,8 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
 This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
-up to its torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this
-makes three unknowns for two equations, the balance and one of
+up to its torsional balance. With two parameters of the disc this makes three unknowns for two equations, the balance
+and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -37,7 +37,7 @@ FAST, SLOW = 1, -1
 NEAREST = 8.0
 """Largest ln(U/|U − W|) of the curves.
 
-The derivatives of a ring's friction grow like this number for U → W, so it is an unknown of smooth curves.
+The derivatives of a ring's friction grow like this number, so it is an unknown of smooth curves.
 """
 
 FARTHEST = 2e-3
@@ -49,18 +49,18 @@ SCALE = 3.0
 INERTIA = "polar_inertia"
 
 SLOWEST = 3e-3
-"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; below it the pair is about to become real."""
+"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; the pair then becomes real."""
 
 NODES = 41
 
 SAME = 3e-3
-"""Largest distance from a known curve of a start that lies on it, in units of the scales."""
+"""Largest distance of a start from a known curve to lie on it, in units of the scales."""
 
 LINES = 9
 """Number of starting lines in each direction of the plane."""
 
 INSET = 1e-6
-"""Distance of the outermost lines from the borders of a plane, so that all starts lie inside."""
+"""Distance of the outermost lines from the borders, so that all starts lie inside."""
 
 
 @dataclass(frozen=True)

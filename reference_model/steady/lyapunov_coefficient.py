@@ -21,7 +21,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 STEP = 8e-3
 """Step of the differences, in units of the distance to infinite derivatives of friction.
 
-Truncation and rounding errors of the third difference are far below 1 %.
+Errors of the third difference are far below 1 %.
 """
 
 SIZE = 4
@@ -34,7 +34,7 @@ ComplexVector = NDArray[np.complex128]
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
     """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
-    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. So a cycle of the
+    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³, so a cycle of the
     amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on the
     x axis.
 
@@ -46,7 +46,7 @@ def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicCo
     radius, _, _, _, speed, spin = checked_state(disc, state).tolist()
     whirl = np.array([radius, 0.0, speed, disc.disc_speed - spin])
     slip, rim = abs(speed - disc.disc_speed * radius), disc.contact_radius * abs(whirl[3])
-    # A fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.
+    # Fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.
     scales = np.array([radius, radius, radius, abs(whirl[3])]) * min(abs(slip / rim - 1.0), 0.3)
     rates = polar_rates(disc, law)
 

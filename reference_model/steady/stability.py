@@ -1,9 +1,8 @@
 """Linear stability of sliding motions of pin and disc, from analytic Jacobians of eq. 1 and 19.
 
 Eigenvalues are in 1/s, slowest decay first. With an isotropic contact nothing depends on the angle of a disc, so
-steady motions have five states without it. ``contact`` None means the law of the parameters. Except for
-:func:`sliding_jacobian`, functions raise ``ValueError`` for a disc on single points, whose friction depends on the
-angle.
+steady motions have five states without it. ``contact`` None means the law of the parameters. All functions but
+:func:`sliding_jacobian` raise ``ValueError`` for a disc on single points.
 """
 
 from __future__ import annotations
@@ -51,7 +50,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of the arguments of friction, u_x, u_y, S and φ, by x, y, φ and by their rates.
+        # Derivatives of u_x, u_y, S and φ by x, y, φ and by their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]
@@ -76,14 +75,14 @@ def equilibrium_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
-    A pin slips along the circumference, so friction resists its radial velocity like a damper μN/(|ω|ρ*) and its
-    tangential velocity not at all. So its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C,
-    and (3) is always stable if β > 0, as the paper says below (5). For a disc, and on a nonlinear support, they are
-    those of :func:`jacobian_without_angle`.
+    Friction resists the radial velocity of a pin like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So
+    its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and (3) is always stable if β > 0,
+    as the paper says below (5). For a disc, and on a nonlinear support, they are those of
+    :func:`jacobian_without_angle`.
 
     ``state``, shape (6,), is that of a disc with its centre at rest, see
-    :func:`reference_model.self_centred_equilibria`; a pin needs none. Raises ``ValueError`` as
-    :func:`sliding_jacobian`, and if a pin has no such equilibrium or has it on the axis, where it does not slide.
+    :func:`reference_model.self_centred_equilibria`. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a pin
+    has no such equilibrium or has it on the axis, where it does not slide.
     """
     if isinstance(system, DiscOnDisc):
         if state is None:
@@ -115,10 +114,9 @@ def turning_frame_jacobian(
     """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
     The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
-    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v.
-
-    ``state`` lies on the whirl, with the centre on the x axis: y = vx = 0. A pin needs none. Raises ``ValueError`` as
-    :func:`sliding_jacobian`, and if a pin has no whirl or the state cannot lie on one.
+    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state``, of
+    a disc only, lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`,
+    and if a pin has no whirl or the state cannot lie on one.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)
@@ -159,7 +157,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     The instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
     The result does not depend on ``friction_force``. Raises ``ValueError`` if there is an offset; if |ω| <= k, where
-    the rotation is stable at every load; or if b = 0 or Ω = ω, where the disc may stick at every load.
+    the rotation is always stable; or if b = 0 or Ω = ω, where the disc may stick at every load.
     """
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
@@ -215,5 +213,5 @@ def _oscillator_eigenvalues(mass: float, damping: float, stiffness: float) -> tu
         oscillating = complex(-damping, math.sqrt(-discriminant)) / (2.0 * mass)
         return oscillating, oscillating.conjugate()
     faster = -(damping + math.sqrt(discriminant)) / 2.0
-    # From the product of the roots, because their difference cancels for strong damping.
+    # From the product of the roots, because the difference cancels for strong damping.
     return complex(stiffness / faster), complex(faster / mass)

@@ -41,19 +41,19 @@ class SelfCentredEquilibrium:
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, shape (4,)."""
+        """State, shape (4,)."""
         return np.array([self.x, self.y, 0.0, 0.0])
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningEquilibrium(SelfCentredEquilibrium):
-    """The self-centred equilibrium of a disc, which spins about its resting centre with ``spin`` φ̇ in rad/s."""
+    """The self-centred equilibrium of a disc with the ``spin`` φ̇ in rad/s about its resting centre."""
 
     spin: float
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the angle zero, shape (6,)."""
+        """State with the angle zero, shape (6,)."""
         return resting(self.x, self.y, self.spin)
 
 
@@ -73,29 +73,29 @@ class Whirl:
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the centre on the x axis, shape (4,)."""
+        """State on the x axis, shape (4,)."""
         return np.array([self.radius, 0.0, 0.0, self.frequency * self.radius])
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningWhirl(Whirl):
-    """The whirl of a disc, which spins about its circling centre with a constant ``spin`` φ̇ in rad/s."""
+    """The whirl of a disc with the constant ``spin`` φ̇ in rad/s about its circling centre."""
 
     spin: float
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the centre on the x axis and the angle zero, shape (6,)."""
+        """State on the x axis with the angle zero, shape (6,)."""
         return circling(self.radius, self.frequency, self.spin)
 
 
 def resting(x: float, y: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its resting centre."""
+    """Return the state of a disc whose centre rests."""
     return np.array([x, y, 0.0, 0.0, 0.0, spin])
 
 
 def circling(radius: float, frequency: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its centre, which circles from the x axis."""
+    """Return the state of a disc whose centre circles, on the x axis."""
     return np.array([radius, 0.0, 0.0, 0.0, frequency * radius, spin])
 
 
@@ -122,8 +122,8 @@ def self_centred_equilibria(
     - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    A disc on a ring has one: at a given radius the torsional balance allows one spin, and the balance of forces,
-    (Cρ)² + (μN·F)² = (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. It
+    A disc on a ring has at most one: at a given radius the torsional balance allows one spin, and the balance of
+    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function of slip. It
     has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
@@ -133,9 +133,9 @@ def self_centred_equilibria(
     For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
     the deflection d at the force μN·F.
 
-    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` if a disc
-    rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as the rim of a
-    ring, where eigenvalues do not exist.
+    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` for a disc
+    on single points, a contact of a pin, or a centre that slips exactly as fast as the rim of a ring, where
+    eigenvalues do not exist.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
@@ -177,13 +177,13 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
 
     A pin has at most one: that of (11). It has none
 
-    - if |ω| <= k: the pin would overtake the disc, and friction would brake it as the damping does;
+    - if |ω| <= k: the pin would overtake the disc, and friction would brake it;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
     - if μN = 0: nothing drives it;
     - if C = 0: nothing holds the pin on a circle.
 
-    A disc may have several, the largest first, all with the pin's frequency ±k and smaller than the pin's. The same
-    conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
+    A disc may have several, the largest first, with the pin's frequency ±k and smaller than the pin's, under the same
+    conditions and if the load reaches :func:`smallest_load_with_whirl`.
 
     On a nonlinear support the frequency grows with the circle. The pin's circle, with the speed μN/β, is a whirl only
     if the disc turns faster. The circles of a disc are smaller and slower, because its friction acts only partly
@@ -300,7 +300,7 @@ def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
 
 
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
-    """Return why a disc never has a whirl. Its partial friction may drive a whirl where a pin's may not."""
+    """Return why a disc has no whirl. Its partial friction may drive one where a pin's may not."""
     return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
 
 

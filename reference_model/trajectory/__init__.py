@@ -16,26 +16,26 @@ if TYPE_CHECKING:
 
 
 class SimulationError(RuntimeError):
-    """An engine failed or returned non-finite numbers; the message names the time and a remedy."""
+    """An engine failed or returned non-finite numbers."""
 
 
 MOST_STEPS = 5_000_000
 """Largest number of steps, some minutes of work."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""Number of steps that measure the pace, and largest number of steps that may remain at that pace."""
+"""Number of steps that measure the pace, and largest number that may remain at that pace."""
 
 
 @dataclass
 class StepCount:
-    """Count the steps of a motion from time 0 to ``end``, in any unit of time; all engines share the limit."""
+    """Count the steps of a motion from time 0 to ``end``, in any unit; all engines share the limit."""
 
     end: float
     steps: int = 0
     _looked_back: tuple[float, int] = (0.0, 0)
 
     def look_from(self, t: float) -> None:
-        """Measure the pace from the time ``t`` on, after a short slow passage."""
+        """Measure the pace from the time ``t`` on."""
         self._looked_back = t, self.steps
 
     def count(self, t: float) -> str:
@@ -79,9 +79,8 @@ def phases_of(
 class Solution:
     """How a trajectory was computed.
 
-    ``method`` describes the integrator, ``tolerance`` is the requested one, ``evaluations`` counts those of the
-    equations of motion, ``steps`` the accepted steps, and ``wall_time`` is in s. ``regularisation`` is the slip speed
-    ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
+    ``evaluations`` counts those of the equations of motion, ``steps`` the accepted ones, and ``wall_time`` is in s.
+    ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
     """
 
     method: str

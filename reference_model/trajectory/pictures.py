@@ -71,7 +71,7 @@ def animation_of(
     places: Iterable[tuple[float, ...]] | None = None,
     speed: float = 1.0,
 ) -> FuncAnimation:
-    """Animate the pin or the disc in the fixed frame; the spoke turns with the master disc."""
+    """Animate the pin or the disc in the fixed frame."""
     speed = positive_number("speed", speed, "s/s")
     if (times[-1] - times[0]) * FRAMES_PER_SECOND > speed * MOST_FRAMES:
         raise ValueError(f"speed = {speed:g} s/s: more than {MOST_FRAMES:,} frames; use a larger speed")

@@ -22,7 +22,7 @@ NONE, ON_THE_WAY, SLIPS, STICKS = 0.0, 1.0, 2.0, 3.0
 Checkpoints = NDArray[Any]
 """Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace``, zeros where a phase begins.
 
-Independently of these, they store the increasing ``requested`` times.
+They also store the increasing ``requested`` times.
 """
 
 

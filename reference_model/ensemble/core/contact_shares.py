@@ -99,7 +99,7 @@ def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any
 
 @inlined
 def turned(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle of up to 1e6 rad without a branch, by quarter turns (Cody and Waite)."""
+    """Return cosine and sine of an angle up to 1e6 rad without a branch, by quarter turns (Cody and Waite)."""
     quarters = np.rint(angle * (2.0 / math.pi))
     x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]
     m = x * x

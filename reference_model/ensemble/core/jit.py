@@ -19,7 +19,7 @@ from reference_model.numerics.compiled_once import CompiledOnce
 extending: Any = numba.extending  # not fully typed
 
 PART: Any = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Options of functions that only compiled code calls: wrappers for Python take time to compile."""
+"""Options of functions that only compiled code calls: wrappers take time to compile."""
 
 INLINED: Any = {**PART, "forceinline": True}
 """Options of overloads."""
@@ -31,7 +31,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def inlined(function: Function) -> Function:
-    """Compile ``function`` into each caller, so that loops over lanes that call it can be vectorised."""
+    """Compile ``function`` into each caller, so that loops over lanes can be vectorised."""
     return cast(Function, extending.register_jitable(**INLINED)(function))
 
 
@@ -65,7 +65,7 @@ def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
 def wide_vectors(typing: Any) -> Any:
     """Let the calling function use the widest vectors of the processor, without effect on results.
 
-    LLVM uses 256 bits on many processors that have 512 (figures: ``benchmarks/ensemble.py``).
+    LLVM uses 256 bits on many processors that have 512.
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

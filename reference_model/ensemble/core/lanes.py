@@ -77,7 +77,7 @@ def run(
     for lane in range(LANES):
         idle(record[0], lane)
     while True:
-        # Taken again in every round, because the lanes exist only while something refers to the array.
+        # Again in every round, because the lanes exist only while something refers to the array.
         lanes = record[0]
         for lane in range(LANES):
             ended = False

@@ -1,4 +1,4 @@
-"""Constants of pins and discs in units that make a motion of order one, forces, and the duration of rest."""
+"""Scaled constants of pins and discs, forces, and the duration of rest."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
 """Largest relative slip of a body that counts as sticking, from rounding."""
 
 CREEP = 0.1
-"""Largest excess of the pull of creeping slip, as a fraction of the pull's change in a turn or of g."""
+"""Largest excess of the pull of creeping slip, as a fraction of its change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):
     """Constants of a pin, divided by its mass, scaled so that motion is of order one.
 
-    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0, ``stretching`` s₀.
-    ``free`` = 1 keeps time unstretched without friction, where nothing rests.
+    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``stretching`` s₀. ``free`` = 1 keeps time
+    unstretched without friction, where nothing rests.
     """
 
     stiffness: float
@@ -36,8 +36,8 @@ class PinLaw(NamedTuple):
 class DiscLaw(NamedTuple):
     """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
 
-    ``around`` contains the unit vectors to the contact points, (cos, sin) of each in sequence; () for the ring.
-    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
+    ``around`` contains (cos, sin) of the direction of each contact point in sequence; () for the ring. ``leverage``
+    is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
     """
 
     around: tuple[float, ...]
@@ -97,7 +97,6 @@ def ring_friction(
 def points_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return the friction of points, like :func:`ring_friction`, computed in the frame of the disc."""
     c, s = turned(angle)
     fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
     return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power

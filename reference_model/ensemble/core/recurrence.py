@@ -21,7 +21,7 @@ NO_WINDOW = 0
 
 
 class Series(Record):
-    """The last values of a kind, the last two distances between successive values, and their number."""
+    """The last values of a kind, the last two distances between values, and their number."""
 
     values: Annotated[FloatArray, 5]
     last: float
@@ -38,7 +38,7 @@ class Measures(NamedTuple):
 
 
 class Window(Record):
-    """Kind of the measurement, its start, the slip distance at the start, and the range of the radius so far."""
+    """Kind and start of the measurement, the slip distance there, and the range of the radius so far."""
 
     kind: int
     since: float

@@ -1,7 +1,6 @@
 """Ensembles of discs and single discs.
 
-Compiled code does not follow contact points that come to rest. The plain reference continues such a trajectory until
-all points slip.
+Compiled code does not follow contact points that come to rest. The plain reference continues until all points slip.
 """
 
 from __future__ import annotations

@@ -3,13 +3,12 @@
 Self-centred
     The state, checked once per free period, converges: d·q/(1 − q) is small, with the distance d between checks and q
     the larger of its last two ratios (:mod:`.core.recurrence`). A motion may pass close to an unstable equilibrium,
-    as some of Fig. 11 do, so the equilibrium must also attract, and be as close by Newton's method
-    (:mod:`.stability`).
+    as in Fig. 11, so the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
 Whirl
-    The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
-    velocities along and across it, and the spin converge from check to check.
+    The same for the states where x is largest. Without an offset the radius, the velocities along and across it, and
+    the spin converge from check to check.
 Modulated
-    Without an offset, the same for the states where the radius is largest, while the radius continues to oscillate.
+    Without an offset, the same for the states where the radius is largest, while it continues to oscillate.
 Stuck, or stick-slip
     As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).
 
@@ -232,7 +231,6 @@ def check_due(
 
 @scalar
 def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: DiscSettings) -> bool:
-    """Return whether the motion is in a known trapping region; if so store its end state."""
     length, speed = memory.length, memory.length * memory.rate
     for region in settings.regions:
         if region.circle:

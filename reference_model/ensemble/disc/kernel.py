@@ -90,7 +90,7 @@ def load_with(
     rest: Slow,
     rates: Rates,
 ) -> bool:
-    """Write the start of a trajectory to the trial of a lane; return whether it has ended."""
+    """Write the start of a trajectory to a lane's trial; return whether it has ended."""
     parameters = row_of(task.parameters, number)
     mass, inertia, stiffness, damping, force, omega, offset, _, shaft, _ = parameters
     x, y, angle, vx, vy, spin = row_of(task.starts, number)

@@ -77,13 +77,13 @@ SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
-"""Distance from the edge, as a share of a step, of a step that ends on it."""
+"""Largest distance from the edge, as a share of a step, of a step that ends on it."""
 
 AT_END = 1e-13
 """Time, in units, that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
-"""Slip speeds, in units of g: below the first the tolerance of slip is relative, below the second slip may end."""
+"""Slip speeds, in units of g, below which the tolerance of slip is relative, and slip may end."""
 
 REST_TIME = 1e-12
 """Largest error, in units of time and length, of the closed form for coming to rest."""
@@ -92,10 +92,10 @@ LEAST_SLIP = 1e-13
 """Slip speed, in units, that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest time, in units, of slip that is followed from rest before ordinary steps."""
+"""Longest time, in units, of slip that is followed from rest."""
 
 SUDDEN = 0.05
-"""Smallest excess of the pull, as a share of friction, for slip that grows like time, which is not stiff."""
+"""Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
 
 
 @written_out
@@ -167,7 +167,7 @@ def error_of_slip(
 
 @inlined
 def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
-    """Return the share of a step up to the edge, by a parabola for the distance from it."""
+    """Return the share of a step up to the edge, by a parabola."""
     slope = approach * h
     bend = after - before - slope
     root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))

@@ -102,7 +102,7 @@ def centre_of(law: DiscLaw, held: float) -> PinLaw:
 
 @scalar
 def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
-    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction."""
+    """Return the direction (n_u, n_r) of incipient slip, its growth rate, and the share lost to friction."""
     towards = pull(z, 0j, law)
     strength = abs(towards)
     best, fastest = 0.0, -math.inf

@@ -2,8 +2,8 @@
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
 fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used. A disc on points
-oscillates about the motion on a ring, so only spheres down to INNER of the size must be crossed.
+smaller sphere inwards, it goes to the centre; half of V is used because the fan has gaps. A disc on points oscillates
+about the motion on a ring, so only spheres down to INNER of the size must be crossed.
 """
 
 from __future__ import annotations

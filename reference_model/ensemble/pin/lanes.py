@@ -60,7 +60,7 @@ the number of steps is out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
-"""Largest number of steps of a motion, a constant plus a number per unit of time; then it is undecided."""
+"""Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
 """Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
@@ -79,7 +79,7 @@ FIRST_STEP = 0.3
 
 @written_out
 def _advance_in(lanes: PinLanes, count: int) -> None:
-    """Make a trial step in the first ``count`` lanes; where its error is too large the trial is the old state."""
+    """Make a trial step in the first ``count`` lanes; after too large an error the trial is the old state."""
     wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):

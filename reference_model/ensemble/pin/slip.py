@@ -73,7 +73,7 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
 
 @scalar
 def turns_steadily(law: PinLaw) -> bool:
-    """Return whether the pull of a pin at rest only rotates with the disc, so friction may hold it permanently."""
+    """Return whether the pull of a pin at rest only rotates with the disc."""
     return law.offset == 0.0 or law.disc_speed == 0.0
 
 

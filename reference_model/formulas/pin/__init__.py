@@ -2,8 +2,7 @@
 
 The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 
-- If ω < 0 the motion is mirrored in the x axis: a formula is evaluated for |ω|, and y, angles and senses of rotation
-  change sign.
+- If ω < 0 a formula is evaluated for |ω|, and y, angles and senses of rotation change sign.
 - If X0 < 0, x and y change sign, and conditions such as (5) and (8) hold with |X0|.
 
 The balances (3) and (11) also hold for a support that hardens or has a stop. All other formulas refuse it.

@@ -20,7 +20,7 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
     """Return ρ* of (3), the distance of the pin at rest from the axis, in m.
 
     Friction acts along the circle about the axis, so the springs must pull by μN at a right angle to ρ*. Their
-    deflection d* = √(X0² − ρ*²) is that of the force μN, which is μN/C on a linear support.
+    deflection is √(X0² − ρ*²), which is μN/C on a linear support.
 
     Raises ``ValueError`` if (5) fails, if there are no springs, or if the disc is at rest and there is friction.
     """
@@ -115,8 +115,8 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     """Return the rotation of the disc until release in rad, the first root of (7) with equality.
 
     The holding force is the third side of a triangle. The other two are the force that carries the pin round on
-    springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle
-    between these two changes, and it grows as the disc turns.
+    springs relaxed at the axis, √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle between
+    these two changes, and it grows as the disc turns.
 
     ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is ``inf`` for
     permanent stick, 0 if friction cannot hold the pin at the start. Raises ``ValueError`` if ``radius`` is negative

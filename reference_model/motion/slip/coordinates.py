@@ -51,13 +51,13 @@ class Coordinates:
     angle
         Index of an angle, which has an absolute tolerance.
     turning
-        Index of another relative velocity. Friction may change on its scale, however small it is.
+        Index of another relative velocity, which may be the scale of friction.
     leverage
         Derivative of the velocity of the centre by the slip.
     grip
-        Returns the margin of a held friction force, which ends the motion at zero.
+        Returns the margin of a held friction force; the motion ends at zero.
     surfaces
-        Surfaces of continuous but not smooth friction or support.
+        Surfaces where friction or support is continuous but not smooth.
 
     """
 
@@ -169,7 +169,7 @@ def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcom
     way = s * max(1.0, min(left, run.end - t))
     lingers = left > LONG and way < max(NO_WAY * run.local_tolerance, LEAST_WAY)
     if s < run.thresholds.reversal_slip or lingers:
-        # Head-on, or at the friction limit: over to rounding error.
+        # Slip is over to rounding error, head-on or at the friction limit.
         return Outcome(t, [*y[:others], *[0.0] * motion.slip])
     return None
 

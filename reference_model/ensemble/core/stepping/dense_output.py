@@ -120,13 +120,13 @@ def outward(step: DenseOutput, u: float) -> float:
 
 @scalar
 def where_rightmost(step: DenseOutput) -> float:
-    """Return the u of the largest x, between ends where the rate of x has different signs."""
+    """Return the u of the largest x; ẋ changes sign between the ends."""
     return _zero_of(rightward, step)
 
 
 @scalar
 def where_radius_turns(step: DenseOutput) -> float:
-    """Return the u of the largest or smallest radius; inf if the radius is monotonic."""
+    """Return the u of the extreme radius; inf if the radius is monotonic."""
     if (outward(step, 0.0) > 0.0) == (outward(step, 1.0) > 0.0):
         return math.inf
     return _zero_of(outward, step)

@@ -4,8 +4,7 @@ Creeping slip draws its direction to that of the pull at the rate g/s, and a str
 β/m. These rates limit only explicit steps.
 
 The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative −g·P'' of friction
-is symmetric and zero along the slip, because P is a potential of degree one, so its rounding error along the slip is
-removed.
+is symmetric and zero along the slip, because P is of degree one, so its rounding error along the slip is removed.
 """
 
 from __future__ import annotations
@@ -42,10 +41,10 @@ WORTH = 10.0
 """Number of explicit steps whose total time an implicit step must exceed."""
 
 FIRST_SPAN = 0.1
-"""First implicit step, in units of time, or twice the smallest worthwhile step if longer."""
+"""First implicit step, in units, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""Number of short steps after an implicit step failed to pay, doubled with each failure up to a largest number."""
+"""Number of short steps after an implicit step failed to pay, doubled up to a number of failures."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """Largest ratio of successive steps, and safety factor of the error estimate."""
@@ -280,7 +279,7 @@ def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> comp
 
 @inlined
 def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
-    """Return the position of the centre, which depends only on slip relative to the master disc."""
+    """Return the position of the centre, which relative to the master disc depends on slip only."""
     way = 0j
     for j in range(NODES):
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])

@@ -28,7 +28,7 @@ def _without_zeros(row: Sequence[float]) -> Tuple:
 A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12 = (_without_zeros(DOP853.A[i, :i]) for i in range(1, 12))
 B = _without_zeros(DOP853.B)
 E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
-"""Weights of the step, and of its differences from the embedded methods of orders 3 and 5, at stages 1, 6 to 12."""
+"""Weights of the step, and of its differences from the embedded methods of orders 3 and 5."""
 
 TURNED_BACK = 256.0
 """Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
@@ -40,7 +40,7 @@ LOCAL = 0.1
 """Tolerance of a step over that of a motion."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
-"""Bounds on the ratio of successive steps, and safety factor of the error estimate."""
+"""Bounds on the ratio of successive steps, and safety factor."""
 
 
 def tolerance_of_steps(tolerance: float) -> float:
