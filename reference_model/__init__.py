@@ -1,8 +1,7 @@
 """Radial dynamics of friction discs with exact Coulomb friction, in NumPy and SciPy.
 
 - ``plain``: the paper's equations as printed, integrated by SciPy in 100 lines; read it first;
-- ``systems``, ``trajectory``: parameters and results, with figures and animations;
-- ``support``: the force of a support that may harden or have a stop;
+- ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
 - ``contact``: friction laws and their limit surfaces;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;

@@ -27,20 +27,20 @@ def simulate(
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
+    system
         Parameters.
     initial_state : array-like of shape (4,) or (6,)
         State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s
         for a disc. A state that turns with the master disc sticks if friction can hold it.
     times : array-like of shape (n,)
         Increasing times in s.
-    tolerance : float
+    tolerance
         Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
         :class:`motion.nondimensional.Units`. With damping or rest errors stay within 13 times the tolerance in random
         motions, 68 times in compiled ones. Otherwise they accumulate, to some 40 times after 10,000 steps.
-    contact : Contact or None
+    contact
         Friction law of a disc; None for the law of the parameters.
-    compiled : bool or None
+    compiled
         Whether to use the faster kernel of :mod:`ensemble`, for linear supports and the laws of the parameters. Its
         first run on a machine compiles it. None: use it if it supports the system.
 

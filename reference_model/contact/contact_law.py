@@ -163,8 +163,8 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
     """The paper's approximation (23) of the ring of ``radius`` R > 0 in m: three terms of (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α, F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and M = R·sin α·(1 − ½cos²α +
-    ¾cos²α·sin²α). Their potential ν̄·(1 − ¼cos²α·sin²α) is convex, so the approximation never feeds in power. The
-    largest error is 0.10, near U = 0.77·R|S| for the force and at the reciprocal ratio for the moment.
+    ¾cos²α·sin²α). Their potential ν̄·(1 − ¼cos²α·sin²α) is convex, so friction never feeds in power. The largest
+    error is 0.10, near U = 0.77·R|S| for the force and at the reciprocal ratio for the moment.
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:

@@ -28,7 +28,7 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
     error falls like h⁴ if the centre of rotation lies outside the patch; otherwise friction jumps and the error falls
     like h² on average.
 
-    Raises ``ValueError`` if a number is invalid or the polygon has no area or intersects itself.
+    Raises ``ValueError`` if a number is invalid, or the polygon has no area or intersects itself.
     """
     require_whole("divisions", divisions, least=1)
     triangles = _triangles(_checked_corners(corners))

@@ -1,4 +1,4 @@
-"""Friction in single points, which turn with the disc, so it depends on the angle φ."""
+"""Friction at single points. It depends on the angle φ, because the points turn with the disc."""
 
 from __future__ import annotations
 

@@ -38,21 +38,21 @@ HANDED_OVER = 255
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """End states of n trajectories.
+    """End states of n trajectories, in arrays of shape (n,).
 
     Parameters
     ----------
-    end : array of shape (n,)
+    end
         End state, as :class:`EndState`.
-    time : array of shape (n,)
+    time
         Time in s at which it was certain, or the duration; less for a trajectory that was given up.
     states : array of shape (n, 4) or (n, 6)
         State at that time.
-    least_radius, largest_radius : array of shape (n,)
+    least_radius, largest_radius
         Range of the radius in the end state, in m; NaN if undecided.
-    slip_power : array of shape (n,)
+    slip_power
         Mean power of friction in the end state, in W; NaN if undecided.
-    steps : array of shape (n,)
+    steps
         Number of steps, including rejected ones, and of stick phases.
 
     """

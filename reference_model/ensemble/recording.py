@@ -31,7 +31,7 @@ ROOM_TO_SPARE = 64
 """Initial room for checkpoints where phases begin."""
 
 ROUNDED = 1e-12
-"""Rounding error of times, as a share of the duration or of the unit of time, whichever is longer."""
+"""Rounding error of times, as a share of the duration or the unit of time, whichever is longer."""
 
 STAGES = 12
 

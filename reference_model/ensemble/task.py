@@ -26,8 +26,8 @@ PACE_SIZE = SPAN + 1
 class Task(NamedTuple):
     """Trajectories to simulate; each array has a row per trajectory, or one for all.
 
-    ``parameters`` (1 or n, parameters) are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI
-    units, ``durations`` (1 or n,) in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
+    ``parameters`` are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI units, ``durations``
+    in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
     """
 
     parameters: FloatArray

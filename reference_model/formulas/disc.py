@@ -54,9 +54,8 @@ def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOn
     """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
     The constant moment b(ω − Ω) leaves the force F of the limit surface in place of μN in (7) to (9). So
-    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
-
-    Raises ``ValueError`` if friction cannot supply the moment or the disc rests on single points.
+    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9). Raises ``ValueError`` if friction
+    cannot supply the moment or the disc rests on single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
     centre = stuck_centre(DiscMotion.of(disc, law), law)
@@ -86,7 +85,7 @@ class ReducedParameters(NamedTuple):
 
 
 def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Return left side minus right side of (4), in m², which holds as for the pin."""
+    """Return left side minus right side of (4), in m², which also holds for the disc."""
     return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
@@ -162,9 +161,8 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
-    The corrected (26) gives :func:`reference_model.self_centred_equilibria` of
-    :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises ``ValueError`` if stiffness, disc speed, shaft
-    damping or offset is zero.
+    The corrected (26) gives the equilibria of :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises
+    ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
     """
     _require_not_zero(disc, "shaft_damping", "offset")
     squared = squared_distance_as_printed if as_printed else squared_distance

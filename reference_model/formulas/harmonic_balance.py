@@ -39,8 +39,8 @@ class BalancedWhirl:
 def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
     """Return the whirl of ``pin``, without a stop, by harmonic balance of its mean and its first harmonic.
 
-    Raises ``ValueError`` if there is a stop, whose force is not a polynomial, or no whirl without offset to start
-    from; ``RuntimeError`` if Newton's method does not converge, because the offset is too large.
+    Raises ``ValueError`` if there is a stop, or no whirl without offset to start from; ``RuntimeError`` if Newton's
+    method does not converge, because the offset is too large.
     """
     if pin.stop_stiffness > 0.0:
         raise ValueError(

@@ -74,9 +74,9 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual vanishes only if
     friction, damping and springs are right and the integrator conserves energy.
 
-    The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
-    power of the sampling interval, or more slowly near zero slip and where a stop begins. Raises ``ValueError`` if
-    the trajectory has only one time.
+    The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
+    sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` if there is only one
+    time.
     """
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")
@@ -145,7 +145,6 @@ def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> Float
 
 
 def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:
-    """Return z, φ, ż and φ̇, each (n,); φ = 0 for a pin."""
     places, velocities = np.split(state, 2, axis=1)
     z, v = (pair[:, 0] + 1j * pair[:, 1] for pair in (places, velocities))
     if isinstance(body, DiscOnDisc):

@@ -36,9 +36,8 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
     Nothing is yielded if every position or every spin is an equilibrium.
 
     Friction acts across the radius, so springs with the deflection d must pull by μN·F at a right angle to it: ρ² +
-    d² = X0², where d = μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and tan α = W/U, the
-    torsional balance gives U = (μN·R/b)(m − M)/tan α, which leaves the zeros of (μN·R/(b|ω|)·(m − M)·cos α)² + (d² −
-    X0²)·sin² α.
+    d² = X0². With U = |ω|ρ, m = b|ω − Ω|/μN and tan α = W/U, the torsional balance gives U = (μN·R/b)(m − M)/tan α,
+    which leaves the zeros of (μN·R/(b|ω|)·(m − M)·cos α)² + (d² − X0²)·sin² α.
     """
     load, offset, torque = disc.friction_force, abs(disc.offset), shaft_torque(disc)
     speed, radius = abs(disc.disc_speed), disc.contact_radius
@@ -117,7 +116,7 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
 
 
 def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
-    """Return the infimum of the loads in N with whirls."""
+    """Return the smallest load in N with a whirl."""
     arm = whirl_arm(disc, contact)
     halves = (lambda q: arm(1.0, q)), (lambda q: arm(q, 1.0))
     return shaft_torque(disc) / max(largest_between(half, 0.0, 1.0) for half in halves)
@@ -145,5 +144,5 @@ def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterat
     if end == 1.0:
         end = 0.0 if allowed(0.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(q, 1.0), 0.0, 1.0)
         for q in reversed(zeros_between(lambda q: balance(q, 1.0), end, 1.0)):
-            if q < 1.0:  # q = 1 was found in the first half
+            if q < 1.0:
                 yield q, 1.0

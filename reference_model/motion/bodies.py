@@ -224,7 +224,7 @@ class PinBody(Body):
             drift = -omega * y[1], omega * y[0]
             return begin_slip(run, self.coordinates, t, y[:2], drift, direction, self.leave)[:2]
         start = slip_from_rest(self.motion, complex(y[0], y[1]), tolerance=run.thresholds.series)
-        run.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
+        run.evaluations += len(start.positions)
         stop = t + min(start.duration, start.rest)
         end = min(stop, run.end)
 

@@ -132,7 +132,7 @@ class PointsBody(DiscBody):
         return end.t, y
 
     def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
-        """Follow point ``i`` as it slips from rest, unless the disc stops before the slip matters."""
+        """Follow point ``i`` as it slips from rest, unless the disc stops before that matters."""
         own = [*y[:3], y[5]]
         point = self.points[i]
         if point.gain(own) < self._least_speed:
@@ -168,7 +168,7 @@ class PointsBody(DiscBody):
         for k in range(1, SAMPLES_PER_TURN + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
-                # Near a local minimum of the samples the margin may dip by as much as it changes to the next samples.
+                # Near a local minimum the margin may dip by as much as it changes to the next samples.
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue

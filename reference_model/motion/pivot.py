@@ -29,7 +29,7 @@ CLOSE = 0.25
 
 @dataclass(frozen=True)
 class OnePoint:
-    """Equations of motion of a disc in the coordinates of its contact point number ``point``."""
+    """Equations of motion of a disc in the coordinates of its contact point ``point``."""
 
     motion: DiscMotion
     contact: Points
@@ -58,7 +58,7 @@ class OnePoint:
         return complex(ux, uy) + 1j * r / self.motion.gyration * self.arm(angle)
 
     def slipping_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, r, v_x, v_y; if the point rests, without its own friction."""
+        """Return the rates of x, y, φ, r, v_x, v_y, at v = 0 without the point's own friction."""
         v = unknowns[4] + 1j * unknowns[5]
         carried, spin_up, arm, free = self._without_friction(unknowns, v)
         friction = -self.most * (v / (abs(v) + NONE))

@@ -27,7 +27,7 @@ STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Relative change of slip plus time (in T) of the longest short step."""
+"""Relative change of slip plus scaled time of the longest short step."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
@@ -67,10 +67,10 @@ class Thresholds:
     rest_time
         Largest error in T of the closed form for the time of coming to rest.
     reversal_slip
-        Slip speed, in units, below which slip that friction cannot hold counts as reversed.
+        Scaled slip speed below which slip that friction cannot hold counts as reversed.
     common_rest
-        Slip speed, in units, below which all points of a disc rest together. A point slips from rest only if it can
-        gain this speed before the disc rests.
+        Scaled slip speed below which all points of a disc rest together. A point slips from rest only if it can gain
+        this speed before the disc rests.
     series
         Size of the last terms of the initial series of slip.
     safety
@@ -165,16 +165,16 @@ class SwitchingSurface(NamedTuple):
     trend: Callable[[list[float], list[float]], float] | None = None
 
     def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> SwitchingSurface:
-        """Return the surface for other unknowns, which ``unknowns`` converts to these; x and y come first in both."""
+        """Return the surface for other unknowns, also with x and y first, which ``unknowns`` converts to these."""
         return SwitchingSurface(lambda other: self.value(unknowns(other)), self.trend)
 
 
 class Stepper:
     """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
-    A step across such a surface has an unreliable error estimate and is repeated up to it. ``rates`` takes one state
-    for the explicit method, and is vectorised for collocation. ``tolerated`` returns the allowed errors of a step.
-    ``implicit`` contains the scales of the unknowns and the first step to try.
+    A step across such a surface has an unreliable error estimate and is repeated up to it. ``rates`` are vectorised
+    for collocation only. ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the
+    unknowns and the first step to try.
     """
 
     def __init__(

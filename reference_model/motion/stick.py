@@ -22,7 +22,7 @@ from reference_model.systems import FloatArray
 GRAZING = 1e-8
 """Relative excess of the pull over friction that does not count as a release.
 
-An excess δ moves the pin by about g·δ²/ω², far less than the rounding of the position.
+An excess δ moves the pin by about g·δ²/ω², below rounding.
 """
 
 NARROW = 1e-5

@@ -45,7 +45,7 @@ LARGEST_GROWTH = 2.0
 """Largest ratio of successive steps."""
 
 SETTLED = 5
-"""Number of steps without much growth until the step size has settled."""
+"""Number of successive steps with little growth that count as settled."""
 
 LEAST_SHARE = 1e-8
 """Smallest step as a share of the first."""
@@ -65,7 +65,7 @@ RatesAt = Callable[[FloatArray], FloatArray]
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes by differences, shape (NODES, n, n).
 
-    ``values`` are the unknowns, ``found`` their rates, and ``changes`` those of the unknowns, all (NODES, n).
+    ``values``, their rates ``found`` and their ``changes`` have the shape (NODES, n).
     """
     nodes, n = values.shape
     moved = values[:, np.newaxis] + changes[:, np.newaxis] * np.eye(n)
@@ -78,7 +78,7 @@ class Scales(NamedTuple):
     """Scales of the unknowns of a motion.
 
     ``differences`` takes unknowns (k, n) and returns their changes for numerical derivatives. ``most``, shape (n,),
-    is the largest change of each unknown in one Newton iteration.
+    are the largest changes in a Newton iteration.
     """
 
     differences: Callable[[FloatArray], FloatArray]
@@ -107,8 +107,7 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 class Radau:
     """Steps by collocation, with an interface like that of SciPy's solvers.
 
-    ``y``, shape (n,), are the unknowns at ``t``, and ``end`` is the final time. ``tolerated`` takes the unknowns and
-    returns the allowed errors of a step.
+    ``tolerated`` takes the unknowns, shape (n,), and returns the allowed errors of a step.
     """
 
     def __init__(
@@ -181,7 +180,6 @@ class Radau:
 
     @np.errstate(over="ignore", divide="ignore", invalid="ignore")
     def _collocate(self, h: float) -> Polynomial | None:
-        """Solve for the unknowns at the nodes of a step; return None without convergence."""
         places = self.t + 0.5 * h * (POINTS + 1.0)
         if self._polynomial is None:
             values = self.y + np.outer(places - self.t, self.f)

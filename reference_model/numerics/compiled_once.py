@@ -43,7 +43,7 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the global interpreter lock. ``package`` is the folder of all sources that are compiled into it.
+    It runs without the interpreter lock. ``package`` is the folder of all sources that are compiled into it.
     """
 
     def __init__(self, function: Callable[..., None], package: Path) -> None:
@@ -63,7 +63,7 @@ class CompiledOnce:
 def compiled_for(
     kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
 ) -> Any:
-    """Return numba's dispatcher of a function for these types; other threads and processes wait for it."""
+    """Return numba's dispatcher of a function for these types; others wait for it."""
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
         if folder:
@@ -87,7 +87,7 @@ def _cached_in(folder: str) -> Iterator[None]:
 
 @cache
 def digest_of(package: Path) -> str:
-    """Return a digest of all sources of a package; call it at import, because compiled functions belong to these."""
+    """Return a digest of a package's sources; call it at import, because compiled functions belong to these."""
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):
         digest.update(

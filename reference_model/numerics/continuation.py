@@ -58,7 +58,7 @@ def follow(
 ) -> Curve:
     """Follow the curve through ``start`` in both directions until it reaches a limit or closes.
 
-    Raises ``ContinuationError`` if Newton's method does not converge at the start or further along the curve.
+    Raises ``ContinuationError`` if Newton's method does not converge.
 
     Parameters
     ----------

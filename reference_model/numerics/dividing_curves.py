@@ -23,7 +23,7 @@ ComplexArray = NDArray[np.complex128]
 Function = Callable[[FloatArray], float]
 
 TURN = 0.35
-"""Largest angle in rad between neighbouring chords of equal length; they become shorter where a curve bends more."""
+"""Largest angle in rad between neighbouring chords of equal length; where a curve bends more they become shorter."""
 
 SHORTEST = 1e-7
 """Smallest step of a search, as a fraction of the rectangle."""
@@ -42,7 +42,7 @@ def dividing_curves(
 ) -> tuple[Curve, ...]:
     """Return the curves in a rectangle where ``function`` changes sign, with points of shape (n, 2).
 
-    Ends of a curve are limits: 0 and 1 are the lower limits of both variables, 2 and 3 the upper. Raises
+    The ``ends`` of a curve are 0 and 1 at the lower limits of both variables, 2 and 3 at the upper. Raises
     ``ContinuationError`` if a curve ends inside or others are much closer than a cell.
 
     Parameters
@@ -109,7 +109,6 @@ class _Square:
         return np.array([*behind[:0:-1], *ahead]), (first, last)
 
     def walk(self, start: complex, along: complex) -> tuple[list[complex], int | None]:
-        """Return the points from ``start`` on and the limit at their end, or None if the curve closes."""
         path, heading, width, step = [start], cmath.phase(along), 0.5 * math.pi, 0.25 * self.step
         while step > SHORTEST and len(path) < MOST_POINTS:
             home = start - path[-1]
@@ -132,7 +131,7 @@ class _Square:
         return self.zero(lambda angle: last + cmath.rect(step, angle), heading - width, heading + width, step)
 
     def end(self, last: complex, step: float, heading: float) -> complex:
-        """Return the point less than one ``step`` ahead where the curve first reaches a limit."""
+        """Return the point less than one ``step`` ahead where the curve reaches a limit."""
 
         def point(part: float) -> complex:
             turned = self.ahead(last, part, heading, 0.5 * math.pi)

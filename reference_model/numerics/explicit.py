@@ -37,8 +37,7 @@ _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
 class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     """Steps of the method, with the interface of SciPy's solvers.
 
-    ``y``, shape (n,), are the unknowns at ``t`` and ``end`` > t is the final time. ``first_step`` None chooses a
-    step. ``most`` is the longest step.
+    ``first_step`` None chooses a step; ``most`` is the longest step.
     """
 
     t: float

@@ -13,7 +13,7 @@ NODES = 121
 REACH = 3.25  # the outermost nodes are about 1e-17 of the interval from its ends
 
 FLAT = 1e-13
-"""Relative change between nodes that rounding alone may cause, for example next to the ends."""
+"""Relative change between nodes that rounding alone may cause."""
 
 
 def nodes_between(left: float, right: float) -> FloatArray:

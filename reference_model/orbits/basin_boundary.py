@@ -131,20 +131,20 @@ def basin_boundary(
 ) -> tuple[Curve, ...]:
     """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
-    Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
-    Raises ``ValueError`` if the orbit does not separate two motions, or an argument is invalid; ``RuntimeError`` if a
+    The ``ends`` of a curve are 0 and 1 at the lower limits of both components, 2 and 3 at the upper. Raises
+    ``ValueError`` if the orbit does not separate two motions, or an argument is invalid; ``RuntimeError`` if a
     boundary is not in the stable set of this orbit, or a curve cannot be followed.
 
     Parameters
     ----------
     orbit
         The saddle, with the tolerance of the points.
-    components : (str, str)
+    components
         Components that vary in the rectangle: two of "x", "y", "vx", "vy".
-    ranges : pair of (float, float)
+    ranges
         Their ranges in m or m/s.
     others : array-like of shape (4,)
-        State that supplies the other components.
+        Supplies the other components.
     cells
         Grid cells in each direction. Points of a curve are at most one cell apart, and curves that no grid edge
         crosses exactly once are missed.

@@ -195,7 +195,7 @@ class StickSlipOrbit(Orbit):
     """A periodic motion of a pin with one stick phase per period; as an :class:`Orbit` it starts in mid-slip.
 
     ``release``, shape (4,), is the state at the release, ``release_angle`` its lag α in rad, and ``stick_time`` is in
-    s. ``multiplier`` is the growth factor per period of a small deviation of α.
+    s. ``multiplier`` is the growth of a small deviation of α per period.
     """
 
     system: PinOnDisc

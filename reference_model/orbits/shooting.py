@@ -71,7 +71,7 @@ COLLAPSED = 1e-6
 class ShootingProblem:
     """The return map of an engine and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
 
-    ``precision`` is the relative noise of its states, whatever the tolerance.
+    ``precision`` is the relative noise of the states.
     """
 
     simulate: Simulate

@@ -110,7 +110,7 @@ def modulated_cycle(
     period of the modulation and resolves a revolution. Other arguments are those of :func:`whirl_orbit`.
 
     Raises ``ValueError`` if the offset is not zero, a disc rests on single points, or ``guess`` does not recur;
-    ``RuntimeError`` if Newton's method does not converge or finds a whirl of constant radius.
+    ``RuntimeError`` without convergence, or if the radius turns out to be constant.
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
     if system.offset != 0.0:

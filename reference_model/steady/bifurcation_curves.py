@@ -117,8 +117,8 @@ class Boundary:
     """A curve in a plane.
 
     ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the
-    angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a whirl of zero radius. The last point of a
-    ``closed`` curve equals the first one.
+    angle of (24) of the whirl in rad, tan α = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve
+    equals the first one.
     """
 
     kind: Kind
@@ -146,8 +146,8 @@ def crossings(
 ) -> tuple[float, ...]:
     """Return where a line in ``plane`` crosses the curves of a kind: increasing values of the other parameter.
 
-    The parameter ``name`` is ``value`` along the line. Raises ``ValueError`` like :func:`boundaries`, if ``name`` is
-    not in the plane, or if ``value`` is not in its range.
+    The parameter ``name`` is ``value`` along the line. Raises ``ValueError`` like :func:`boundaries`, or if ``name``
+    or ``value`` is not in the plane.
     """
     if name not in plane.names:
         raise ValueError(f"name = {name!r}: it must be one of {' and '.join(plane.names)}")
@@ -176,9 +176,9 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 
 @dataclass(frozen=True, eq=False)
 class _Condition:
-    """The equations of a boundary, for the unknowns (two parameters, ln(U/|U − W|)).
+    """The equations of a boundary for two parameters and ln(U/|U − W|), at the onset for the parameters only.
 
-    They hold on one side of U = W and for one sign of ω − Ω. At the onset only the two parameters are unknown.
+    They hold on one side of U = W and for one sign of ω − Ω.
     """
 
     plane: ParameterPlane

@@ -156,8 +156,8 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     A motion z ~ exp(±ikt) in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN.
     The instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
-    The result does not depend on ``friction_force``. Raises ``ValueError`` if there is an offset; if |ω| <= k, where
-    the rotation is always stable; or if b = 0 or Ω = ω, where the disc may stick at every load.
+    Raises ``ValueError`` if there is an offset; if |ω| <= k, where the rotation is always stable; or if b = 0 or Ω =
+    ω, where the disc may stick at every load.
     """
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)

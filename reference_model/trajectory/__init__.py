@@ -100,8 +100,8 @@ class Trajectory:
     """The motion of a system at the requested times.
 
     ``times``, shape (n,), are in s. ``states``, shape (n, 4) or (n, 6), are x, y in m and vx, vy in m/s of a pin, or
-    x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` cover ``times[0]`` to ``times[-1]`` without gaps;
-    they are () if the engine does not report them.
+    x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` cover all times without gaps; () if the engine
+    reports none.
     """
 
     system: System

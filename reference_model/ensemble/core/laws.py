@@ -136,10 +136,9 @@ def sticking_radius(law: PinLaw) -> float:
 def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     """Return whether a pin released at the radius ``last`` and then at ``radius`` creeps inward forever.
 
-    Its pull has a constant part p = k²|X0| and a turning part q, proportional to the radius. Once per turn they add
-    up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the slip reduces δ by
-    4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >= 4K: see
-    ``pin.slip.creeps_steadily``.
+    Once per turn the constant pull p = k²|X0| and the turning pull q add up to g + δ, around which the pull falls
+    like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ
+    never reaches zero. Nor does it if c² >= 4K: see ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)

@@ -21,7 +21,7 @@ from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
-"""Allowed contribution of the last terms of the polynomials, in units."""
+"""Allowed scaled contribution of the last terms of the polynomials."""
 
 
 @scalar

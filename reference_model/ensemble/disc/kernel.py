@@ -52,7 +52,7 @@ PARAMETERS = (
 )  # fmt: skip
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units of time."""
+"""Scaled s₀ over g."""
 
 WATCHED_STEP = 1e-3
 """Step below which points of a disc may be about to rest."""
@@ -90,7 +90,6 @@ def load_with(
     rest: Slow,
     rates: Rates,
 ) -> bool:
-    """Write the start of a trajectory to a lane's trial; return whether it has ended."""
     parameters = row_of(task.parameters, number)
     mass, inertia, stiffness, damping, force, omega, offset, _, shaft, _ = parameters
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
@@ -198,7 +197,7 @@ def run_points(task: Task, settings: DiscSettings, results: Results, first: int,
 
 @inlined
 def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories: a separate function compiles a fifth longer and runs a sixth faster."""
+    """Separate like ``pin.kernel._run_pins``."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,

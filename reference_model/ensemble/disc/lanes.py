@@ -80,19 +80,19 @@ ON_EDGE = 1e-4
 """Largest distance from the edge, as a share of a step, of a step that ends on it."""
 
 AT_END = 1e-13
-"""Time, in units, that is neglected at the end."""
+"""Scaled time that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
 """Slip speeds, in units of g, below which the tolerance of slip is relative, and slip may end."""
 
 REST_TIME = 1e-12
-"""Largest error, in units of time and length, of the closed form for coming to rest."""
+"""Largest scaled error of the closed form for coming to rest."""
 
 LEAST_SLIP = 1e-13
-"""Slip speed, in units, that counts as zero."""
+"""Scaled slip speed that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest time, in units, of slip that is followed from rest."""
+"""Longest scaled time of slip that is followed from rest."""
 
 SUDDEN = 0.05
 """Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
@@ -190,7 +190,6 @@ def flags_of(
 
 @scalar
 def idle(lanes: DiscLanes, lane: int) -> None:
-    """Fill a lane with a motion that never raises a flag."""
     trial = lanes.trial
     put(lanes.law, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

@@ -38,13 +38,13 @@ from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_ra
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
-"""Shortest time to rest, in units, of slow slip of a creeping disc or point."""
+"""Shortest scaled time to rest of slow slip of a creeping disc or point."""
 
 SPENT_SHARE = 0.1
 """Share of the tolerance for the remaining slip that decays forever."""
 
 SOON = 3e-4
-"""Longest time to rest, in units, of a point whose stop can be foreseen."""
+"""Longest scaled time to rest of a point whose stop can be predicted."""
 
 
 @scalar

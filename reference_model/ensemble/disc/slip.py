@@ -1,8 +1,7 @@
 """Slip of a disc in lanes: eq. 19 to 21 in stretched time, and its end, rest and beginning.
 
-The unknowns are x, y, the slip velocity u of the centre, r = κ(φ̇ − ω) with κ = √(J/m), and the angle φ. Friction is
-the gradient of −g·P(u, ηr), η = R/κ, with the mean slip speed P, see :mod:`reference_model.motion.disc_equations`. In
-the stretched time dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations are smooth and not stiff down to s = 0.
+The unknowns are x, y, u, r and φ of :mod:`reference_model.motion.disc_equations`, and η = R/κ. In the stretched time
+dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations are smooth and not stiff down to s = 0.
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from reference_model.ensemble.core.stepping.linear import length_of, powers_vani
 from reference_model.systems import FloatArray
 
 APART = 1e-5
-"""Differences for the derivative of the rates, in units."""
+"""Scaled differences for the derivative of the rates."""
 
 DIMENSION = 5
 

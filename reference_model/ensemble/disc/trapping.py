@@ -2,8 +2,8 @@
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
 fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller sphere inwards, it goes to the centre; half of V is used because the fan has gaps. A disc on points oscillates
-about the motion on a ring, so only spheres down to INNER of the size must be crossed.
+smaller sphere inwards, it goes to the centre. A disc on points oscillates about the motion on a ring, so only spheres
+down to INNER of the size must be crossed.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Golden ratio, whose multiples are spread evenly over [0, 1]."""
 
 SAFE = 0.5
-"""Share of the fan's V that is used."""
+"""Share of the fan's V that is used, because the fan has gaps."""
 
 
 @lru_cache(maxsize=64)
 def trapping_regions(disc: DiscOnDisc) -> NDArray[Any]:
-    """Return the known trapping regions of the stable motions of ``disc``, ``Region`` of shape (m,)."""
+    """Return the known trapping regions of ``disc``, ``Region`` of shape (m,)."""
     ring = replace(disc, contact_points=None)
     regions = []
     try:
@@ -60,7 +60,7 @@ def trapping_regions(disc: DiscOnDisc) -> NDArray[Any]:
                 centre = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, turning])
                 regions.append(_region(disc, True, centre, whirl.radius, _turning))
     except ValueError:
-        return no_regions()  # a point of the ring rests there, where friction has no derivative
+        return no_regions()  # friction has no derivative there
     known = [region for region in regions if region["level"] > 0.0]
     return np.array(known, dtype=layout(Region))
 
@@ -76,7 +76,7 @@ def _gyration(disc: DiscOnDisc) -> float:
 def _accelerations(
     disc: DiscOnDisc, z: ComplexArray, v: ComplexArray, r: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return v̇, ṙ and the mean slip speed, by eq. 19 and 20, with contact points at angles that differ by row."""
+    """Return v̇, ṙ and the mean slip speed by eq. 19 and 20, with contact points at angles that differ by row."""
     kappa, g = _gyration(disc), disc.friction_force / disc.mass
     u, w = v - 1j * disc.disc_speed * z, disc.contact_radius / kappa * r
     if disc.contact_points is None:

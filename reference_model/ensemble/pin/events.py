@@ -81,10 +81,10 @@ SPENT_SHARE = 0.1
 """Share of the tolerance for the remaining slip of a pin that creeps forever."""
 
 REVERSAL_SLIP = 1e-13
-"""Slip, in units, below which slip that friction cannot hold counts as reversed."""
+"""Scaled slip below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Earliest time of a crossing, in units; an earlier one is the start, on the section within rounding."""
+"""Earliest scaled time of a crossing; an earlier one is the start itself."""
 
 
 @written_out
@@ -331,7 +331,7 @@ def released(
 
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Decide the end state at the very end, also while slip is still too fast for a closed form."""
+    """Decide the end state at the very end, also while slip is too fast for a closed form."""
     z = position_at(lanes.trial, lane)
     if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
         radius = sticking_radius(law)

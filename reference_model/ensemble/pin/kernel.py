@@ -43,7 +43,7 @@ from reference_model.systems import PinOnDisc
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units. More makes steps shorter, less makes rest and release stiffer."""
+"""Scaled s₀ over g. More makes steps shorter, less makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
@@ -60,7 +60,6 @@ PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "o
 
 @written_out
 def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task, settings: Settings) -> bool:
-    """Write the start of a trajectory to a lane's trial; return whether it has ended."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
     x, y, vx, vy = row_of(task.starts, number)
     duration = float(row_of(task.durations, number))

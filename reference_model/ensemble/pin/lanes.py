@@ -63,7 +63,7 @@ STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 """Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
-"""Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
+"""Scaled duration of a short step, and the number of successive short steps that indicates stiffness.
 
 An implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
 """
@@ -71,10 +71,10 @@ An implicit step costs as much as about 50 explicit steps of a single trajectory
 SMALLEST_STEP = 1e-13
 
 LANDING = 1e-9
-"""Distance from the end, in units of time, that is bridged by the rates, with an error of its square."""
+"""Scaled distance from the end that is bridged by the rates, with an error of its square."""
 
 FIRST_STEP = 0.3
-"""First step of fast slip, in units of time."""
+"""Scaled first step of fast slip."""
 
 
 @written_out
@@ -135,7 +135,6 @@ def flags_of(
 
 @scalar
 def idle(lanes: PinLanes, lane: int) -> None:
-    """Fill a lane with a motion that never raises a flag."""
     trial = lanes.trial
     put(lanes.law, lane, PinLaw(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))

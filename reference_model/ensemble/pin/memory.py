@@ -78,7 +78,6 @@ class Settings(NamedTuple):
     """Settings for scalar code; few arrays, because each costs time in every call.
 
     ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section.
-    ``checkpoints`` are those of a single trajectory, empty if not requested.
     """
 
     tolerance: float
@@ -140,7 +139,6 @@ def record_requested(
     law: PinLaw,
     settings: Settings,
 ) -> None:
-    """Store a checkpoint of ``moment`` if times until ``until`` are requested."""
     if mark_requested(lanes, moment, memory, lane, until, settings):
         t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
         take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)

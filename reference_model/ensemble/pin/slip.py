@@ -116,8 +116,8 @@ def begin_slip(
 ) -> tuple[complex, complex, float, float]:
     """Return position, slip velocity, duration and distance of slip from rest at ``z``; the slip is 0 if it ends.
 
-    It follows the series of ``stick.slip_from_rest`` while its last terms stay below ``tolerance``, for at most
-    ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
+    It follows the series of ``stick.slip_from_rest`` while its last terms stay below ``tolerance``. ``work`` is
+    complex, of shape (6, MOST_TERMS + 2).
     """
     terms = TERMS
     duration = _series(z, law, 1, terms, tolerance, longest, work)

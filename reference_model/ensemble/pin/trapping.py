@@ -44,7 +44,7 @@ REQUIRED_SHARE = 0.25
 MOST_ELLIPSOIDS = 40
 
 TURNS = 2
-"""Free periods of the map about the equilibrium; with more, larger deviations have time to return."""
+"""Free periods of the map about the equilibrium; more would let larger deviations return."""
 
 LONGEST = 100.0
 """Longest time from the circle without offset to the whirl, in units of m/β."""

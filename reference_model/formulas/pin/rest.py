@@ -34,7 +34,7 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
 
 
 def equilibrium_angle(pin: PinOnDisc) -> float:
-    """Return ψ* of (3), the angle of the pin at rest, in rad between −π and π; ``ValueError`` also without offset."""
+    """Return ψ* of (3), the angle of the pin at rest, in rad from −π to π; ``ValueError`` also without offset."""
     _require_equilibrium(pin)
     if pin.offset == 0.0:
         raise ValueError("offset = 0 m: the equilibrium is the axis itself and has no angle")

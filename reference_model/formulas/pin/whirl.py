@@ -127,7 +127,7 @@ def characteristic_coefficients(pin: PinOnDisc) -> tuple[float, float, float, fl
 def characteristic_coefficients_as_printed(pin: PinOnDisc) -> tuple[float, float, float, float]:
     """Return the coefficients of (13) as printed, which are wrong, for comparison.
 
-    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate. The determinant of (12)
+    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate; the determinant of (12)
     gives (β/m)·(1 + ω/(ω − k)).
     """
     _, _, linear, constant = characteristic_coefficients(pin)
@@ -172,8 +172,7 @@ class WhirlResponse(NamedTuple):
 def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
     """Return x_s and y_s of (18) in m, the paper's approximation of the time mean of the whirl with an offset.
 
-    It balances only the first harmonic. The second harmonic is of the same order in X0 and changes the mean, see
-    :func:`first_order_whirl_shift`.
+    It omits the second harmonic, which changes the mean to the same order in X0, see :func:`first_order_whirl_shift`.
     """
     require_whirl(pin)
     half = _relative_damping(pin) * speed_ratio(pin) / 2.0
@@ -227,9 +226,9 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
     """Return the imaginary part of the whirl's mean at third order in X0 over first order, to leading order in d.
 
     Let d = β/(mk) and τ = kt. In units of ρ_c, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ).
-    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean.
-    This direction is that of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b =
-    (2w − 1)σ/ρ. Its harmonics to third order give::
+    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean:
+    that of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b = (2w − 1)σ/ρ. Its
+    harmonics to third order give::
 
         exp(iτ)   1 − a²/4           = ρ
         exp(−iτ)  b/2 − a²/8         = −σ

@@ -1,8 +1,8 @@
 """The beginning of slip from rest, for any law.
 
 Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. As the
-motion is smooth, implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary Differential Equations II,
-IV.5) needs only a few steps until slip is fast enough for an explicit method.
+motion is smooth, implicit collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until slip
+is fast enough for an explicit method.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 FIRST_STEP = 0.01
-"""First step in units of time; it shrinks until the motion is resolved."""
+"""Scaled first step, which shrinks until the motion is resolved."""
 
 LEAST_STEP = 1e-12
 
 MOMENT = 1e-6
-"""Time, in units, for the difference quotient of the pull."""
+"""Scaled time for the difference quotient of the pull."""
 
 TURN = 1e-7
 """Change of direction for the difference quotient of friction."""
@@ -136,8 +136,8 @@ class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
     It interpolates the values, because stiffness amplifies the residual of Newton's method in an integral of the
-    rates. ``rates`` have the shape (NODES, unknowns). At the end ``stiffness`` is the relaxation rate of the
-    direction of slip in 1/T, and ``falling`` is True if slip decelerates.
+    rates. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling`` is True if
+    slip decelerates.
     """
 
     values: Polynomial
@@ -206,7 +206,7 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Friction hardly changes with the slip speed, so component-wise differences are too inaccurate for that derivative.
+    Friction hardly changes with the slip speed, so that derivative needs larger differences.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

@@ -36,18 +36,18 @@ SHARE = 1e-5
 
 @dataclass(frozen=True)
 class Coordinates:
-    """The unknowns of a motion, the last ``slip`` of them a slip velocity, and the functions that describe it.
+    """The unknowns of a motion, the last ``slip`` of them a slip velocity, and functions of them.
 
     Parameters
     ----------
     rates, many
-        Return the rates of the unknowns in 1/T, never at zero slip; the latter for arrays of shape (k,).
+        Rates in 1/T, never at zero slip; the latter for arrays of shape (k,).
     slow
-        Returns the speed limit of slow slip.
+        Speed limit of slow slip.
     pace
         Largest rate of everything except the slip, in 1/T.
     standard
-        Converts unknowns of shape (k, n) to the standard unknowns of the body, (unknowns, n).
+        Standard unknowns of the body, (unknowns, n), for unknowns of shape (k, n).
     angle
         Index of an angle, which has an absolute tolerance.
     turning
@@ -55,7 +55,7 @@ class Coordinates:
     leverage
         Derivative of the velocity of the centre by the slip.
     grip
-        Returns the margin of a held friction force; the motion ends at zero.
+        Margin of a held friction force; the motion ends at zero.
     surfaces
         Surfaces where friction or support is continuous but not smooth.
 
@@ -114,7 +114,7 @@ class Coordinates:
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
-    """Return the surface where the stop begins, or () without one, for unknowns that start with x and y."""
+    """Return the surface where the stop begins, if any, for unknowns that start with x and y."""
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
 
@@ -148,10 +148,10 @@ FAST_AGAIN = 1.2
 """Ratio to the slow slip speed above which slip is fast again."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
-"""Largest remaining distance of slip that has ended: as a share of the local tolerance, and in units."""
+"""Largest distance that remains when slip has ended: as a share of the local tolerance, and scaled."""
 
 LONG = 0.01
-"""Smallest time to rest, in units, of lingering slip."""
+"""Smallest scaled time to rest of lingering slip."""
 
 
 def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcome | None:
@@ -175,7 +175,7 @@ def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcom
 
 
 def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[float]) -> list[float]:
-    """Follow the last ``left`` of slip, which falls linearly, by the midpoint rule; return the final unknowns."""
+    """Follow the last ``left`` of slip, which falls linearly, by the midpoint rule; return the unknowns."""
     others = len(y) - motion.slip
     first = motion.rates(y)[:others]
 

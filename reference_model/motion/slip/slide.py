@@ -74,7 +74,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         n = stretched[others : others + d]
         size = math.hypot(*n)
         n = [part / size for part in n]
-        # A trial step may overshoot by far before it is rejected: exp() must not overflow then.
+        # A trial step may overshoot by far before it is rejected: exp() must not overflow.
         s = math.exp(min(stretched[-2], 50.0))
         return [*stretched[:others], *[s * part for part in n]], n, s
 

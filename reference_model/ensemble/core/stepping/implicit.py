@@ -35,13 +35,13 @@ SHARE = 1e-3
 """Largest allowed error of slip, relative to it: slip must not reverse."""
 
 ROUNDED = 1e-15
-"""Rounding error of slip, in units."""
+"""Rounding error of scaled slip."""
 
 WORTH = 10.0
 """Number of explicit steps whose total time an implicit step must exceed."""
 
 FIRST_SPAN = 0.1
-"""First implicit step, in units, or twice the smallest worthwhile step if longer."""
+"""Scaled first implicit step, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
 """Number of short steps after an implicit step failed to pay, doubled up to a number of failures."""
@@ -71,8 +71,8 @@ def collocate_with(
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
     ``z``, ``angle`` and ``start`` describe the start of the step. The rates ``f`` and the mean slip speed ``power``
-    (NODES,) are results too. Returns how fast friction draws slip to its direction at the end, as a rate, or -1
-    without convergence.
+    (NODES,) are results too. Returns the relaxation rate of the direction of slip at the end, or -1 without
+    convergence.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
