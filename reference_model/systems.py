@@ -99,7 +99,7 @@ class _SupportedMass:
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
-        """Return formula and value of each bounded ratio, by the parameter that an error names."""
+        """Return formula and value of each bounded ratio, by the parameter named in the error."""
         return {
             "stiffness": ("√(stiffness/mass)", self.natural_frequency),
             "stop_stiffness": ("√(stop_stiffness/mass)", math.sqrt(self.stop_stiffness / self.mass)),

@@ -47,8 +47,7 @@ class Annulus(IsotropicContact):
     Raises
     ------
     ValueError
-        If a radius or ``rings`` is out of range, or the pressure is not callable, negative, not finite, or zero
-        everywhere.
+        If a radius or ``rings`` is out of range, or the pressure is not a function, negative, or zero everywhere.
 
     """
 

@@ -1,4 +1,4 @@
-"""Friction laws for arrays, for implicit methods."""
+"""Vectorised friction laws for implicit methods."""
 
 from __future__ import annotations
 

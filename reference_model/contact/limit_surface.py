@@ -135,7 +135,7 @@ class PointsLimit:
     def greatest(self, forces: ComplexArray) -> tuple[FloatArray, ComplexArray]:
         """Return the squares of the largest moments that can be held with ``forces`` (t,), and the slips for w = 1.
 
-        Both are those about the centre of the load. Where the force alone is too large the squares continue as (1 −
+        Both are about the centre of the load. Where the force alone is too large the squares continue as (1 −
         |F|)·R², so they pass through zero with a finite slope.
         """
         # A point is the pivot if it can supply the force that the other points leave over.

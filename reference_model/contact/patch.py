@@ -23,10 +23,10 @@ A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971,
 def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Points:
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
-    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Each
-    of its triangles is cut into ``divisions``² >= 1 equal ones with three points each. With their longest side h the
-    error falls like h⁴ if the centre of rotation lies outside the patch; otherwise friction jumps and the error falls
-    like h² on average.
+    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Its
+    triangles are cut into ``divisions``² >= 1 equal ones with three points each. With their longest side h the error
+    falls like h⁴ if the centre of rotation lies outside the patch, otherwise like h² on average, because friction
+    jumps.
 
     Raises ``ValueError`` if a number is invalid, or the polygon has no area or intersects itself.
     """

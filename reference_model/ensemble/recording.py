@@ -57,7 +57,7 @@ class Recording:
     ) -> Results:
         """Follow the motion from ``state`` at ``since`` as far as ``one`` goes; return its result.
 
-        ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
+        ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one is given up.
         """
         # The kernel is compiled for writable arrays only.
         task = Task(parameters, state.copy()[np.newaxis], np.array([self.duration - since]))

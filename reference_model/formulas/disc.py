@@ -237,7 +237,7 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
     """Return b|ω − Ω|/μN in m of the whirl as a function of slip and rim >= 0, whose ratio is U : R|ω − φ̇|.
 
-    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit, b|ω − Ω| over the onset load, at slip = 0. Raises
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit at slip = 0, b|ω − Ω| over the onset load. Raises
     ``ValueError`` if stiffness or damping is zero, |ω| <= k, or the support is not linear.
     """
     require_linear_support(disc)

@@ -35,7 +35,7 @@ class PowerBalance:
     friction_heat, damper_heat
         Heat of friction and of the dampers, including a friction disc's shaft damper.
     shaft_work
-        Work that a friction disc delivers to its shaft behind the damper.
+        Work of a friction disc on its shaft behind the damper.
     stored_energy
         Kinetic energy plus energy of the springs.
 

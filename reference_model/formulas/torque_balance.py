@@ -89,8 +89,8 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
 def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
-    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, except pure spin. On a nonlinear support
-    the arm depends on the load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
+    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, whose arm depends on the load on a
+    nonlinear support. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)

@@ -23,8 +23,8 @@ from reference_model.systems import DiscOnDisc
 class DiscMotion:
     """Eq. 19 divided by the mass, for the unknowns x, y, φ, u_x, u_y, r.
 
-    ``centre`` contains the equations of a pin at the centre, with ``friction`` g = μN/m; ``gyration`` is κ in m,
-    ``shaft_rate`` b/J in 1/s, and ``lag`` κ(ω − Ω) in m/s. ``length`` is their unit of length in that of ``contact``.
+    ``centre`` contains the equations of a pin at the centre; ``gyration`` is κ in m, ``shaft_rate`` b/J in 1/s, and
+    ``lag`` κ(ω − Ω) in m/s. ``length`` is their unit of length in that of ``contact``.
     """
 
     centre: SlipMotion

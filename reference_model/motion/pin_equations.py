@@ -54,8 +54,7 @@ def simulate_polar_form(
 ) -> FloatArray:
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
-    It cannot stick, and it is singular at the centre. ``initial_state`` is x, y, vx, vy at ``times[0]``;
-    ``tolerance`` is at least SciPy's smallest. Raises ``ValueError`` if the support is not linear, and
+    It cannot stick, and it is singular at the centre. Raises ``ValueError`` if the support is not linear, and
     ``RuntimeError`` if the integrator fails.
     """
     require_linear_support(pin)

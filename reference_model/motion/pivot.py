@@ -79,7 +79,7 @@ class OnePoint:
     def leaving(self, unknowns: Sequence[float]) -> FloatArray:
         """Return the direction of the incipient slip, a unit vector e with B − gq·G·e = c·e, c >= 0.
 
-        Its components along and across the arm are B_∥/(c + gq) and B_⊥/(c + gq·(1 + |a|²/κ²)).
+        Along and across the arm it is B_∥/(c + gq) and B_⊥/(c + gq·(1 + |a|²/κ²)).
         """
         _, _, arm, free = self._without_friction(unknowns, 0j)
         axis = arm / abs(arm) if arm != 0.0 else 1.0 + 0j

@@ -157,8 +157,8 @@ class Run:
 class SwitchingSurface(NamedTuple):
     """A surface where the rates are continuous but not smooth.
 
-    ``value`` changes sign on the surface. ``trend`` takes the unknowns and their rates and returns a number with the
-    sign of the rate of ``value``, which detects steps that cross the surface and come back.
+    ``value`` changes sign on the surface. ``trend`` takes the unknowns and their rates and returns the sign of the
+    rate of ``value``, which detects steps that cross the surface and come back.
     """
 
     value: Callable[[list[float]], float]

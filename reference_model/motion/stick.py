@@ -115,8 +115,8 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
     """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface at that moment. Along the limit surface U = cos α falls, S ~ sin α
-    grows, the moment grows and the force falls.
+    Its friction is the force on the limit surface at that moment. On this surface the moment grows and the force
+    falls while U = cos α falls and S ~ sin α grows.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg

@@ -48,7 +48,7 @@ def dividing_curves(
     Parameters
     ----------
     function
-        Takes a point, shape (2,), and is defined up to one cell beyond the rectangle.
+        Takes a point, shape (2,), up to one cell beyond the rectangle.
     low, high : array of shape (2,)
         Limits of the rectangle.
     cells

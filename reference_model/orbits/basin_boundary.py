@@ -2,7 +2,7 @@
 
 If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
 eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
-boundary is the root of an equation, which end states bracket.
+boundary is a root, which end states bracket.
 """
 
 from __future__ import annotations

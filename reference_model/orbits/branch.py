@@ -22,9 +22,9 @@ def whirl_branch(
 ) -> Iterator[Orbit]:
     """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
 
-    Each orbit is predicted from the two before it, for a relative decrease of x by at most ``step``, which is halved
-    if Newton's method fails, down to ``until`` > 0 in m. The load may rise or fall, and stick phases may appear.
-    Raises ``RuntimeError`` if even a step of ``step``/64 finds no orbit.
+    Each orbit is predicted from the two before it. The relative decrease of x is at most ``step``, halved if Newton's
+    method fails, down to ``until`` > 0 in m. The load may rise or fall, and stick phases may appear. Raises
+    ``RuntimeError`` if even a step of ``step``/64 finds no orbit.
     """
     seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
     before, last = None, orbit

@@ -27,9 +27,9 @@ from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, re
 from reference_model.trajectory import Trajectory
 
 SEARCH_TIMES = (1.5, 16.0)
-"""Search times for a release, in the longer of a turn of the disc and a free period of the pin.
+"""Search times for a release, in units of the longer of a turn of the disc and a free period of the pin.
 
-A pin that does not stick within the second is taken never to do so.
+A pin that does not stick within the second is assumed never to stick.
 """
 
 NODES = 48
@@ -48,7 +48,7 @@ ROUGH = 1e-6
 """Tolerance of the search for fixed points, which are then refined."""
 
 JUMP = 1e-4
-"""Smallest residual in rad of a jump, which is not a fixed point."""
+"""Residual in rad above which a change of sign is a jump, not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
 """Steps in rad of the central differences for the multiplier; the first that meets no gap is used."""

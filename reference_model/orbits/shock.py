@@ -22,7 +22,7 @@ from reference_model.systems import FloatArray, PinOnDisc
 BoolArray = NDArray[np.bool_]
 
 DIRECTIONS = 64
-"""Number of directions that are tried first, about a tenth of a radian apart."""
+"""Number of directions that are tried first."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
 """Sizes of the shocks that are tried first, over the speed of the disc at the whirl or at the offset."""

@@ -55,7 +55,7 @@ CONVERGED = 1e-9
 """Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""Largest residual over an engine's precision, because a residual contains its noise several times."""
+"""Largest residual over the engine's precision: a residual contains its noise several times."""
 
 SLOW = 0.3
 """Share of the residual that may remain after an iteration without new derivatives."""
@@ -102,7 +102,7 @@ class ShootingProblem:
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
         """Return the derivatives of ``miss`` by the ``sought`` unknowns."""
-        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise of the map
+        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise
         columns = []
         for i in sought:
             shifted = unknowns.copy()

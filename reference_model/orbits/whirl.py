@@ -67,7 +67,7 @@ def whirl_orbit(
     at_crossing
         Fixed value of x at y = 0, in m, with the load μN as an unknown, so that a branch can turn at folds.
     tolerance, samples
-        Those of ``simulate``, and number of intervals of the trajectory.
+        That of ``simulate``, and number of intervals of the trajectory.
     precision
         Relative noise of the engine's states, such as 1e-6 in single precision.
 

@@ -323,7 +323,7 @@ def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[fl
 
 
 def _near(point: FloatArray, curve: FloatArray) -> bool:
-    """Return whether a point lies on the polygon through the points of a curve, within its sag."""
+    """Return whether a point lies on the polygon through the points of a curve, within SAME."""
     begin, along = curve[:-1], np.diff(curve, axis=0)
     share = np.sum((point - begin) * along, axis=1) / np.sum(along**2, axis=1)
     feet = begin + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along

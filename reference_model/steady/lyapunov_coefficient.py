@@ -1,9 +1,9 @@
 """The first Lyapunov coefficient of a whirl at its Hopf boundary: soft or hard onset of modulation.
 
-Near a Hopf boundary the motion is ż = λz + c·z|z|² in a complex amplitude z. If Re c < 0 a small stable cycle grows
-out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl before the boundary, and
-beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied bifurcation theory, sections 3.5
-and 5.4).
+Near a Hopf boundary the motion is ż = λz + c·z|z|² in a complex amplitude z. If Re c < 0 a small stable cycle, of
+amplitude √(−Re λ/Re c), grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the
+whirl before the boundary, and beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied
+bifurcation theory, sections 3.5 and 5.4).
 """
 
 from __future__ import annotations
@@ -34,9 +34,8 @@ ComplexVector = NDArray[np.complex128]
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
     """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
-    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³, so a cycle of the
-    amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on the
-    x axis.
+    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. ``state``, shape (6,),
+    lies on the whirl, with the centre on the x axis.
 
     Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, or the disc rests on single
     points or a nonlinear support.

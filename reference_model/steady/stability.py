@@ -114,9 +114,9 @@ def turning_frame_jacobian(
     """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
     The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
-    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state``, of
-    a disc only, lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`,
-    and if a pin has no whirl or the state cannot lie on one.
+    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state`` of a
+    disc lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a
+    pin has no whirl or the state cannot lie on one.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)

@@ -182,12 +182,12 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     - if μN = 0: nothing drives it;
     - if C = 0: nothing holds the pin on a circle.
 
-    A disc may have several, the largest first, with the pin's frequency ±k and smaller than the pin's, under the same
-    conditions and if the load reaches :func:`smallest_load_with_whirl`.
+    A disc may have several, listed from the largest. They have the pin's frequency ±k and smaller radii. The same
+    conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
-    On a nonlinear support the frequency grows with the circle. The pin's circle, with the speed μN/β, is a whirl only
-    if the disc turns faster. The circles of a disc are smaller and slower, because its friction acts only partly
-    along the circle, so a disc may have whirls where a pin sticks.
+    On a nonlinear support the frequency grows with the circle, and the pin's circle, with the speed μN/β, is a whirl
+    only if the disc turns faster. The friction of a disc acts only partly along the circle, so its circles are
+    slower, and it may have whirls where a pin sticks.
 
     Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
     :func:`self_centred_equilibria`.

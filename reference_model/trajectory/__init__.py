@@ -55,8 +55,8 @@ class StepCount:
 class Phase:
     """A time span of slip, stick or pivoting, which ends where the next one starts.
 
-    ``initial_state`` is the state at ``start``. In a "pivot" phase one of several contact points rests on the master
-    disc and the disc turns about it.
+    ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about one of several contact
+    points, which rests on the master disc.
     """
 
     kind: Literal["slip", "pivot", "stick"]
@@ -151,8 +151,7 @@ class Trajectory:
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the path in the plane and radius, slip speed and spin over time; stick phases are shaded.
 
-        ``figure`` is the matplotlib figure to draw in; None makes a new one. Raises ``ModuleNotFoundError`` without
-        matplotlib.
+        ``figure`` is the matplotlib figure, None for a new one. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import figure_of
 
@@ -164,8 +163,8 @@ class Trajectory:
     ) -> FuncAnimation:
         """Return an animation; save it with ``.save("motion.gif")`` or show it in a notebook by ``.to_jshtml()``.
 
-        ``speed`` is the simulated time in s per second of the animation. ``places`` are the contact points of
-        :class:`Points`, which a trajectory does not store. Raises ``ModuleNotFoundError`` without matplotlib.
+        ``speed`` is in simulated seconds per second. ``places`` are the contact points of :class:`Points`, which a
+        trajectory does not store. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import animation_of
 

@@ -38,8 +38,7 @@ def inlined(function: Function) -> Function:
 def scalar(function: Function) -> Function:
     """Compile ``function`` as one that its callers call, because it is large or has several callers.
 
-    It is compiled again with each direct or indirect caller, so only some functions in a chain of calls should be
-    scalar.
+    Each direct or indirect caller compiles it again, so only some functions in a chain of calls should be scalar.
     """
     return cast(Function, extending.register_jitable(**PART)(function))
 

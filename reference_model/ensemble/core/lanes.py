@@ -68,7 +68,6 @@ def run(
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
     ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
-    ``kind`` contains properties for the compiler.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)

@@ -14,7 +14,7 @@ ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
 """Largest relative slip of a body that counts as sticking, from rounding."""
 
 CREEP = 0.1
-"""Largest excess of the pull of creeping slip, as a fraction of its change in a turn or of g."""
+"""Largest excess of the pull in creep, as a fraction of the pull's change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):

@@ -40,8 +40,7 @@ class Moment(Record):
 class DiscLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, and ``due`` the time of an
-    earlier check.
+    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, ``due`` the next check.
     """
 
     now: Moment
@@ -104,8 +103,8 @@ def advance_with(
 ) -> None:
     """Make a trial step in the first ``count`` lanes; where it is rejected the trial is the old state.
 
-    A step across the ``edge`` of friction has an unreliable error estimate and is repeated up to the edge; likewise
-    at the end. A step smaller than ``small_step`` also raises a flag.
+    A step across the ``edge`` of friction or the end is repeated up to it, because its error estimate is unreliable.
+    A step smaller than ``small_step`` also raises a flag.
     """
     wide_vectors()
     now, trial = lanes.now, lanes.trial

@@ -32,7 +32,7 @@ class Region(Record):
 
 
 class DiscMemory(Record):
-    """Scalar data of a lane; ``checks``, ``turns``, ``peaks``: the motion at checks, largest x and largest radius."""
+    """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius."""
 
     number: int
     length: float

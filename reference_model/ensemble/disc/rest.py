@@ -143,7 +143,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
     if held > 0.0:
         take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
-        # It slips no farther than an equally held pin, and creeps inward where such a pin does.
+        # The centre slips no farther than an equally held pin, and creeps inward where such a pin does.
         centre, last = centre_of(law, friction), memory.peaks.values[0]
         if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
             memory.end, radius = STUCK, sticking_radius(centre)

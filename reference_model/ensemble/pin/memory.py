@@ -35,10 +35,10 @@ OF_TURN, OF_RELEASE = 1, 2
 
 
 class TrappingRegions(Record):
-    """Trapping regions, if all trajectories have the same parameters; in m and s.
+    """Trapping regions in m and s, if all trajectories have the same parameters.
 
-    ``level`` and ``form`` describe the region of the equilibrium, ``reach``, ``turn`` (x, y, ẏ/k), ``metric`` (upper
-    half) and ``measures`` the crossing of the whirl. Level or reach are 0 if unknown.
+    ``level`` and ``form`` are those of the equilibrium. ``reach``, ``metric`` (both of the form), ``turn`` (x, y,
+    ẏ/k) and ``measures`` describe the whirl at the section. A level of 0 means unknown.
     """
 
     level: float

@@ -67,7 +67,7 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
     v = w + 1j * law.disc_speed * z
     acceleration = a - g * w / s + 1j * law.disc_speed * v
     change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
-    turn = abs(a) * s  # of the position if the direction of slip changes completely
+    turn = abs(a) * s  # rotation of the position if the direction of slip reverses
     return left if left * left * (change + turn / s) < tolerance else math.inf
 
 

@@ -1,6 +1,6 @@
 """Stability of a closed orbit of a slipping pin, by the derivative of its return map.
 
-Small deviations (δz, δv) of a motion satisfy the linear equations::
+Small deviations (δz, δv) of a motion satisfy::
 
     δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 

@@ -1,8 +1,8 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
-Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
+Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
 stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
-points on ever larger ellipsoids, as long as each image lies in a clearly smaller one, on a whirl without stick.
+points on ever larger ellipsoids, as long as each image lies in a clearly smaller one.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArra
 
 
 def largest_load_with_equilibrium(pin: PinOnDisc) -> float:
-    """Return C·|X0| of (5) in N, the spring force on the axis: the equilibrium exists up to this μN."""
+    """Return C·|X0| of (5) in N, the spring force on the axis: the largest μN with equilibrium."""
     return Support.of(pin).pull(abs(pin.offset))
 
 
@@ -94,8 +94,7 @@ def _equilibrium_deflection(pin: PinOnDisc) -> float:
 def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLike) -> FloatArray:
     """Return the right side of (7) in N²: the square of the friction force that holds a pin on the disc.
 
-    ``radius`` is the distance A of the stuck pin from the axis in m, ``disc_angle`` its angle ωt in rad; both may be
-    arrays.
+    ``radius`` is the distance A from the axis in m, ``disc_angle`` the angle ωt in rad; both may be arrays.
     """
     require_linear_support(pin)
     A, angle = np.asarray(radius, dtype=float), np.asarray(disc_angle, dtype=float)
@@ -137,7 +136,7 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     lead = math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
     half_turn = math.pi if pin.offset < 0.0 else 0.0
     start = math.remainder(direction * (start_angle + lead) + half_turn, 2.0 * math.pi)
-    # For half the angle the law of cosines is accurate for a flat triangle, where an arccos loses digits.
+    # For half the angle the law of cosines is accurate where an arccos loses digits.
     opening = 2.0 * math.atan2(
         math.sqrt((friction - excess) * (friction + excess)),
         math.sqrt((carry + pull - friction) * (carry + pull + friction)),
@@ -161,10 +160,8 @@ def sticking_margin(pin: PinOnDisc, radius: float) -> float:
 def sticking_radius(pin: PinOnDisc) -> float:
     """Return the right side of (9) in m: the largest distance from the axis with permanent stick.
 
-    It is ``inf`` if an undamped pin is carried round at its natural frequency, which takes no force.
-
-    Raises ``ValueError`` if μN <= C·|X0|, where friction cannot hold the pin even on the axis, or if the support is
-    not linear.
+    It is ``inf`` if an undamped pin is carried round at its natural frequency. Raises ``ValueError`` if μN <= C·|X0|,
+    where friction cannot hold the pin even on the axis, or if the support is not linear.
     """
     spare = sticking_margin(pin, 0.0)
     if spare <= 0.0:

@@ -37,8 +37,8 @@ def require_positive(pin: PinOnDisc, *names: str) -> None:
 def whirl_radius(pin: PinOnDisc) -> float:
     """Return ρ_c of (11) in m, the radius of the whirl without offset.
 
-    The balance along the circle gives the speed v = μN/β, whatever the support. The circle follows from m·v² = C·ρ² +
-    C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap), whose right side grows with ρ.
+    The balance along the circle gives the speed v = μN/β. The circle follows from m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0,
+    ρ − gap), whose right side grows with ρ.
 
     Raises ``ValueError`` if there is no whirl. The paper says it "always exists", but by the sense of the friction
     force in (10) it requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
@@ -135,7 +135,7 @@ def characteristic_coefficients_as_printed(pin: PinOnDisc) -> tuple[float, float
 
 
 def coefficient_margins(pin: PinOnDisc) -> tuple[float, float]:
-    """Return left side minus right side of the two conditions (14): both > 0 if the coefficients of (13) are."""
+    """Return left side minus right side of the conditions (14): both > 0 if the coefficients of (13) are."""
     ratio = speed_ratio(pin)
     return ratio + 1.0, ratio + _stiffness_to_damping(pin)
 

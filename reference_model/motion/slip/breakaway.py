@@ -112,7 +112,7 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
         if piece is None and t > since:
-            break  # as where one of several points hardly slips
+            break  # friction changes sharply, as where one point hardly slips
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:

@@ -155,7 +155,7 @@ LONG = 0.01
 
 
 def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcome | None:
-    """Follow slow slip to its end if that comes next; return None if not."""
+    """Follow slow slip to its end if it is about to end; otherwise return None."""
     others, s = len(y) - motion.slip, motion.speed(y)
     n = [part / s for part in y[others:]]
     growth = motion.rates(y)[others:]

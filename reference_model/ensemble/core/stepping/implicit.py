@@ -1,8 +1,5 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
-Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit only explicit steps.
-
 The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative −g·P'' of friction
 is symmetric and zero along the slip, because P is of degree one, so its rounding error along the slip is removed.
 """
