@@ -87,7 +87,7 @@ def simulate(
         R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
     size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
     speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0
-    epsilon = 10.0 * fine * speed  # the error of stick is at least ε
+    epsilon = 10.0 * fine * speed  # errors of stick are at least ε
     friction = on_ring(system.friction_force, R, points, epsilon)
     run = solve_ivp(
         lambda _, state: rates(system, friction, state), (times[0], times[-1]), start, "Radau", times,

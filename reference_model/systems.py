@@ -140,7 +140,7 @@ class PinOnDisc(_SupportedMass):
     hardening
         C₃ in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
     stop_gap, stop_stiffness
-        Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap.
+        Clearance in m and C_s in N/m, >= 0: the stop pushes back with C_s·(|w| − gap) if |w| > gap.
 
     """
 
@@ -279,7 +279,7 @@ Place: TypeAlias = tuple[float, float, float]
 """Position x, y of a contact point in m in the frame of the disc, and its share of the load."""
 
 SHARES = 1e-12
-"""Largest deviation from 1 of a sum of shares: rounding errors of a thousand shares."""
+"""Largest rounding error of a sum of a thousand shares."""
 
 
 def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place, ...]:

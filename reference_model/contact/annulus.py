@@ -20,10 +20,10 @@ It turns x·ln x into t^(2q−1)·ln t. Gauss's rule converges like n^(−2a −
 """
 
 ORDER = 4 * CLUSTERING
-"""Order of convergence of force and moment in ``rings``, if r₀ lies in the annulus or near it."""
+"""Order of convergence of force and moment in ``rings``, if r₀ lies in or near the annulus."""
 
 SLOPE_ORDER = 2 * CLUSTERING
-"""Order of convergence of their slopes."""
+"""Order of convergence of the slopes of force and moment."""
 
 
 @dataclass(frozen=True)

@@ -27,7 +27,7 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Added to speeds before division, which gives a point at rest zero friction."""
+"""Added to speeds before division, so that friction is zero at a point at rest."""
 
 
 class Contact(Protocol):
@@ -133,8 +133,8 @@ class _OnCircle:
 class Ring(_OnCircle, IsotropicContact):
     """Contact on the whole circle of ``radius`` R > 0 in m (20), in closed form.
 
-    With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S), see
-    :mod:`reference_model.contact.elliptic`, both accurate to rounding.
+    F = ∂P/∂U and M = R·∂P/∂W·sign(S), W = R·|S|, with the mean slip speed P(U, W) on the circle, see
+    :mod:`reference_model.contact.elliptic`. Both are accurate to rounding.
     """
 
     @property

@@ -50,7 +50,7 @@ def largest_wrench(
 ) -> tuple[complex, float]:
     """Return the largest multiple of a force and a moment that friction can hold at φ = 0.
 
-    ``force`` and ``moment``, about the centre in m times the unit of the force, give the direction. The result is in
+    ``force`` and ``moment`` (about the centre, in m times the unit of the force) give the direction. The result is in
     N per N of μN and in m. Raises ``ValueError`` if both are zero.
     """
     if force == 0.0 and moment == 0.0:
@@ -106,7 +106,7 @@ class PointsLimit:
 
     @cached_property
     def _pulls(self) -> ComplexArray:
-        """Force of the other points while the disc turns about each of them."""
+        """Force of the other points while the disc turns about each point."""
         pulls = [self.shares @ _directions(vertex - self._vertices) for vertex in self._vertices]
         return np.array(pulls)
 
@@ -161,7 +161,7 @@ class PointsLimit:
     def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
         """Minimise the mean distance minus F·u, which is convex, away from vertices.
 
-        Armijo's rule halves Newton's steps; Weiszfeld's method replaces a halved step that descends less.
+        Armijo's rule halves Newton's steps. Where a halved step descends less, Weiszfeld's method replaces it.
         """
         # Exact for large |u| and points with the same spread in all directions.
         u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))

@@ -129,7 +129,7 @@ class PointsOnRing(Points):
 
 
 _Friction = tuple[complex, complex, float]
-"""Position relative to the point whose slip is given, conjugate of the arm, and share."""
+"""Position relative to the point with the given slip, conjugate of the arm, and share."""
 
 
 def _friction_of(

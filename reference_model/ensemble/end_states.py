@@ -17,8 +17,7 @@ class EndState(IntEnum):
 
     ``SELF_CENTRED``: a sliding equilibrium. ``STUCK``: permanent stick, also as the limit of ever shorter slips.
     ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick. ``MODULATED``: a whirl whose
-    radius oscillates slowly (discs only). ``STICK_SLIP``: sticking and slipping again and again. ``UNDECIDED``: not
-    certain.
+    radius oscillates slowly (discs only). ``STICK_SLIP``: sticking and slipping again and again.
     """
 
     UNDECIDED = 0
@@ -33,7 +32,7 @@ UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (int(end) for end
 """The end states as integers, for compiled code."""
 
 HANDED_OVER = 255
-"""Marker in place of an end state where compiled code stops, see :mod:`.disc.driver`."""
+"""Marker instead of an end state where compiled code hands the motion over, see :mod:`.disc.driver`."""
 
 
 @dataclass(frozen=True, eq=False)

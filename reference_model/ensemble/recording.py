@@ -1,7 +1,7 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the checkpoint before it, with the same step, so
-the motion does not depend on the requested times.
+A requested state is the end of a short trajectory from the checkpoint before it, with the same step, so the motion
+does not depend on the requested times.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
 Runs = Callable[[Task, Checkpoints], Results]
-"""Runs the trajectories of a task; takes room for the checkpoints of one of them."""
+"""Runs a task, with room for the checkpoints of one of its trajectories."""
 
 ROOM_TO_SPARE = 64
-"""Initial room for checkpoints where phases begin."""
+"""Initial number of checkpoints for the beginnings of phases."""
 
 ROUNDED = 1e-12
 """Rounding error of times, as a share of the duration or the unit of time, whichever is longer."""

@@ -45,16 +45,16 @@ def simulate_ensemble(
     Parameters
     ----------
     system
-        Common parameters; the support is linear.
+        Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
         Initial states, one per trajectory or one for all.
     duration
         Duration in s, > 0.
     tolerance
-        As in ``reference_model.simulate``. With 1e-9, half of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s
-        have errors below 4e-9, 99 % below 1e-8; the largest, of Fig. 9, is 2e-7.
+        As in ``reference_model.simulate``. At 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s, half
+        have errors below 4e-9 and 99 % below 1e-8; the largest is 2e-7.
     parameters
-        Arrays, shape (n,), of parameters that differ between trajectories, by name.
+        Parameters that differ between trajectories: arrays of shape (n,) by name.
     early_end
         Whether a trajectory ends as soon as its end state is certain (:mod:`.pin.end_states`).
     threads

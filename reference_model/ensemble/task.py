@@ -11,7 +11,7 @@ import numpy as np
 from reference_model.systems import FloatArray, System
 
 CHUNK = 512
-"""Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
+"""Number of trajectories that a thread takes at a time, so that lanes are rarely empty and threads end together."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
 """Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.

@@ -19,7 +19,7 @@ ComplexArray = NDArray[np.complex128]
 SPLINE_DEGREE = 5
 
 CROWDED = 0.05
-"""Samples closer to the end of a phase than this fraction of their distance are omitted."""
+"""Distance from the end of a phase, over that of samples, below which samples are omitted."""
 
 
 @dataclass(frozen=True, eq=False)

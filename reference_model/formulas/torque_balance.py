@@ -89,15 +89,15 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
 def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
-    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, whose arm depends on the load on a
-    nonlinear support. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
+    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN; on a nonlinear support the arm depends
+    on the load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)
     speed, needed = abs(disc.disc_speed), shaft_torque(disc) / disc.friction_force
 
     def circle(resistance: float) -> tuple[float, float]:
-        """Return the radius at this share of friction, and the speed of the master disc relative to the centre."""
+        """Return the radius at this share of friction, and the slip speed of the centre."""
         radius = driven_radius(pin, disc.friction_force * resistance)
         return radius, (speed - circling_speed(pin, radius)) * radius
 
@@ -123,7 +123,7 @@ def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
 
 
 def _difference(one: float, other: float) -> float:
-    """Return one − other, zero within rounding, which would otherwise count as several solutions."""
+    """Return one − other, but zero within rounding, which would otherwise count as several solutions."""
     difference = one - other
     return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
 

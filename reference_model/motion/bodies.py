@@ -171,7 +171,7 @@ class Body(ABC):
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
         """Return the unknowns of a creeping body after ``delays``, shape (unknowns, n).
 
-        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are multiples of the slip of ``y``.
+        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are in units of the slip of ``y``.
         """
 
     @abstractmethod

@@ -46,7 +46,7 @@ class DiscMotion:
         )
 
     def rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, u_x, u_y, r; at rest without friction."""
+        """Return the rates of x, y, φ, u_x, u_y, r; without friction at rest."""
         x, y, angle, ux, uy, r = unknowns
         omega, g = self.centre.disc_speed, self.centre.friction
         u = ux + 1j * uy

@@ -1,7 +1,7 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
-A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
-exceed its share: a pivot phase (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
+A point that comes to rest while the disc turns about it stays at rest as long as its share of friction suffices: a
+pivot phase (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 """
 
 from __future__ import annotations
@@ -151,7 +151,7 @@ class PointsBody(DiscBody):
         return forces / centre.friction, moment / centre.friction
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """Like :meth:`DiscBody.holds_for`: up to the first root of the margin within one turn."""
+        """Like :meth:`DiscBody.holds_for`, up to the first root of the margin within one turn."""
         centre = self.motion.centre
 
         def margin(delay: float) -> float:
@@ -203,9 +203,9 @@ class PointsBody(DiscBody):
         return None
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Like :meth:`DiscBody.direction`: normal to the limit surface.
+        """Like :meth:`DiscBody.direction`, normal to the limit surface.
 
-        If friction is exceeded it is the minimiser of ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
+        If friction is exceeded it minimises ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
         """
         forces, moment = self._share(y)
         if self.limit.margins(forces, moment)[0] > -GRAZING:

@@ -27,7 +27,7 @@ STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Relative change of slip plus scaled time of the longest short step."""
+"""Largest relative change of slip plus scaled time of a short step."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
@@ -61,7 +61,7 @@ class Thresholds:
     Parameters
     ----------
     slow_slip
-        Upper limit of slow slip, which uses slip-polar coordinates, in g·T with the unit T of time.
+        Upper limit of slow slip, which uses slip-polar coordinates, in units of g·T with the unit T of time.
     stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time
@@ -165,7 +165,7 @@ class SwitchingSurface(NamedTuple):
     trend: Callable[[list[float], list[float]], float] | None = None
 
     def seen_by(self, unknowns: Callable[[list[float]], list[float]]) -> SwitchingSurface:
-        """Return the surface for other unknowns, also with x and y first, which ``unknowns`` converts to these."""
+        """Return the surface for other unknowns, which ``unknowns`` converts to these; x and y come first in both."""
         return SwitchingSurface(lambda other: self.value(unknowns(other)), self.trend)
 
 

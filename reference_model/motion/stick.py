@@ -68,10 +68,10 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
 def _first_release(motion: SlipMotion, z: complex) -> float:
     """Return the delay of :func:`release_delay` by a search for the first root over one turn of the disc.
 
-    While the disc turns by h the margin of friction over the pull changes by at most Λh. Here Λ is |X0| times the
-    tangent stiffness at the largest deflection on the way or, relative to the ground, |z| times the sum of that
-    stiffness and |ω² − iωβ/m|. The deflection is at most the mean of its values at both ends plus min(|X0|, |z|)·h/2.
-    An interval where this allows a negative margin is halved, the first half first, down to NARROW.
+    While the disc turns by h the margin of friction over the pull changes by at most Λh. Relative to the disc the
+    offset moves, so Λ = |X0|·T with the tangent stiffness T at the largest deflection on the way. Relative to the
+    ground the pin moves, so Λ = |z|·(T + |ω² − iωβ/m|). An interval where this allows a negative margin is halved,
+    the first half first, down to NARROW.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
         return math.inf  # the pull turns but keeps its size
@@ -115,8 +115,8 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
     """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface at that moment. On this surface the moment grows and the force
-    falls while U = cos α falls and S ~ sin α grows.
+    Its friction is the force on the limit surface at that moment. While U = cos α falls and S ~ sin α grows, the
+    moment on this surface grows and the force falls.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
@@ -164,7 +164,7 @@ class SlipStart:
     """Slip that grows from rest, as a power series in time.
 
     ``positions`` and ``slip`` are the coefficients of z and w, accurate for ``duration`` in s. ``rest`` is the time
-    in s of the return to rest within ``duration``, or inf.
+    in s of the return to rest, or inf.
     """
 
     positions: NDArray[np.complex128]

@@ -33,7 +33,7 @@ FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Matrix from values at the start and the nodes to Legendre coefficients."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
-"""Limits on Newton iterations and on Jacobians, which take most of the work."""
+"""Largest numbers of Newton iterations and of Jacobians, which take most of the work."""
 
 CONVERGED = 0.01
 """Change of the unknowns in a converged Newton iteration, as a share of their tolerances."""

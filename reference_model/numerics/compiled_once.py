@@ -53,7 +53,7 @@ class CompiledOnce:
         digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
-        """Call the function, compiled or loaded for new argument types."""
+        """Call the function; compile or load it first for new argument types."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
@@ -132,7 +132,7 @@ def _delete_old(place: Path, package: Path) -> None:
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes, which ends with its owner. Without locks work may be done twice."""
+    """Hold a lock between processes, or none where there are no locks and work may be done twice."""
     with ExitStack() as held:
         with suppress(OSError, NameError):
             file = held.enter_context(lock.open("w"))

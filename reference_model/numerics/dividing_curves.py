@@ -52,8 +52,7 @@ def dividing_curves(
     low, high : array of shape (2,)
         Limits of the rectangle.
     cells
-        Grid cells in each direction. Points of a curve are at most one cell apart, and curves between the points of
-        the grid are missed.
+        Grid cells in each direction. Points of a curve are at most one cell apart, and smaller curves may be missed.
     error
         Allowed error of a point across the curve, as a fraction of the rectangle.
 

@@ -28,7 +28,7 @@ SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 
 STAGES = DOP853.n_stages
 _WEIGHTS = np.zeros((STAGES, STAGES + 1))
-"""Row s gives the unknowns of stage s + 1, the last row those at the end, from y and h times the earlier rates."""
+"""Row s combines y and h times the earlier rates into the unknowns of stage s + 1; the last row is for the end."""
 _WEIGHTS[:-1, 1:] = DOP853.A[1:]
 _WEIGHTS[-1, 1:] = DOP853.B
 _ERRORS = np.vstack((DOP853.E5, DOP853.E3))

@@ -28,7 +28,7 @@ NEAR = 0.3
 """Angle in rad within which a release counts as near that of the orbit; roots do not depend on it."""
 
 SPARE = 0.1
-"""Error of a point, over the tolerance of the orbit."""
+"""Error of a point over the tolerance of the orbit."""
 
 DISTINCT = 0.1
 """Smallest relative difference in radius that distinguishes two motions."""
@@ -77,7 +77,7 @@ class Separatrix:
     def miss(self, start: ArrayLike) -> float:
         """Return the angular distance from the orbit at the pin's first release near it.
 
-        It is positive for releases after that of the orbit. Without a near release it is ±NEAR, by the final motion.
+        It is positive for releases after that of the orbit, and ±NEAR without a near release, by the final motion.
         """
 
         def near(release: Release) -> bool:

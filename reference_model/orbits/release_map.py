@@ -39,13 +39,13 @@ NODES_OF_PIECE = 32
 """Number of spline nodes between two gaps, enough to resolve neighbouring fixed points."""
 
 ROUNDING = 1e-12
-"""Pull per distance, as a fraction of ω², within rounding of zero, as for ω = k and β = 0."""
+"""Pull per distance, as a fraction of ω², that counts as zero, as for ω = k and β = 0."""
 
 EDGE = 1e-5
 """Tolerance in rad of the edges of the gaps."""
 
 ROUGH = 1e-6
-"""Tolerance of the search for fixed points, which are then refined."""
+"""Tolerance of the search for fixed points, before they are refined."""
 
 JUMP = 1e-4
 """Residual in rad above which a change of sign is a jump, not a fixed point."""
@@ -64,7 +64,7 @@ class Release(NamedTuple):
 
 @dataclass(frozen=True)
 class ReleaseMap:
-    """The map from one release of a pin with friction, an offset and a turning disc to the next."""
+    """The map from one release to the next, of a pin with friction, an offset and a turning disc."""
 
     pin: PinOnDisc
     tolerance: float

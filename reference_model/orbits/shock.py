@@ -64,9 +64,8 @@ class Shock:
 def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
-    Raises ``ValueError`` if there is no equilibrium, none of the shocks tried leads to the whirl, or there is no
-    saddle orbit with a stick phase between the two; ``RuntimeError`` if the boundary is not in the stable set of that
-    orbit.
+    Raises ``ValueError`` if there is no equilibrium, no tried shock leads to the whirl, or no saddle orbit with a
+    stick phase lies between the two; ``RuntimeError`` if the boundary is not in the stable set of that orbit.
     """
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
@@ -97,7 +96,7 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 
 
 def by_bisection(shock: Shock) -> float:
-    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, from end states.
+    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, by their end states.
 
     The relative error is ``FINE``. Raises ``ValueError`` if the end state does not change between 0.9 and 1.15 times
     the size of ``shock``.

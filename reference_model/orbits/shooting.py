@@ -55,10 +55,10 @@ CONVERGED = 1e-9
 """Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""Largest residual over the engine's precision: a residual contains its noise several times."""
+"""Largest residual over the engine's precision, which a residual contains several times."""
 
 SLOW = 0.3
-"""Share of the residual that may remain after an iteration without new derivatives."""
+"""Share of the residual that may remain after an iteration before new derivatives are needed."""
 
 FARTHEST_PERIOD = 0.5
 """Largest relative change of the period of an orbit near the guess."""
@@ -128,7 +128,7 @@ class ShootingProblem:
         """Return the scales of the unknowns."""
         size = np.abs(unknowns)
         size[:PERIOD] = size_of(self.system, unknowns[:PERIOD])
-        if size[TURN] > 0.0:  # of many turns in a period, one sets the scale
+        if size[TURN] > 0.0:  # one turn sets the scale of many
             size[PERIOD] /= size[TURN]
             size[TURN] = 1.0
         return size
@@ -210,7 +210,7 @@ def shoot(
 ) -> Orbit:
     """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit.
 
-    Raises ``NoOrbitError`` without convergence.
+    Raises ``NoOrbitError`` if it does not converge.
     """
     scale, period = problem.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf

@@ -50,7 +50,7 @@ def whirl_orbit(
     """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
     Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, at
-    the y of the guess. Orbits with stick phases are found too.
+    the y of the guess. It also finds orbits with stick phases.
 
     Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points; ``RuntimeError``
     if Newton's method does not converge.
@@ -139,7 +139,7 @@ def modulated_cycle(
 
 
 def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
-    """Return state on the x axis, period and rotation of the last recurrence of a maximum of the radius."""
+    """Return state on the x axis, period and rotation of the last recurrence of a largest radius."""
     states, times = trajectory.states, trajectory.times
     velocities = trajectory.system.state_size // 2
     z = states[:, 0] + 1j * states[:, 1]

@@ -37,7 +37,7 @@ FAST, SLOW = 1, -1
 NEAREST = 8.0
 """Largest ln(U/|U − W|) of the curves.
 
-The derivatives of a ring's friction grow like this number, so it is an unknown of smooth curves.
+The derivatives of a ring's friction grow like this number, so curves are smooth with it as an unknown.
 """
 
 FARTHEST = 2e-3
@@ -49,12 +49,12 @@ SCALE = 3.0
 INERTIA = "polar_inertia"
 
 SLOWEST = 3e-3
-"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; the pair then becomes real."""
+"""Smallest frequency ν on a Hopf curve, as a fraction of k; below it the pair soon becomes real."""
 
 NODES = 41
 
 SAME = 3e-3
-"""Largest distance of a start from a known curve to lie on it, in units of the scales."""
+"""Distance from a known curve, in units of the scales, below which a start lies on it."""
 
 LINES = 9
 """Number of starting lines in each direction of the plane."""
@@ -176,7 +176,7 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 
 @dataclass(frozen=True, eq=False)
 class _Condition:
-    """The equations of a boundary for two parameters and ln(U/|U − W|), at the onset for the parameters only.
+    """The equations of a boundary. Unknowns are two parameters and, except at the onset, ln(U/|U − W|).
 
     They hold on one side of U = W and for one sign of ω − Ω.
     """

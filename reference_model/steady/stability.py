@@ -130,7 +130,7 @@ def whirl_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of a whirl in the frame that turns with it: an exact zero, then three or four more.
 
-    The zero belongs to the free phase. For a pin the other three are the roots of the corrected (13). Parameters and
+    The zero belongs to the free phase. For a pin the others are the roots of the corrected (13). Parameters and
     errors are those of :func:`turning_frame_jacobian`.
     """
     state = _state_on_whirl(system, state)
@@ -149,7 +149,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
     With the centre on the axis b(ω − Ω − S) = μN·M sign S, where M is the moment of pure spin (R for a ring). Against
     a small slip u of the centre friction is a damper μN·g/|S| that turns with the master disc, g/|S| = ∂F/∂U at U = 0
-    (1/(2R|S|) for a ring)::
+    (1/(2R|S|) for a ring). With the stiffness C for small deflections::
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 

@@ -73,7 +73,7 @@ class Whirl:
 
     @property
     def state(self) -> FloatArray:
-        """State on the x axis, shape (4,)."""
+        """State with the centre on the x axis, shape (4,)."""
         return np.array([self.radius, 0.0, 0.0, self.frequency * self.radius])
 
 
@@ -85,7 +85,7 @@ class SpinningWhirl(Whirl):
 
     @property
     def state(self) -> FloatArray:
-        """State on the x axis with the angle zero, shape (6,)."""
+        """State with the centre on the x axis and the angle zero, shape (6,)."""
         return circling(self.radius, self.frequency, self.spin)
 
 

@@ -17,10 +17,10 @@ from reference_model.ensemble.task import LENGTH, PACE_SIZE, RATE, SHORT, SPAN, 
 from reference_model.systems import FloatArray
 
 NONE, ON_THE_WAY, SLIPS, STICKS = 0.0, 1.0, 2.0, 3.0
-"""Kinds: unused room; no phase begins; slip begins; stick begins."""
+"""Kinds: unused; within a phase; slip begins; stick begins."""
 
 Checkpoints = NDArray[Any]
-"""Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace``, zeros where a phase begins.
+"""Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace`` (zeros where a phase begins).
 
 They also store the increasing ``requested`` times.
 """

@@ -27,7 +27,7 @@ NEAREST = 1e-16
 """Smallest relative distance from U = |W| that makes a difference."""
 
 SMALL = 1e-4
-"""k² below which the terms after c₁² in the sum over k² are below rounding."""
+"""k² below which the terms after c₁² in the sum over k² are lost in rounding."""
 
 HALVINGS = 7
 """Number of means of a and g, which then agree to rounding for all k."""

@@ -36,7 +36,7 @@ def inlined(function: Function) -> Function:
 
 
 def scalar(function: Function) -> Function:
-    """Compile ``function`` as one that its callers call, because it is large or has several callers.
+    """Compile ``function`` to be called, not inlined, because it is large or has several callers.
 
     Each direct or indirect caller compiles it again, so only some functions in a chain of calls should be scalar.
     """

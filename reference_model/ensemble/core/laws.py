@@ -11,7 +11,7 @@ from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
 ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
-"""Largest relative slip of a body that counts as sticking, from rounding."""
+"""Largest relative slip that counts as rounding, so that the body sticks."""
 
 CREEP = 0.1
 """Largest excess of the pull in creep, as a fraction of the pull's change in a turn or of g."""

@@ -76,7 +76,7 @@ Attracts = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
 """Returns whether a nearby equilibrium or circle attracts, as ``stability.attracts``."""
 
 STILL = 1e-2
-"""Largest oscillation, over the radius or ω times it, of a motion that goes to a point or to a circle."""
+"""Largest oscillation, over the radius or ω times it, of a motion that approaches a point or a circle."""
 
 
 @written_out

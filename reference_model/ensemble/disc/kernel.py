@@ -52,7 +52,7 @@ PARAMETERS = (
 )  # fmt: skip
 
 STRETCHING_TIME = 0.5
-"""Scaled s₀ over g."""
+"""Scaled ratio s₀/g."""
 
 WATCHED_STEP = 1e-3
 """Step below which points of a disc may be about to rest."""
@@ -197,7 +197,7 @@ def run_points(task: Task, settings: DiscSettings, results: Results, first: int,
 
 @inlined
 def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Separate like ``pin.kernel._run_pins``."""
+    """Separate for the same reason as ``pin.kernel._run_pins``."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,

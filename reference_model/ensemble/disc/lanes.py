@@ -76,13 +76,13 @@ SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
-"""Largest distance from the edge, as a share of a step, of a step that ends on it."""
+"""Share of a step within which its start or end counts as lying on the edge."""
 
 AT_END = 1e-13
 """Scaled time that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
-"""Slip speeds, in units of g, below which the tolerance of slip is relative, and slip may end."""
+"""Slip speeds, in units of g, below which the tolerance of slip is relative and slip may end, respectively."""
 
 REST_TIME = 1e-12
 """Largest scaled error of the closed form for coming to rest."""

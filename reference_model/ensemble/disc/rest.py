@@ -1,7 +1,6 @@
 """End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
-A disc on a ring sticks like a pin with the friction that the shaft's moment leaves, permanently if the pull never
-exceeds this friction (eq. 7).
+A disc on a ring sticks like a pin with the friction that the shaft's moment leaves (eq. 7).
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ LINGERS = 0.01
 """Shortest scaled time to rest of slow slip of a creeping disc or point."""
 
 SPENT_SHARE = 0.1
-"""Share of the tolerance for the remaining slip that decays forever."""
+"""Share of the tolerance for the slip that remains when creep counts as over."""
 
 SOON = 3e-4
 """Longest scaled time to rest of a point whose stop can be predicted."""

@@ -46,7 +46,7 @@ FORM_SIZE = 10
 
 
 class EquilibriumRegion(NamedTuple):
-    """The self-centred equilibrium z* (3), the upper half of V, and the level of its trapping region, or -1."""
+    """The self-centred equilibrium z* (3), the upper half of V, and the level of its trapping region, else -1."""
 
     place: complex
     form: Tuple

@@ -78,7 +78,7 @@ SERIES_SHARE = 0.1
 """Share of the tolerance for the last terms of the series of slip."""
 
 SPENT_SHARE = 0.1
-"""Share of the tolerance for the remaining slip of a pin that creeps forever."""
+"""Share of the tolerance for the slip that remains when creep counts as over."""
 
 REVERSAL_SLIP = 1e-13
 """Scaled slip below which slip that friction cannot hold counts as reversed."""

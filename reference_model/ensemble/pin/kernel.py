@@ -43,7 +43,7 @@ from reference_model.systems import PinOnDisc
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 STRETCHING_TIME = 0.5
-"""Scaled s₀ over g. More makes steps shorter, less makes rest and release stiffer."""
+"""Scaled ratio s₀/g. A larger one shortens steps, a smaller one makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
@@ -150,7 +150,7 @@ def run_pins(task: Task, settings: Settings, results: Results, first: int, last:
 
 @inlined
 def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories: a separate function compiles a fifth longer and runs a sixth faster."""
+    """Run the trajectories in a function of its own, which compiles a fifth longer and runs a sixth faster."""
     run(
         load, advance, advance_alone, handle_flag, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,

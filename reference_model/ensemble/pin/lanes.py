@@ -52,7 +52,7 @@ class PinLanes(Record):
 
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
-"""Degrees of watching: flags also where x is largest, or where the radius is extreme too."""
+"""Degrees of watching: no flags, flags where x is largest, and flags where the radius is extreme too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up: slip is about to end; the due time has come; x or the radius had an extreme; the step size or
@@ -71,7 +71,7 @@ An implicit step costs as much as about 50 explicit steps of a single trajectory
 SMALLEST_STEP = 1e-13
 
 LANDING = 1e-9
-"""Scaled distance from the end that is bridged by the rates, with an error of its square."""
+"""Scaled time beyond the end that one Euler step takes back, with an error of its square."""
 
 FIRST_STEP = 0.3
 """Scaled first step of fast slip."""
@@ -79,7 +79,7 @@ FIRST_STEP = 0.3
 
 @written_out
 def _advance_in(lanes: PinLanes, count: int) -> None:
-    """Make a trial step in the first ``count`` lanes; after too large an error the trial is the old state."""
+    """Make a trial step in the first ``count`` lanes; if its error is too large, the trial is the old state."""
     wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):

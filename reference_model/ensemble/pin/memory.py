@@ -37,8 +37,8 @@ OF_TURN, OF_RELEASE = 1, 2
 class TrappingRegions(Record):
     """Trapping regions in m and s, if all trajectories have the same parameters.
 
-    ``level`` and ``form`` are those of the equilibrium. ``reach``, ``metric`` (both of the form), ``turn`` (x, y,
-    ẏ/k) and ``measures`` describe the whirl at the section. A level of 0 means unknown.
+    ``level`` and ``form`` belong to the equilibrium. ``reach`` is the level and ``metric`` the form of the whirl,
+    with its crossing ``turn`` (x, y, ẏ/k) and ``measures``. A level of 0 means unknown.
     """
 
     level: float

@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series of beginning slip, usually and where it stays slow."""
+"""Number of terms of the series of incipient slip, usually and where slip stays slow."""
 
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
@@ -30,7 +30,7 @@ Otherwise a longer series replaces many stiff steps.
 """
 
 SLAVED = 0.02
-"""Largest slow rotation, as a share of the rate g/s of friction that aligns slip with the pull."""
+"""Largest rate of other changes over the rate g/s of friction, which aligns slip with the pull."""
 
 PLACES = 8
 """Smallest number of points for checking whether the series reaches the end of slip."""

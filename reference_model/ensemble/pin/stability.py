@@ -42,8 +42,8 @@ def orbit_attracts(
 ) -> bool:
     """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
-    ``came`` is the difference of x, y and ẏ from the previous crossing. With the derivative M of the return map, the
-    orbit's crossing is (1 − M)⁻¹ times ``came`` from there, and must be within ``near``.
+    ``came`` is the change of x, y and ẏ since the previous crossing. With the derivative M of the return map the
+    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of this one.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):

@@ -1,8 +1,8 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
 Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
-stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
-points on ever larger ellipsoids, as long as each image lies in a clearly smaller one.
+stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The region is the
+largest ellipsoid whose points, like those of all smaller ones, the map moves into a clearly smaller ellipsoid.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ DIRECTIONS = 128
 """Number of points on an ellipsoid."""
 
 GROWTH = 1.25
-"""Linear growth from one ellipsoid to the next; the first is FIRST of the size of the motion."""
+"""Ratio of successive ellipsoids; the first one is FIRST times the size of the motion."""
 
 FIRST = 1e-2
 
@@ -151,7 +151,7 @@ def _contracting_region(flow: Map, dimension: int, size: float) -> tuple[float, 
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
-    # The linear map reduces xᵀPx by |x|². A share of this leaves a margin between the points.
+    # The linear map reduces xᵀPx by |x|². Requiring only a share leaves a margin between the points.
     allowed = 1.0 - REQUIRED_SHARE * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):

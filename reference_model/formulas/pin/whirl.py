@@ -1,6 +1,6 @@
 """Section 3 of the paper: the whirl (11), its stability, (12) to (16), and the whirl with an offset.
 
-The latter is (18), with the exact first and third orders in X0. These functions raise ``ValueError`` as
+The latter is (18), with the exact first and third orders in X0. Its functions raise ``ValueError`` as
 :func:`whirl_radius`.
 """
 

@@ -41,13 +41,13 @@ class Coordinates:
     Parameters
     ----------
     rates, many
-        Rates in 1/T, never at zero slip; the latter for arrays of shape (k,).
+        Return the rates in 1/T, never at zero slip; ``many`` for arrays of shape (k,).
     slow
-        Speed limit of slow slip.
+        Returns the speed limit of slow slip.
     pace
         Largest rate of everything except the slip, in 1/T.
     standard
-        Standard unknowns of the body, (unknowns, n), for unknowns of shape (k, n).
+        Converts unknowns (k, n) to the standard unknowns of the body, (unknowns, n).
     angle
         Index of an angle, which has an absolute tolerance.
     turning
@@ -55,7 +55,7 @@ class Coordinates:
     leverage
         Derivative of the velocity of the centre by the slip.
     grip
-        Margin of a held friction force; the motion ends at zero.
+        Returns the margin of a held friction force; the motion ends at zero.
     surfaces
         Surfaces where friction or support is continuous but not smooth.
 

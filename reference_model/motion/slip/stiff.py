@@ -25,7 +25,7 @@ from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
 WORTH = 6.0
-"""Smallest step times largest rate of an unstable explicit step."""
+"""Smallest product of step and largest rate of an unstable explicit step."""
 
 COST = 4.0
 """Work of an implicit step relative to an explicit one."""
