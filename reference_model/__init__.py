@@ -1,14 +1,10 @@
 """Radial dynamics of friction discs with exact Coulomb friction, in NumPy and SciPy.
 
-Modules and packages:
-
 - ``plain``: the paper's equations as printed, integrated by SciPy in 100 lines; read it first;
-- ``systems``, ``trajectory``: parameters and results, with figures and animations of a motion;
-- ``support``: the force of a support that may harden or have a stop;
+- ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
-- ``contact``: friction laws of a pin, points, a patch, a ring and an annulus, and the limit surface;
-- ``formulas``: the paper's closed forms for the ``pin`` and the ``disc``, harmonic balance for a hardening support,
-  torque balances, characteristic polynomials, and ``power_balance``, which checks any engine;
+- ``contact``: friction laws and their limit surfaces;
+- ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
 - ``motion``: the event-driven simulation of slip and stick;
 - ``steady``: steady motions, their stability, and stability boundaries in planes of two parameters;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
@@ -42,7 +38,7 @@ from reference_model.systems import DiscOnDisc, PinOnDisc
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 __version__ = "0.1.0"
-"""Version of all packages; ``pyproject.toml`` reads it from here."""
+"""Version of all packages, read by ``pyproject.toml``."""
 
 __all__ = [
     "Annulus",

@@ -1,6 +1,6 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-There is one change: slip speeds below ε are replaced by ε where they divide, so a sticking body creeps slower than ε.
+There is one change: a slip speed below ε is replaced by ε where it divides, so a sticking body creeps slower than ε.
 """
 
 from __future__ import annotations
@@ -19,12 +19,11 @@ from reference_model.systems import DiscOnDisc, System, checked_state, checked_t
 from reference_model.trajectory import Phase, SimulationError, Solution, Trajectory
 
 Friction = Callable[[Any, Any, Any, Any], "tuple[Any, Any, Any]"]
-"""Function of slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex; returns F_x, F_y (N) and M (N m).
-"""
+"""Function of slip in x and y (m/s), ω − φ̇ (rad/s) and φ (rad), real or complex; returns F_x, F_y (N), M (N m)."""
 
 
 def on_ring(load: float, R: float, points: int, epsilon: float) -> Friction:
-    """Return the friction of (20), with its integral over χ as a mean over ``points`` whose slip is (21).
+    """Return the friction of (20), with its integral over χ as a mean over ``points`` that slip by (21).
 
     One point and R = 0 give the pin of (1).
     """
@@ -77,18 +76,18 @@ def simulate(
     system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
 ) -> Trajectory:
     """Return the motion like :func:`reference_model.simulate`, but with creep instead of stick phases."""
-    # With a finer tolerance Radau cannot resolve the creep, because slip is the difference of two velocities.
+    # With a finer tolerance Radau cannot resolve the creep: slip is the difference of two velocities.
     clock, fine = time.perf_counter(), max(checked_tolerance(tolerance), 1e-10)
     start, times = checked_state(system, initial_state), checked_times(times)
     (x, y, *_), (vx, vy, *_) = np.split(start, 2)
     R, points = 0.0, 1
     if isinstance(
         system, DiscOnDisc
-    ):  # where a point of a ring rests, the error of the mean is about 1/points²
+    ):  # the error of the mean where a point of a ring rests is about 1/points²
         R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
     size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
     speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0
-    epsilon = 10.0 * fine * speed  # the error of stick is at least ε, so a finer tolerance would not help
+    epsilon = 10.0 * fine * speed  # errors of stick are at least ε
     friction = on_ring(system.friction_force, R, points, epsilon)
     run = solve_ivp(
         lambda _, state: rates(system, friction, state), (times[0], times[-1]), start, "Radau", times,

@@ -22,30 +22,27 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if the state, times, tolerance or contact are invalid, or the compiled kernel does not
-    support the system; ``SimulationError`` if the integrator fails.
+    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system;
+    ``SimulationError`` if the integrator fails.
 
     Parameters
     ----------
-    system : PinOnDisc or DiscOnDisc
-        Parameters of the system.
+    system
+        Parameters.
     initial_state : array-like of shape (4,) or (6,)
         State at ``times[0]``: x, y in m and vx, vy in m/s for a pin; x, y, angle in rad, vx, vy and spin in rad/s
-        for a disc. A state that turns with the master disc starts in stick if friction can hold it.
+        for a disc. A state that turns with the master disc sticks if friction can hold it.
     times : array-like of shape (n,)
         Increasing times in s.
-    tolerance : float
-        Relative accuracy to aim at, from 1e-14 to 1e-2. It applies to positions relative to a length L, to
-        velocities and to the spin times the radius of gyration relative to L/T, and to the angle in rad; L and T are
-        those of :class:`motion.nondimensional.Units`. With damping or rest errors stay within a small multiple of
-        the tolerance: at most 13 in random motions, 68 in compiled ones. Otherwise they accumulate, to some 40 times
-        the tolerance after 10,000 steps. In unstable motions they grow with the instability.
-    contact : Contact or None
+    tolerance
+        Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
+        :class:`motion.nondimensional.Units`. With damping or rest errors stay within 13 times the tolerance in random
+        motions, 68 times in compiled ones. Otherwise they accumulate, to some 40 times after 10,000 steps.
+    contact
         Friction law of a disc; None for the law of the parameters.
-    compiled : bool or None
-        Whether to use the compiled kernel of :mod:`ensemble`, a separate and faster implementation for linear
-        supports and the laws of the parameters. The first run with a kind of contact on a machine compiles it.
-        None: use it if it supports the system.
+    compiled
+        Whether to use the faster kernel of :mod:`ensemble`, for linear supports and the laws of the parameters. Its
+        first run on a machine compiles it. None: use it if it supports the system.
 
     """
     if compiled is None:
@@ -53,7 +50,7 @@ def simulate(
 
         compiled = contact is None and is_supported(system)
     if compiled:
-        # Imported here so that simulations in NumPy start without loading the compiler.
+        # Imported here so that simulations in NumPy start without the compiler.
         from reference_model.ensemble.single_run import simulate_compiled
 
         return simulate_compiled(system, initial_state, times, tolerance=tolerance, contact=contact)

@@ -17,15 +17,15 @@ from reference_model.numerics.roots import zero_between
 from reference_model.systems import FloatArray, System
 
 ROUNDED_UP = 1.0 + 1e-14
-"""Factor that moves a bound to the safe side of rounding errors."""
+"""Factor that moves a bound to the safe side of rounding."""
 
 
 @dataclass(frozen=True)
 class Support:
     """Spring, hardening and stop, in N and m or in any consistent scaled units.
 
-    ``stiffness`` is C in N/m, ``offset`` X0 in m, ``hardening`` C₃ in N/m³, ``stop_gap`` the clearance of the stop
-    in m, and ``stop_stiffness`` C_s in N/m.
+    ``stiffness`` is C in N/m, ``offset`` X0 in m, ``hardening`` C₃ in N/m³, ``stop_gap`` the clearance in m, and
+    ``stop_stiffness`` C_s in N/m.
     """
 
     stiffness: float
@@ -40,7 +40,7 @@ class Support:
         return cls(system.stiffness, system.offset, system.hardening, system.stop_gap, system.stop_stiffness)
 
     def scaled(self, factor: float, length: float = 1.0) -> Support:
-        """Return the support with all forces multiplied by ``factor``, in units of ``length``."""
+        """Return the support with forces multiplied by ``factor``, in units of ``length``."""
         return Support(
             self.stiffness * factor,
             self.offset / length,
@@ -51,7 +51,7 @@ class Support:
 
     @cached_property
     def linear(self) -> bool:
-        """True for a linear spring, without hardening or stop."""
+        """True without hardening or stop."""
         return self.hardening == 0.0 and self.stop_stiffness == 0.0
 
     @property
@@ -80,16 +80,15 @@ class Support:
         return self.stiffness + self.hardening * d * d + self.stop_stiffness * stop
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force with respect to the deflection; at the stop, from outside."""
+        """Return the derivative of the force by the deflection; at the stop, from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 
     def stiffness_matrix(self, z: complex) -> FloatArray:
         """Return the negative derivative of the force with respect to (x, y), shape (2, 2).
 
-        It is the tangent stiffness in the direction of the deflection and the secant stiffness across it.
-
-        Raises ``ValueError`` exactly at the stop, where the derivative does not exist.
+        It is the tangent stiffness along the deflection and the secant stiffness across it. Raises ``ValueError``
+        exactly at the stop.
         """
         w = z - self.offset
         d = abs(w)
@@ -109,22 +108,21 @@ class Support:
         )
 
     def pull(self, d: float) -> float:
-        """Return the magnitude of the force at a deflection."""
+        """Return the magnitude of the force."""
         return self.secant(d) * d
 
     def deflection(self, pull: float) -> float:
-        """Return the deflection for a force of the magnitude ``pull`` > 0; inf without springs."""
+        """Return the deflection for a force of magnitude ``pull`` > 0; inf without springs."""
         return pull / self.stiffness if self.linear and self.stiffness > 0.0 else self._where(1, pull)
 
     def circle(self, twice_kinetic_energy: float) -> float:
         """Return the radius of a circle about (X0, 0) whose centripetal force mv²/d the support provides.
 
-        Returns inf without springs. ``twice_kinetic_energy`` is mv² > 0.
+        ``twice_kinetic_energy`` is mv² > 0. The result is inf without springs.
         """
         return self._where(2, twice_kinetic_energy)
 
     def _where(self, power: int, value: float) -> float:
-        """Return the solution d of secant·d^power = ``value``, whose left side grows with d."""
         bounds = [math.inf]
         if self.stiffness > 0.0:
             bounds.append((value / self.stiffness) ** (1.0 / power))

@@ -15,19 +15,19 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 MOST_POINTS = 1000
-"""Largest number of contact points; a continuous ring is better and cheaper than more."""
+"""Largest number of contact points; a continuous ring is cheaper than more."""
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest size of a positive parameter, and largest size of any: products of several stay finite."""
+"""Smallest positive parameter and largest size of any: products of several stay finite."""
 
 MOST_RATIO = 1e25
-"""Largest rate in 1/s, and largest m·R²/J: their powers stay finite, and no integrator could follow faster rates."""
+"""Largest rate in 1/s and largest m·R²/J: powers stay finite, and no integrator could follow faster rates."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """A mass on springs and dampers, pressed on a disc that turns at constant speed: base class of pin and disc."""
+    """A mass on springs and dampers, pressed on a disc that turns at constant speed."""
 
     mass: float
     stiffness: float
@@ -64,7 +64,6 @@ class _SupportedMass:
     _least: ClassVar[tuple[tuple[str, float], ...]]
 
     def __init_subclass__(cls) -> None:
-        """Store the smallest allowed value of each parameter."""
         cls._least = tuple(
             (name, LEAST if name in cls._positive else 0.0 if name in cls._not_negative else -MOST)
             for name in cls._units
@@ -75,7 +74,7 @@ class _SupportedMass:
         for (
             name,
             least,
-        ) in self._least:  # parameter searches create many systems, so valid values must pass quickly
+        ) in self._least:  # valid values must pass quickly, because searches create many systems
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
                 self._check_numbers()
@@ -100,7 +99,7 @@ class _SupportedMass:
                 raise ValueError(f"{name} = {value:g} {unit}: its size must be {allowed} {MOST:g}")
 
     def _ratios(self) -> dict[str, tuple[str, float]]:
-        """Return formula and value (SI units) of each bounded ratio, by the parameter that an error names."""
+        """Return formula and value of each bounded ratio, by the parameter named in the error."""
         return {
             "stiffness": ("√(stiffness/mass)", self.natural_frequency),
             "stop_stiffness": ("√(stop_stiffness/mass)", math.sqrt(self.stop_stiffness / self.mass)),
@@ -122,28 +121,26 @@ class _SupportedMass:
 class PinOnDisc(_SupportedMass):
     """A pin on springs and dampers, pressed on a disc that turns at constant speed (Fig. 2, eq. 1).
 
-    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not a finite number or is out of
-    range.
+    The state is x, y in m and vx, vy in m/s. Raises ``ValueError`` if a value is not finite or out of range.
 
     Parameters
     ----------
-    mass : float
+    mass
         m in kg, > 0.
-    stiffness : float
-        C of the support in N/m, >= 0, the same in every radial direction.
-    damping : float
+    stiffness
+        C of the support in N/m, >= 0, equal in all radial directions.
+    damping
         β of the support in N s/m, >= 0.
-    friction_force : float
+    friction_force
         μN in N, >= 0.
-    disc_speed : float
+    disc_speed
         ω in rad/s, of either sign.
-    offset : float
+    offset
         X0 in m: the springs are relaxed at (X0, 0), the disc turns about (0, 0).
-    hardening : float
-        C₃ of the support in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
-    stop_gap, stop_stiffness : float
-        Clearance of the stop in m, and C_s in N/m, >= 0: it pushes back with C_s·(|w| − gap) if |w| > gap. C_s = 0
-        means no stop.
+    hardening
+        C₃ in N/m³, >= 0: at the deflection w = x + iy − X0 the springs pull with C·|w| + C₃·|w|³.
+    stop_gap, stop_stiffness
+        Clearance in m and C_s in N/m, >= 0: the stop pushes back with C_s·(|w| − gap) if |w| > gap.
 
     """
 
@@ -154,23 +151,23 @@ class PinOnDisc(_SupportedMass):
 class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
-    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle
-    in rad, vx, vy in m/s and the spin in rad/s. Errors and the parameters of mass and support are those of
-    :class:`PinOnDisc`; μN is that of the whole ring and ω the speed of the master disc.
+    A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
+    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are those of :class:`PinOnDisc`; ω is the
+    speed of the master disc.
 
     Parameters
     ----------
-    polar_inertia : float
+    polar_inertia
         J in kg m², > 0.
-    contact_radius : float
+    contact_radius
         R of the ring in m, > 0.
-    shaft_damping : float
+    shaft_damping
         b of the torsional damper in N m s/rad, >= 0.
-    shaft_speed : float
+    shaft_speed
         Ω of the shaft in rad/s, of either sign.
-    contact_points : int or None
-        Number n of contact points, from 3 to 1000. Point i lies at the angle φ + 2πi/n and carries N/n. None means
-        the continuous ring of (20).
+    contact_points
+        Number n of contact points, from 3 to 1000. Point i lies at φ + 2πi/n and carries N/n. None: the continuous
+        ring of (20).
 
     """
 
@@ -228,29 +225,29 @@ COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
         ("spin", "rad/s"),
     ),
 }
-"""Name and unit of each state of a system."""
+"""Name and unit of each state."""
 
 PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
     kind: tuple((name, kind._units[name], least) for name, least in kind._least)
     for kind in (PinOnDisc, DiscOnDisc)
 }
-"""Name, unit and smallest value of each parameter of a system, except ``contact_points``."""
+"""Name, unit and smallest value of each parameter except ``contact_points``."""
 
 UNITS = DiscOnDisc._units
-"""Unit of each parameter of a disc, which include those of a pin."""
+"""Unit of each parameter of a disc or a pin."""
 
 SMALLEST_TOLERANCE = 1e-14
 """Smallest tolerance that double precision can reach."""
 
 LARGEST_STATE = 1e50
-"""Largest size of a state component in its SI unit: energies and forces of hardening springs stay finite."""
+"""Largest state component in SI units: forces and energies of hardening springs stay finite."""
 
 ANGLE = 2
 """Index of the angle in the state of a disc."""
 
 
 def finite_number(name: str, value: Any) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` with its name if it is not a finite number."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is finite."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -263,7 +260,7 @@ def finite_number(name: str, value: Any) -> float:
 
 
 def positive_number(name: str, value: Any, unit: str) -> float:
-    """Return ``value`` as a float; raise ``ValueError`` if it is not a finite number > 0."""
+    """Return ``value`` as a float; raise ``ValueError`` unless it is finite and > 0."""
     number = finite_number(name, value)
     if number <= 0.0:
         raise ValueError(f"{name} = {number:g} {unit}: it must be > 0")
@@ -271,7 +268,7 @@ def positive_number(name: str, value: Any, unit: str) -> float:
 
 
 def require_whole(name: str, value: int, *, least: int, most: float = math.inf) -> None:
-    """Raise ``ValueError`` with the name and value unless ``value`` is an integer from ``least`` to ``most``."""
+    """Raise ``ValueError`` unless ``value`` is an integer from ``least`` to ``most``."""
     whole = isinstance(value, Integral) and not isinstance(value, bool)
     if not (whole and least <= value <= most):
         allowed = f">= {least}" if most == math.inf else f"from {least} to {most}"
@@ -279,16 +276,16 @@ def require_whole(name: str, value: int, *, least: int, most: float = math.inf) 
 
 
 Place: TypeAlias = tuple[float, float, float]
-"""Place x, y of a contact point in m in the frame of the disc, and its share of the load."""
+"""Position x, y of a contact point in m in the frame of the disc, and its share of the load."""
 
 SHARES = 1e-12
-"""Largest deviation from 1 of a sum of shares: rounding errors of a thousand shares."""
+"""Largest rounding error of a sum of a thousand shares."""
 
 
 def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place, ...]:
     """Return x, y and share of contact points; raise ``ValueError`` if invalid.
 
-    There are at least two, at different places. Their shares are positive and sum to 1.
+    At least two positions must differ; shares must be positive and sum to 1.
     """
     try:
         given = [tuple(place) for place in places]
@@ -314,7 +311,7 @@ def checked_places(name: str, places: Iterable[Iterable[float]]) -> tuple[Place,
 
 
 def require_system(system: System, *allowed: type[System]) -> None:
-    """Raise ``ValueError`` unless ``system`` is an instance of the ``allowed`` classes, by default of either."""
+    """Raise ``ValueError`` unless ``system`` is an instance of ``allowed``, by default either class."""
     allowed = allowed or (PinOnDisc, DiscOnDisc)
     if not isinstance(system, allowed):
         names = " or a ".join(kind.__name__ for kind in allowed)
@@ -322,7 +319,7 @@ def require_system(system: System, *allowed: type[System]) -> None:
 
 
 def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
-    """Return ``initial_state`` as an array of shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
+    """Return ``initial_state`` as an array, shape ``(system.state_size,)``; raise ``ValueError`` if invalid."""
     require_system(system)
     state = _float_array("initial_state", initial_state)
     if state.shape != (system.state_size,):
@@ -341,7 +338,7 @@ def checked_state(system: System, initial_state: ArrayLike) -> FloatArray:
 
 
 def checked_times(times: ArrayLike) -> FloatArray:
-    """Return ``times`` in s as an array of shape (n,); raise ``ValueError`` unless they increase."""
+    """Return ``times`` in s, shape (n,); raise ``ValueError`` unless they increase."""
     result = _float_array("times", times)
     if result.ndim != 1 or result.size == 0:
         raise ValueError(f"times has shape {result.shape}: it must be a list of at least one time")
@@ -356,7 +353,7 @@ def checked_times(times: ArrayLike) -> FloatArray:
 
 
 def checked_tolerance(tolerance: float) -> float:
-    """Return ``tolerance``; raise ``ValueError`` if double precision cannot reach it or it exceeds 1e-2."""
+    """Return ``tolerance``; raise ``ValueError`` unless it lies between 1e-14 and 1e-2."""
     number = finite_number("tolerance", tolerance)
     if not SMALLEST_TOLERANCE <= number <= 1e-2:
         raise ValueError(f"tolerance = {number:g}: it must lie between {SMALLEST_TOLERANCE} and 1e-2")

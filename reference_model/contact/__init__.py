@@ -1,4 +1,4 @@
-"""Friction laws of a pin, points, a patch, a ring and an annulus, and the limit surface of each of them."""
+"""Friction laws of a pin, points, a patch, a ring and an annulus, and their limit surfaces."""
 
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import (

@@ -1,4 +1,4 @@
-"""Friction of an annulus, such as a clutch facing, as a sum of rings that each carry a share of the load."""
+"""Friction of an annulus, such as a clutch facing, as a sum of rings."""
 
 from __future__ import annotations
 
@@ -16,39 +16,38 @@ from reference_model.systems import finite_number, require_whole
 CLUSTERING = 3
 """Exponent q of the substitution r = r₀ + (r₁ − r₀)·t^q on either side of the kink r₀.
 
-With dr ∝ t^(q−1)·dt it turns x·ln x into t^(2q−1)·ln t, and Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
+It turns x·ln x into t^(2q−1)·ln t. Gauss's rule converges like n^(−2a − 2) on t^a·ln t.
 """
 
 ORDER = 4 * CLUSTERING
-"""Order of convergence of force and moment in ``rings``, if r₀ lies in the annulus or near it."""
+"""Order of convergence of force and moment in ``rings``, if r₀ lies in or near the annulus."""
 
 SLOPE_ORDER = 2 * CLUSTERING
-"""Order of convergence of their slopes in that case, which contain ln x in place of x·ln x."""
+"""Order of convergence of the slopes of force and moment."""
 
 
 @dataclass(frozen=True)
 class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
-    Force and moment are those of :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's
-    rule with n rings. The rule is split and clustered at the kink r₀ = U/|S|, where a point is at rest. Its error
-    falls like n^(−12); with 16 rings it is about 1e-12. The error of the slopes falls like n^(−6) and is about 1e-7.
+    Friction is that of a :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's rule,
+    which is split at the radius r₀ = U/|S| of a point at rest. Its error falls like n^(−12), to about 1e-12 for n =
+    16 rings; that of the slopes falls like n^(−6), to about 1e-7.
 
     Parameters
     ----------
-    inner_radius, outer_radius : float
-        Radii in m, 0 <= inner < outer; 0 for a full disc.
-    rings : int
-        n >= 1, on either side of r₀.
-    pressure : callable, optional
-        Pressure in any unit as a smooth function of the radius in m, for example ``lambda r: 1 / r`` for a worn-in
-        facing. None for a uniform pressure.
+    inner_radius, outer_radius
+        Radii in m, 0 <= inner < outer.
+    rings
+        Number n >= 1 on either side of r₀.
+    pressure
+        Pressure in any unit as a smooth function of the radius in m, such as ``lambda r: 1 / r`` for a worn-in
+        facing. None: uniform.
 
     Raises
     ------
     ValueError
-        If a radius or ``rings`` is out of range, or the pressure is not callable, negative, not finite, or zero
-        everywhere.
+        If a radius or ``rings`` is out of range, or the pressure is not a function, negative, or zero everywhere.
 
     """
 
@@ -82,12 +81,11 @@ class Annulus(IsotropicContact):
         return Shares(resistance, math.copysign(moment, relative_spin))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Like :meth:`IsotropicContact.slopes`; defined for every slip except that of a disc at rest."""
         by_slip = mixed = by_spin = 0.0
         for radius, share in self._loads(self._resting_radius(slip_speed, relative_spin)):
             rim = radius * abs(relative_spin)
             if rim == slip_speed:
-                continue  # by rounding, where the range ends at r₀: a logarithm times a load of 1e-16
+                continue  # rounding at r₀: a logarithm times a load of 1e-16
             curvatures = mean_curvatures(slip_speed, rim)
             by_slip += share * curvatures[0]
             mixed += share * radius * curvatures[1]
@@ -96,7 +94,6 @@ class Annulus(IsotropicContact):
         return Slopes(by_slip, mixed, mixed, by_spin)
 
     def _resting_radius(self, slip_speed: float, relative_spin: float) -> float:
-        """Return r₀ = U/|S|, clipped to the annulus; raise ``ValueError`` at rest."""
         spin = abs(relative_spin)
         if slip_speed == 0.0 and spin == 0.0:
             raise ValueError("slip = 0 m/s and relative spin = 0 rad/s: the disc is at rest")
@@ -105,7 +102,6 @@ class Annulus(IsotropicContact):
         return max(slip_speed / spin, self.inner_radius)
 
     def _loads(self, centre: float) -> list[tuple[float, float]]:
-        """Return the radii of the rings in m and their shares of the load, clustered about ``centre``."""
         loads = list(self._rings(centre))
         total = math.fsum(load for _, load in loads)
         if total == 0.0:

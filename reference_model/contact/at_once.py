@@ -1,7 +1,4 @@
-"""Vectorised friction laws, for implicit methods that solve for all nodes of a step together.
-
-The laws are those of :mod:`reference_model.contact.contact_law`, for arrays.
-"""
+"""Vectorised friction laws for implicit methods."""
 
 from __future__ import annotations
 
@@ -37,7 +34,6 @@ class PointsAtOnce:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Share of the load of each point."""
         return self.law.shares
 
     def arm(self, point: int, angle: FloatArray) -> ComplexArray:
@@ -61,7 +57,6 @@ class PointsAtOnce:
         return np.asarray(np.multiply.outer(np.array(self.law.arms(0.0)), np.exp(1j * angle)))
 
     def _friction(self, arms: ComplexArray, velocities: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Return force and moment for arrays of shape (points, k)."""
         friction = velocities * (-np.array(self.shares)[:, np.newaxis] / (abs(velocities) + NONE))
         moments = arms.real * friction.imag - arms.imag * friction.real
         return friction.sum(axis=0), moments.sum(axis=0)
@@ -83,7 +78,7 @@ class RingAtOnce:
 
 @dataclass(frozen=True)
 class OneByOne:
-    """Any law, evaluated for one state after the other."""
+    """Any law, evaluated state by state."""
 
     law: Contact
 

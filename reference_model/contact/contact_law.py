@@ -1,11 +1,9 @@
 """Coulomb friction between two discs: the interface of all laws, a pin, a ring, and the expansion (22).
 
-Each law returns the force and the moment on the disc while its centre slips with u over the master disc, which
-turns with S = ω − φ̇ relative to it. A point of the disc at r·exp(iα) from the centre slips with u − i·S·r·exp(iα)
-(21). Plane vectors are complex numbers. Forces are in N per N of μN and moments in m.
-
-Laws depend only on the ratio of u and S (degree 0). Laws of circles are also *isotropic*: the force is opposite to
-u, and neither its size nor the moment depends on the direction of u or on the angle φ.
+A law returns force (N per N of μN) and moment (m) on the disc while its centre slips with u over the master disc,
+which turns with S = ω − φ̇ relative to it. A point at r·exp(iα) from the centre slips with u − i·S·r·exp(iα) (21).
+Plane vectors are complex numbers. Laws depend only on the ratio of u and S. Laws of circles are also *isotropic*: the
+force is opposite to u, and nothing depends on the direction of u or on the angle φ.
 """
 
 from __future__ import annotations
@@ -29,7 +27,7 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Value added to speeds before division, so that a point at rest gets zero friction."""
+"""Added to speeds before division, so that friction is zero at a point at rest."""
 
 
 class Contact(Protocol):
@@ -38,8 +36,7 @@ class Contact(Protocol):
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
         """Return force (N per N of μN) and moment (m) on the disc.
 
-        ``slip`` is u of the centre, (ẋ + ωy) + i(ẏ − ωx) in m/s, ``relative_spin`` S = ω − φ̇ in rad/s, ``angle`` φ
-        in rad.
+        ``slip`` is u = (ẋ + ωy) + i(ẏ − ωx) in m/s, ``relative_spin`` S = ω − φ̇ in rad/s, ``angle`` φ in rad.
         """
         ...
 
@@ -72,22 +69,18 @@ class IsotropicContact(ABC):
 
     @property
     def resting_radii(self) -> tuple[float, ...]:
-        """Radii r in m of infinite slopes at U = r|S|, where a point rests: steps must end there."""
+        """Radii r in m with infinite slopes at U = r|S|, where steps must end."""
         return ()
 
     @abstractmethod
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
-        """Return F and M for U >= 0 and S of either sign, not both zero; F is zero at U = 0."""
+        """Return F and M for U >= 0 and S of either sign, not both zero; F(0, S) = 0."""
 
     @abstractmethod
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Return the derivatives of F and M; at U = 0, those from the side U > 0.
-
-        Raises ``ValueError`` where the law is not differentiable.
-        """
+        """Return the derivatives of F and M, at U = 0 from above; raise ``ValueError`` where there are none."""
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """Like :meth:`Contact.force_and_moment`; zero at rest, where friction is set-valued."""
         speed = abs(slip)
         if speed == 0.0 and relative_spin == 0.0:
             return 0j, 0.0
@@ -95,10 +88,7 @@ class IsotropicContact(ABC):
         return (-resistance * (slip / speed) if speed > 0.0 else 0j), moment
 
     def jacobian(self, slip: complex, relative_spin: float, angle: float) -> FloatArray:
-        """Like :meth:`Contact.jacobian`.
-
-        Slip across its direction turns the force, which acts like a damper F/U; along its direction the slope counts.
-        """
+        """Like :meth:`Contact.jacobian`; friction acts across the slip like a damper F/U."""
         speed = abs(slip)
         slopes = self.slopes(speed, relative_spin)
         direction = slip / speed if speed > 0.0 else 1.0 + 0j
@@ -120,13 +110,12 @@ class IsotropicContact(ABC):
 
 @dataclass(frozen=True)
 class Pin(IsotropicContact):
-    """Contact in one point, the centre (1): full friction against slip, no moment."""
+    """Point contact at the centre (1): full friction against slip, no moment."""
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
         return Shares(1.0 if slip_speed > 0.0 else 0.0, 0.0)
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Like :meth:`IsotropicContact.slopes`: zero while the pin slips."""
         if slip_speed == 0.0:
             raise ValueError("slip = 0 m/s: the pin is at rest, where friction has no derivative")
         return Slopes(0.0, 0.0, 0.0, 0.0)
@@ -144,8 +133,8 @@ class _OnCircle:
 class Ring(_OnCircle, IsotropicContact):
     """Contact on the whole circle of ``radius`` R > 0 in m (20), in closed form.
 
-    With the mean slip speed P(U, W) on the circle and W = R·|S|, F = ∂P/∂U and M = R·∂P/∂W·sign(S), see
-    :mod:`reference_model.contact.elliptic`. Both are accurate to rounding for all ratios of U and W.
+    F = ∂P/∂U and M = R·∂P/∂W·sign(S), W = R·|S|, with the mean slip speed P(U, W) on the circle, see
+    :mod:`reference_model.contact.elliptic`. Both are accurate to rounding.
     """
 
     @property
@@ -158,7 +147,6 @@ class Ring(_OnCircle, IsotropicContact):
         return Shares(along_slip, math.copysign(self.radius * along_rim, rim))
 
     def slopes(self, slip_speed: float, relative_spin: float) -> Slopes:
-        """Like :meth:`IsotropicContact.slopes`; undefined at U = W."""
         rim = abs(self.radius * relative_spin)
         if slip_speed == rim:
             raise ValueError(
@@ -175,9 +163,8 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
     """The paper's approximation (23) of the ring of ``radius`` R > 0 in m: three terms of (22) of ν̄/|ν_r|.
 
     With U = ν̄·cos α and R·S = ν̄·sin α, F = cos α·(1 − ½sin²α + ¾cos²α·sin²α) and M = R·sin α·(1 − ½cos²α +
-    ¾cos²α·sin²α). They have the potential ν̄·P(α), P = 1 − ¼cos²α·sin²α, the mean slip speed to the same order. It
-    is convex, so the approximation never feeds in power. The largest error is 0.10, near U = 0.77·R|S| for the
-    force and at the reciprocal ratio for the moment.
+    ¾cos²α·sin²α). Their potential ν̄·(1 − ¼cos²α·sin²α) is convex, so friction never feeds in power. The largest
+    error is 0.10, near U = 0.77·R|S| for the force and at the reciprocal ratio for the moment.
     """
 
     def shares(self, slip_speed: float, relative_spin: float) -> Shares:
@@ -200,10 +187,7 @@ class ThreeTermRing(_OnCircle, IsotropicContact):
 
 
 def contact_of(system: System, contact: Contact | None = None) -> IsotropicContact | Points:
-    """Return ``contact``, or if it is None the friction law given by the parameters of ``system``.
-
-    Raises ``ValueError`` if the system cannot have this law.
-    """
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` if the system cannot have it."""
     require_system(system)
     if isinstance(system, PinOnDisc):
         if contact is not None:
@@ -221,7 +205,7 @@ def contact_of(system: System, contact: Contact | None = None) -> IsotropicConta
 
 
 def isotropic_contact_of(system: DiscOnDisc, contact: IsotropicContact | None, what: str) -> IsotropicContact:
-    """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` if it is a law of points."""
+    """Return ``contact`` or the law of ``system``; raise ``ValueError`` naming ``what`` for a law of points."""
     require_system(system, DiscOnDisc)
     law = contact_of(system, contact)
     if not isinstance(law, IsotropicContact):

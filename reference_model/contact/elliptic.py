@@ -1,13 +1,13 @@
 """First and second derivatives of the mean slip speed on a circle, by complete elliptic integrals.
 
-On a circle whose centre slips with U and whose rim turns with W = R·|S| relative to the master disc, the mean slip
-speed is P(U, W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ, and friction is the derivative of P. P is symmetric in U and W
-and of degree 1. For k = W/U <= 1 and m = k² Landen's transformation turns P into (2/π)·U·[2E(m) − (1 − m)·K(m)], so::
+If the centre slips with U and the rim turns with W = R·|S| relative to the master disc, the mean slip speed is P(U,
+W) = (1/2π)∫√(U² + W² − 2UW·cos χ) dχ. Friction is the derivative of P, which is symmetric in U and W and of degree 1.
+For k = W/U <= 1 and m = k² Landen's transformation gives P = (2/π)·U·[2E(m) − (1 − m)·K(m)], so::
 
     ∂P/∂U = (2/π)·E(m),   ∂P/∂W = (2/π)·k·B(m),   ∂²P/∂W² = (2/π)·D(m)/U
 
-with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). At U = W one point of the circle is at rest and the
-second derivatives are infinite, like a logarithm.
+with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). At U = W one point rests and the second derivatives are
+infinite, like a logarithm.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from scipy.special import ellipe, ellipkm1
 from reference_model.systems import FloatArray
 
 SMALL = 0.05
-"""Parameter m below which B and D come from their series, because the differences would lose digits."""
+"""Parameter m below which B and D are series, because differences would lose digits."""
 
 TERMS = 13
-"""Number of terms of the series: the first omitted term is below SMALL^13 = 1e-17."""
+"""Number of terms; the first omitted one is below SMALL^13 = 1e-17."""
 
 
 def mean_directions(slip: float, rim: float) -> tuple[float, float]:
@@ -37,7 +37,7 @@ def mean_directions(slip: float, rim: float) -> tuple[float, float]:
     if m < SMALL:
         by_smaller = 0.5 * ratio * _series(_B_SERIES, m)
     else:
-        complement = 1.0 - m  # multiplied by its own logarithm, so its rounding does not matter
+        complement = 1.0 - m  # multiplied by its logarithm, so its rounding does not matter
         rest = complement * float(ellipkm1(complement)) if complement > 0.0 else 0.0
         by_smaller = 2.0 / math.pi * (integral - rest) / ratio
     return (by_larger, by_smaller) if faster else (by_smaller, by_larger)
@@ -65,7 +65,7 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     else:
         complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m to full precision
         integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
-    # Derivatives by the smaller argument; the others follow because first derivatives have degree 0.
+    # Derivatives by the smaller argument. The others follow, because first derivatives have degree 0.
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)

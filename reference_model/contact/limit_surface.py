@@ -1,11 +1,10 @@
 """The limit surface of a contact: the force and moment that friction can hold while the disc rests.
 
-A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN, along
-the slip that they drive) if for every slip F·u + M·w <= P(u, w), the mean of |v_j| weighted by the shares of the
-load. P is of degree one, so this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the
-centre of the load P is at least |u|, so h is not negative for |F| <= 1 and only the sign of M counts. Finding u is
-a convex Fermat-Weber problem with a pull F. Its solution may be a vertex, u = −i·a_j: then the disc begins to turn
-about point j, which stays at rest, and the limit surface has a flat face.
+A point slips with v_j = u + i·w·a_j, w = φ̇ − ω. Friction holds a force F and a moment M (per newton of μN) if F·u +
+M·w <= P(u, w) for every slip, where P is the mean of |v_j| weighted by the shares of the load. P is of degree one, so
+this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·u. About the centre of the load h >= 0 for
+|F| <= 1, and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F. If its solution is
+a vertex, u = −i·a_j, the disc begins to turn about the resting point j.
 
 Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra confirmed only partially how
 two-tier discs come to rest.
@@ -40,7 +39,7 @@ ROUNDING = 4e-16
 def wrench_of_slip(contact: IsotropicContact | Points, slip: complex, spin: float) -> tuple[complex, float]:
     """Return the force (N per N of μN) and the moment (m) about the centre that drive a slip of a disc at φ = 0.
 
-    They lie on the limit surface, whose normal there is the slip: u of the centre in m/s, and w = φ̇ − ω in rad/s.
+    The slip, u of the centre in m/s and w = φ̇ − ω in rad/s, is normal to the limit surface there.
     """
     friction, moment = contact.force_and_moment(slip, -spin, 0.0)
     return -friction, -moment
@@ -51,8 +50,8 @@ def largest_wrench(
 ) -> tuple[complex, float]:
     """Return the largest multiple of a force and a moment that friction can hold at φ = 0.
 
-    ``force`` and ``moment`` are the direction of the load: any force, and a moment about the centre in m times its
-    unit. The result is the force in N per N of μN and the moment in m. Raises ``ValueError`` if both are zero.
+    ``force`` and ``moment`` (about the centre, in m times the unit of the force) give the direction. The result is in
+    N per N of μN and in m. Raises ``ValueError`` if both are zero.
     """
     if force == 0.0 and moment == 0.0:
         raise ValueError("force and moment are 0: they must have a direction")
@@ -64,9 +63,8 @@ def largest_wrench(
 
 
 def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -> float:
-    """Return the factor of an isotropic contact; as U = cos α falls and S ~ sin α grows, the force falls."""
     lever = contact.shares(0.0, 1.0).moment
-    if lever == 0.0:  # a pin
+    if lever == 0.0:
         return 0.0 if moment > 0.0 else 1.0 / force
 
     def load(alpha: float) -> tuple[float, float]:
@@ -84,34 +82,31 @@ def _factor_of_circles(contact: IsotropicContact, force: float, moment: float) -
 
 @dataclass(frozen=True, eq=False)
 class PointsLimit:
-    """The limit surface of points with the ``arms`` (n,) in the frame of the disc and ``shares`` (n,) of the load."""
+    """The limit surface of points with ``arms`` (n,) in the frame of the disc and ``shares`` (n,) of the load."""
 
     arms: ComplexArray
     shares: FloatArray
 
     @classmethod
     def of(cls, contact: Points, length: float = 1.0) -> PointsLimit:
-        """Return the limit surface of ``contact`` with a unit of ``length`` in m."""
         return cls(np.array(contact.arms(0.0), dtype=np.complex128) / length, np.array(contact.shares))
 
     @cached_property
     def centre(self) -> complex:
-        """Mean place of the load c. Moments about it and its slip separate force and moment where |F| = 1."""
+        """Centre of the load, about which moments and slips separate force and moment where |F| = 1."""
         return complex(self.shares @ self.arms)
 
     @cached_property
     def radius(self) -> float:
-        """Root mean square distance R of the load from its centre."""
         return math.sqrt(float(self.shares @ abs(self.arms - self.centre) ** 2))
 
     @cached_property
     def _vertices(self) -> ComplexArray:
-        """Slips of the centre for w = 1 if one of the points rests."""
         return np.asarray(-1j * (self.arms - self.centre))
 
     @cached_property
     def _pulls(self) -> ComplexArray:
-        """Force of the other points while the disc turns about each of them."""
+        """Force of the other points while the disc turns about each point."""
         pulls = [self.shares @ _directions(vertex - self._vertices) for vertex in self._vertices]
         return np.array(pulls)
 
@@ -128,7 +123,7 @@ class PointsLimit:
         return sense * (slip - 1j * self.centre), sense
 
     def factor(self, force: complex, moment: float) -> float:
-        """Return the largest multiple of ``force`` and ``moment``, not both zero, that friction can hold."""
+        """Return the largest multiple of ``force`` and ``moment`` that friction can hold."""
         lever = float(self.shares @ abs(self.arms - self.centre))
         most = 1.0 / max(abs(force), abs(float(self._about_centre(force, moment))) / lever)
 
@@ -140,10 +135,10 @@ class PointsLimit:
     def greatest(self, forces: ComplexArray) -> tuple[FloatArray, ComplexArray]:
         """Return the squares of the largest moments that can be held with ``forces`` (t,), and the slips for w = 1.
 
-        Moments and slips are those about the centre of the load. Where the force alone is too large the squares
-        continue as (1 − |F|)·R², their leading term for |F| < 1, and so pass through zero with a finite slope.
+        Both are about the centre of the load. Where the force alone is too large the squares continue as (1 −
+        |F|)·R², so they pass through zero with a finite slope.
         """
-        # A point is the pivot if it can supply the force that friction of the other points leaves over.
+        # A point is the pivot if it can supply the force that the other points leave over.
         at_vertex = abs(forces[:, np.newaxis] - self._pulls) <= self.shares
         pivots = at_vertex.any(axis=1)
         too_much = abs(forces) >= 1.0
@@ -164,12 +159,11 @@ class PointsLimit:
         return np.asarray(mean - (forces.conj() * u).real)
 
     def _fermat_weber(self, forces: ComplexArray) -> ComplexArray:
-        """Minimise the mean distance minus F·u, which is convex, where the minimum is not at a vertex.
+        """Minimise the mean distance minus F·u, which is convex, away from vertices.
 
-        Armijo's rule halves Newton's steps. A step of Weiszfeld's method, which always descends, replaces a halved
-        one that descends less.
+        Armijo's rule halves Newton's steps. Where a halved step descends less, Weiszfeld's method replaces it.
         """
-        # This is exact in the limit of large |u| for points with the same spread in all directions.
+        # Exact for large |u| and points with the same spread in all directions.
         u: ComplexArray = self.radius * forces / (2.0 * np.sqrt(1.0 - abs(forces)))
         value = self._objective(forces, u)
         for _ in range(MOST_ITERATIONS):
@@ -205,17 +199,16 @@ class PointsLimit:
 
 
 SINGULAR = 1e-15
-"""Smallest determinant over the squared trace of a Hessian; for points on one line it can vanish."""
+"""Smallest ratio of determinant to squared trace of a Hessian, zero for points on one line."""
 
 ARMIJO = 1e-4
-"""Smallest descent of a step over that of its slope."""
+"""Smallest ratio of a step's descent to that of its slope."""
 
 MOST_HALVINGS = 60
 
 FLAT = 1e-9
-"""Share of rotation in the slip of a disc whose force alone is too large: almost none."""
+"""Share of rotation in the slip of a disc whose force alone is too large."""
 
 
 def _directions(slips: ComplexArray) -> ComplexArray:
-    """Return unit vectors along ``slips``, zero where they vanish."""
     return np.asarray(slips / np.maximum(abs(slips), 1e-300))

@@ -1,4 +1,4 @@
-"""A patch under uniform pressure as contact points: a quadrature over the area of a polygon."""
+"""Contact points of a patch under uniform pressure: a quadrature over a polygon."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from reference_model.systems import finite_number, require_whole
 ComplexArray = NDArray[np.complex128]
 
 INSIDE = np.array([[2.0, 0.5, 0.5], [0.5, 2.0, 0.5], [0.5, 0.5, 2.0]]) / 3.0
-"""Weights of the corners of a triangle in the three points of the rule of degree 2, which have equal shares.
+"""Weights of a triangle's corners in the three points of the rule of degree 2.
 
 A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971, rule T2:2-1.
 """
@@ -23,12 +23,12 @@ A. H. Stroud, Approximate Calculation of Multiple Integrals, Prentice-Hall 1971,
 def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Points:
     """Return the contact of a polygon under uniform pressure, as points inside it.
 
-    Each triangle of the polygon is cut into ``divisions``² equal ones (>= 1) with three points each. With their
-    longest side h the error falls like h⁴ if the centre of rotation lies outside the patch, and on average like h²
-    if it lies inside, where friction jumps. ``corners`` are x and y in m of at least three corners in the frame of
-    the disc, in order around the polygon.
+    ``corners`` are x and y in m of at least three corners in the frame of the disc, in order around the polygon. Its
+    triangles are cut into ``divisions``² >= 1 equal ones with three points each. With their longest side h the error
+    falls like h⁴ if the centre of rotation lies outside the patch, otherwise like h² on average, because friction
+    jumps.
 
-    Raises ``ValueError`` if a number is invalid or the polygon has no area or intersects itself.
+    Raises ``ValueError`` if a number is invalid, or the polygon has no area or intersects itself.
     """
     require_whole("divisions", divisions, least=1)
     triangles = _triangles(_checked_corners(corners))
@@ -41,7 +41,6 @@ def polygon_patch(corners: Iterable[tuple[float, float]], divisions: int) -> Poi
 
 
 def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
-    """Return the corners in counterclockwise order."""
     try:
         around = [complex(finite_number("corners", x), finite_number("corners", y)) for x, y in corners]
     except TypeError:
@@ -52,7 +51,7 @@ def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
 
 
 def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
-    """Cut ears off a polygon: triangles of neighbours that turn left and contain no other corner."""
+    """Cut off ears: triangles of neighbours that turn left and contain no other corner."""
     left = list(around)
     result: list[tuple[complex, ...]] = []
     while len(left) > 2:
@@ -71,12 +70,11 @@ def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
 
 
 def _doubled_area(a: Any, b: Any, c: Any) -> Any:
-    """Return twice the area of triangles, negative if the corners are in clockwise order."""
+    """Return twice the area, negative if the corners are in clockwise order."""
     return (np.conj(b - a) * (c - a)).imag
 
 
 def _divided(triangle: ComplexArray, n: int) -> ComplexArray:
-    """Return n² equal triangles, shape (n², 3)."""
     a, b, c = triangle
     first, second = (b - a) / n, (c - a) / n
     upright = [[i * first + j * second, 1.0] for i in range(n) for j in range(n - i)]

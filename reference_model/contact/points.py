@@ -1,7 +1,4 @@
-"""Friction of a contact in single points, each with a share of the load.
-
-The points turn with the disc, so the law depends on the angle φ.
-"""
+"""Friction at single points. It depends on the angle φ, because the points turn with the disc."""
 
 from __future__ import annotations
 
@@ -25,11 +22,10 @@ from reference_model.systems import (
 
 @dataclass(frozen=True, repr=False)
 class Points:
-    """Contact in points at any places, each with its share of the load.
+    """Contact in points at any positions, each with its share of the load.
 
-    ``places`` contains (x, y, share) of each point: its place in m relative to the disc's centre at φ = 0, and its
-    share of the load. There are at least two points at different places; shares are positive and sum to 1. Raises
-    ``ValueError`` otherwise.
+    ``places`` contains (x, y, share) of each point, in m relative to the disc's centre at φ = 0. Raises
+    ``ValueError`` unless at least two positions differ and the shares are positive and sum to 1.
     """
 
     places: Sequence[Place]
@@ -38,26 +34,22 @@ class Points:
         object.__setattr__(self, "places", checked_places("places", self.places))
 
     def __repr__(self) -> str:
-        """Return a short description, because a patch may have thousands of points."""
         return f"{type(self).__name__}({len(self.places)} places)"
 
     def __iter__(self) -> Iterator[Place]:
-        """Iterate over x (m), y (m) and share of all points."""
         return iter(self.places)
 
     @cached_property
     def shares(self) -> tuple[float, ...]:
-        """Share of the load of each point."""
         return tuple(share for _, _, share in self.places)
 
     @cached_property
     def _arms(self) -> tuple[complex, ...]:
-        """Places at φ = 0 as complex numbers, in m."""
         return tuple(complex(x, y) for x, y, _ in self.places)
 
     @cached_property
     def _seen_from(self) -> dict[int | None, tuple[_Friction, ...]]:
-        """For the points that were asked for, all others; for None, all points seen from the centre."""
+        """All other points, seen from each point requested so far; for None all points, seen from the centre."""
         return {None: tuple((arm, arm.conjugate(), share) for arm, share in self._loaded)}
 
     @property
@@ -65,11 +57,9 @@ class Points:
         return zip(self._arms, self.shares, strict=True)
 
     def arm(self, point: int, angle: float) -> complex:
-        """Return the position of a point relative to the centre, in m."""
         return cmath.exp(1j * angle) * self._arms[point]
 
     def arms(self, angle: float) -> list[complex]:
-        """Return the positions of all points relative to the centre, in m."""
         turn = cmath.exp(1j * angle)
         return [turn * arm for arm in self._arms]
 
@@ -79,7 +69,7 @@ class Points:
         return float(np.delete(distances, point).min())
 
     def force_and_moment(self, slip: complex, relative_spin: float, angle: float) -> tuple[complex, float]:
-        """Like :meth:`Contact.force_and_moment`; a point at rest has set-valued friction and contributes nothing."""
+        """Like :meth:`Contact.force_and_moment`; a point at rest contributes nothing."""
         return _friction_of(self._seen_from[None], slip, relative_spin, angle)
 
     def friction_of_others(
@@ -106,15 +96,14 @@ class Points:
                 )
             direction = velocity / speed
             across = 1j * direction
-            # Derivatives of the point's slip by u_x, u_y, S, φ. Friction changes only with the component across its
-            # direction.
+            # Derivatives of the point's slip by u_x, u_y, S, φ. Only the component across the slip changes friction.
             by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
             turning = -share * ((by_unknowns * across.conjugate()).real / speed)
             friction = turning * across
             result[0] += friction.real
             result[1] += friction.imag
             result[2] += (arm.conjugate() * friction).imag
-            result[2, 3] += share * ((1j * arm).conjugate() * -direction).imag  # the arm turns too
+            result[2, 3] += share * ((1j * arm).conjugate() * -direction).imag
         return result
 
 
@@ -136,12 +125,11 @@ class PointsOnRing(Points):
         super().__init__([(arm.real, arm.imag, 1.0 / points) for arm in around])
 
     def __repr__(self) -> str:
-        """Return radius and number of points."""
         return f"PointsOnRing(radius={self.radius!r}, points={self.points!r})"
 
 
 _Friction = tuple[complex, complex, float]
-"""Place of a point relative to the one that slips with a given velocity, conjugate of its arm, and its share."""
+"""Position relative to the point with the given slip, conjugate of the arm, and share."""
 
 
 def _friction_of(

@@ -1,9 +1,9 @@
 """Compiled simulation: end states of many trajectories, or one trajectory phase by phase.
 
-- ``simulate``: :func:`simulate_ensemble`, the entry point; ``end_states``: its results;
+- ``simulate``: :func:`simulate_ensemble`; ``end_states``: its results;
 - ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
-- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and
-  ``kernel`` with ``driver``, which combine them;
+- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and ``kernel``
+  with ``driver``, which combine them;
 - ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``.
 """
 

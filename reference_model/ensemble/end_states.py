@@ -15,10 +15,9 @@ from reference_model.systems import FloatArray
 class EndState(IntEnum):
     """The long-term motion of a trajectory.
 
-    ``SELF_CENTRED``: a sliding equilibrium (section 2). ``STUCK``: permanent stick, also if ever shorter slips lead
-    there like one over time. ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick.
-    ``MODULATED``: a whirl whose radius oscillates slowly (section 4; discs only). ``STICK_SLIP``: sticking and
-    slipping again and again. ``UNDECIDED``: not certain.
+    ``SELF_CENTRED``: a sliding equilibrium. ``STUCK``: permanent stick, also as the limit of ever shorter slips.
+    ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick. ``MODULATED``: a whirl whose
+    radius oscillates slowly (discs only). ``STICK_SLIP``: sticking and slipping again and again.
     """
 
     UNDECIDED = 0
@@ -33,27 +32,27 @@ UNDECIDED, SELF_CENTRED, WHIRL, MODULATED, STUCK, STICK_SLIP = (int(end) for end
 """The end states as integers, for compiled code."""
 
 HANDED_OVER = 255
-"""Marker in place of an end state: compiled code stops following the motion, see :mod:`.disc.driver`."""
+"""Marker instead of an end state where compiled code hands the motion over, see :mod:`.disc.driver`."""
 
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """End states of n trajectories.
+    """End states of n trajectories, in arrays of shape (n,).
 
     Parameters
     ----------
-    end : array of shape (n,)
+    end
         End state, as :class:`EndState`.
-    time : array of shape (n,)
-        Time in s at which it was certain, or the duration; less for a trajectory that was given up, undecided.
+    time
+        Time in s at which it was certain, or the duration; less for a trajectory that was given up.
     states : array of shape (n, 4) or (n, 6)
         State at that time.
-    least_radius, largest_radius : array of shape (n,)
+    least_radius, largest_radius
         Range of the radius in the end state, in m; NaN if undecided.
-    slip_power : array of shape (n,)
+    slip_power
         Mean power of friction in the end state, in W; NaN if undecided.
-    steps : array of shape (n,)
-        Number of steps of the integrator, including rejected ones, and of stick phases.
+    steps
+        Number of steps, including rejected ones, and of stick phases.
 
     """
 
@@ -73,8 +72,7 @@ class Ensemble:
 class Results(NamedTuple):
     """Output arrays of compiled code: ends, times and steps (n,), states (n, 4 or 6), measures (n, 3).
 
-    The measures are the smallest and the largest radius in m and the mean slip speed in m/s, which is power per
-    friction force.
+    The measures are the smallest and the largest radius in m and the mean slip speed in m/s.
     """
 
     ends: NDArray[np.uint8]

@@ -1,7 +1,7 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-The state at a requested time is the end of a short trajectory from the checkpoint before it, with the same step, cut
-short. So the motion does not depend on the requested times.
+A requested state is the end of a short trajectory from the checkpoint before it, with the same step, so the motion
+does not depend on the requested times.
 """
 
 from __future__ import annotations
@@ -25,25 +25,23 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError, Trajectory
 
 Runs = Callable[[Task, Checkpoints], Results]
-"""Runs the trajectories of a task; takes room for the checkpoints of one of them."""
+"""Runs a task, with room for the checkpoints of one of its trajectories."""
 
 ROOM_TO_SPARE = 64
-"""Initial room for checkpoints where phases begin, in addition to those for all times."""
+"""Initial number of checkpoints for the beginnings of phases."""
 
 ROUNDED = 1e-12
-"""Rounding error of times, as a share of the duration or of the unit of time, whichever is longer."""
+"""Rounding error of times, as a share of the duration or the unit of time, whichever is longer."""
 
 STAGES = 12
-"""Number of evaluations of the equations of motion per step."""
 
 
 @dataclass
 class Recording:
     """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
 
-    ``states``, shape (n, 4) or (n, 6), is filled as far as computed; ``duration`` and ``rounding`` of times are in s.
-    ``phases`` are (kind, start, state) so far. ``steps`` and ``evaluations`` are those of ``Solution`` so far,
-    including rejected steps and stick phases.
+    ``states``, shape (n, 4) or (n, 6), is filled as far as computed. ``phases`` are (kind, start, state). ``steps``
+    and ``evaluations`` include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
     """
 
     times: FloatArray
@@ -59,7 +57,7 @@ class Recording:
     ) -> Results:
         """Follow the motion from ``state`` at ``since`` as far as ``one`` goes; return its result.
 
-        ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one of them is given up.
+        ``many`` runs from checkpoints to times. Raises ``SimulationError`` if one is given up.
         """
         # The kernel is compiled for writable arrays only.
         task = Task(parameters, state.copy()[np.newaxis], np.array([self.duration - since]))
@@ -87,7 +85,7 @@ class Recording:
         return end
 
     def take(self, motion: Trajectory) -> None:
-        """Insert a part of the motion computed by the plain reference, at all requested times in its span."""
+        """Insert a part of the motion computed by the plain reference."""
         requested = (self.times >= motion.times[0]) & (self.times <= motion.times[-1])
         self.states[requested] = motion.states[np.searchsorted(motion.times, self.times[requested])]
         for phase in motion.phases:
@@ -116,7 +114,7 @@ class Recording:
             )
 
     def _enter(self, kind: Kind, t: float, state: FloatArray) -> None:
-        """Begin a phase, unless it is of the current kind; drop a phase that lasts no longer than rounding."""
+        """Begin a phase unless it is of the current kind; drop one that lasts no longer than rounding."""
         if self.phases and t - self.phases[-1][1] <= self.rounding:
             t = self.phases.pop()[1]
         if not self.phases or self.phases[-1][0] != kind:

@@ -22,7 +22,6 @@ from reference_model.systems import (
 )
 
 UNSUPPORTED = ("hardening", "stop_gap", "stop_stiffness")
-"""Parameters of a nonlinear support."""
 
 MOST_POINTS = 24
 """Largest number of contact points: their sum is unrolled, which takes long to compile for more."""
@@ -40,25 +39,24 @@ def simulate_ensemble(
 ) -> Ensemble:
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. A result does not depend, bit by bit, on the other
-    trajectories or on the number of threads. Raises ``ValueError`` if an argument is invalid.
+    The physics is that of :func:`reference_model.simulate`. Results do not depend, bit by bit, on other trajectories
+    or the number of threads. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------
     system
         Common parameters, with a linear support.
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
-        Initial states as in ``reference_model.simulate``, one per trajectory or one for all.
+        Initial states, one per trajectory or one for all.
     duration
         Duration in s, > 0.
     tolerance
-        Relative accuracy to aim at, from 1e-14 to 1e-2, as in ``reference_model.simulate``. With 1e-9, of 4,000
-        states each of Figs. 5, 8, 9 and 11 after 100 s half have errors below 4e-9, 99 % below 1e-8, and one, of
-        Fig. 9, has 2e-7.
-    parameters : mapping from a parameter's name to an array-like of shape (n,), optional
-        Parameters that differ between trajectories.
+        As in ``reference_model.simulate``. At 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s, half
+        have errors below 4e-9 and 99 % below 1e-8; the largest is 2e-7.
+    parameters
+        Parameters that differ between trajectories: arrays of shape (n,) by name.
     early_end
-        Whether a trajectory ends as soon as its end state is certain (criteria: :mod:`.pin.end_states`).
+        Whether a trajectory ends as soon as its end state is certain (:mod:`.pin.end_states`).
     threads
         Number of threads; by default one per processor.
 
@@ -87,7 +85,7 @@ def simulate_ensemble(
 
 
 def require_supported(system: System) -> None:
-    """Raise ``ValueError`` with the parameter's name for a system that compiled code does not support."""
+    """Raise ``ValueError`` naming the parameter if compiled code does not support a system."""
     if not system.linear_support:
         name = next(name for name in ("hardening", "stop_stiffness") if getattr(system, name) != 0.0)
         raise ValueError(
@@ -144,7 +142,6 @@ def _numbers(name: str, values: Any) -> FloatArray:
 
 
 def _number_of(starts: int, varied: Mapping[str, FloatArray]) -> int:
-    """Return the number of trajectories; the starts may be one for all."""
     sizes = {"initial_states": starts, **{name: len(values) for name, values in varied.items()}}
     n = max(sizes.values())
     for name, size in sizes.items():

@@ -1,4 +1,4 @@
-"""Trajectories to simulate in the form of compiled code, and their distribution to threads."""
+"""Trajectories in the form of compiled code, and their distribution to threads."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import numpy as np
 from reference_model.systems import FloatArray, System
 
 CHUNK = 512
-"""Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
+"""Number of trajectories that a thread takes at a time, so that lanes are rarely empty and threads end together."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
 """Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.
 
-They are the unit of length in m, the inverse unit of time in 1/s (> 0), the step, the number of recent short steps,
-and the length of an implicit step, all as in lanes.
+They are the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and the
+length of an implicit step.
 """
 
 PACE_SIZE = SPAN + 1
@@ -26,8 +26,8 @@ PACE_SIZE = SPAN + 1
 class Task(NamedTuple):
     """Trajectories to simulate; each array has a row per trajectory, or one for all.
 
-    ``parameters`` (1 or n, parameters) are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI
-    units, ``durations`` (1 or n,) in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
+    ``parameters`` are in the order of the kernel's PARAMETERS, ``starts`` (1 or n, 4 or 6) in SI units, ``durations``
+    in s, and ``paces`` (1 or n, 5) those of starts at checkpoints, otherwise zeros.
     """
 
     parameters: FloatArray
@@ -39,13 +39,13 @@ class Task(NamedTuple):
 def parameter_table(
     system: System, names: Sequence[str], varied: Mapping[str, FloatArray] | None = None
 ) -> FloatArray:
-    """Return the named parameters, shape (1 or n, parameters); those ``varied``, (n,), have a row per trajectory."""
+    """Return the named parameters, shape (1 or n, parameters); those ``varied`` (n,) have a row per trajectory."""
     columns = [(varied or {}).get(name, getattr(system, name)) for name in names]
     return np.column_stack(np.broadcast_arrays(*(np.atleast_1d(column) for column in columns))).astype(float)
 
 
 def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
-    """Call ``run(first, last)`` for all of ``n`` trajectories; it must release the global interpreter lock."""
+    """Call ``run(first, last)``, which must release the interpreter lock, for all of ``n`` trajectories."""
     firsts = range(0, n, CHUNK)
     if threads == 1:
         for first in firsts:
@@ -53,4 +53,4 @@ def in_chunks(run: Callable[[int, int], None], n: int, threads: int) -> None:
         return
     with ThreadPoolExecutor(min(threads, len(firsts))) as pool:
         for _ in pool.map(lambda first: run(first, min(first + CHUNK, n)), firsts):
-            pass  # retrieves the result, so that an error is raised here
+            pass  # raises errors of the thread here

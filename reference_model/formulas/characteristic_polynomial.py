@@ -31,27 +31,26 @@ class Coefficients(NamedTuple):
 def characteristic_coefficients(
     disc: DiscOnDisc, slip: float, rim: float, contact: IsotropicContact | None = None
 ) -> Coefficients:
-    """Return the coefficients of the characteristic equation of a disc's whirl without offset; (13) for the disc.
+    """Return the coefficients of the characteristic equation of a disc's whirl without offset: (13) for the disc.
 
-    With the deviations ξ of the radius, w of the speed along the circle and σ of the spin from the whirl, (19) is::
+    With the deviations ξ of the radius, w of the circumferential speed and σ of the spin, (19) is::
 
         ξ̈ + Dξ̇ − 2kw = 0,   ẇ + 2kξ̇ + ew − fξ + gσ = 0,   σ̇ + cσ + h(w − dξ) = 0
 
         d = |ω| − k,   D = βω/(md),   e = (β + μN·F_U)/m,   f = (μN·F_U·d − βk)/m,
         g = μN·F_S/m,   h = μN·M_U/J,   c = (b + μN·M_S)/J
 
-    where indices of the friction F and M are derivatives. So λ(λ + D)[(λ + e)(λ + c) − gh] + 2k[(2kλ − f)(λ + c) +
-    ghd] = 0. For a pin g = h = 0: λ + c divides out and corrected (13) is left. ``slip`` and ``rim`` are positive
-    numbers whose ratio is U : R|ω − φ̇|.
+    where indices of F and M are derivatives. So λ(λ + D)[(λ + e)(λ + c) − gh] + 2k[(2kλ − f)(λ + c) + ghd] = 0. For a
+    pin g = h = 0, and corrected (13) remains. ``slip`` and ``rim`` are positive, with the ratio U : R|ω − φ̇|.
 
-    Raises ``ValueError`` if the law has no derivative at that ratio, the disc rests on single points, or the
-    support is not linear.
+    Raises ``ValueError`` if the law has no derivative there, or the disc rests on single points or a nonlinear
+    support.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")
     k, spin = disc.natural_frequency, rim / disc.contact_radius
     relative = abs(disc.disc_speed) - k
-    # Ratio of the actual slip to ``slip``; derivatives of friction are smaller by this factor.
+    # Actual slip over ``slip``; derivatives of friction are smaller by this factor.
     size = relative * disc.friction_force * law.shares(slip, spin).resistance / (disc.damping * k * slip)
     slopes = law.slopes(slip, spin)
     per_size = disc.friction_force / size

@@ -1,7 +1,7 @@
 """The closed forms of section 4 of the paper, one function per equation, and results of the same balances.
 
-Signs are those of :mod:`reference_model.formulas.pin`: a formula is evaluated for |ω| with the given Ω/ω. If ω < 0, y
-and the spin are mirrored; if X0 < 0, x and y change sign.
+Signs are those of :mod:`reference_model.formulas.pin`: formulas are evaluated for |ω| with the given Ω/ω. If ω < 0, y
+and the spin change sign; if X0 < 0, x and y do.
 """
 
 from __future__ import annotations
@@ -23,43 +23,39 @@ from reference_model.support import require_linear_support
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 OF_A_PIN = tuple(field.name for field in fields(PinOnDisc))
-"""Names of a pin's parameters."""
 
 
 def pin_of(disc: DiscOnDisc, **others: float) -> PinOnDisc:
-    """Return the pin that moves like a disc without spin relative to the master disc, with ``others`` replaced."""
+    """Return the pin that moves like a disc without relative spin, with ``others`` replaced."""
     return PinOnDisc(**{name: getattr(disc, name) for name in OF_A_PIN} | others)
 
 
 def shaft_torque(disc: DiscOnDisc) -> float:
-    """Return b|ω − Ω| in N m, the shaft's moment on a disc that does not spin relative to the master disc."""
+    """Return b|ω − Ω| in N m, the shaft's moment on a disc without relative spin."""
     return disc.shaft_damping * abs(disc.disc_speed - disc.shaft_speed)
 
 
 def inverse_slip_speed(slip: complex, rim_speed: float, place: float) -> float:
     """Return ν̄_r/|ν_r| at a point of the ring by three terms of its expansion: the first line of (22), corrected.
 
-    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …. Its average over the ring, times the
-    slip velocity of the point, is (23). ``slip`` is (ẋ + ωy) + i(ẏ − ωx) and ``rim_speed`` R(ω − φ̇), both in m/s;
-    ``place`` is φ + χ in rad.
+    With ε = R(ω − φ̇)·ν̃_xy/ν̄_r² it is 1/√(1 + 2ε) = 1 − ε + (3/2)ε² − …, which leads to (23). ``slip`` is (ẋ + ωy)
+    + i(ẏ − ωx) and ``rim_speed`` R(ω − φ̇), both in m/s; ``place`` is φ + χ in rad.
     """
     small = _expanded(slip, rim_speed, place)
     return 1.0 - small + 1.5 * small**2
 
 
 def inverse_slip_speed_as_printed(slip: complex, rim_speed: float, place: float) -> float:
-    """Return the right side of the first line of (22) as printed, with ν̃_r/|ν_r| on the left, for comparison."""
+    """Return the right side of the first line of (22) as printed, with ν̃_r/|ν_r| on the left."""
     return 1.0 - _expanded(slip, rim_speed, place)
 
 
 def held_pin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> PinOnDisc:
     """Return the pin equivalent to the centre of a stuck disc; its μN is the force that friction can hold.
 
-    Friction must supply the constant moment b(ω − Ω), which leaves the force F of the limit surface in place of μN
-    in (7) to (9). So ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9).
-
-    Raises ``ValueError`` if friction cannot supply the moment, so that the disc never sticks, or if the disc rests
-    on single points.
+    The constant moment b(ω − Ω) leaves the force F of the limit surface in place of μN in (7) to (9). So
+    ``pin_formulas.sticking_radius(held_pin(disc))`` is the right side of (9). Raises ``ValueError`` if friction
+    cannot supply the moment or the disc rests on single points.
     """
     law = isotropic_contact_of(disc, contact, "the limits of sticking")
     centre = stuck_centre(DiscMotion.of(disc, law), law)
@@ -89,10 +85,7 @@ class ReducedParameters(NamedTuple):
 
 
 def semicircle_residual(disc: DiscOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
-    """Return left side minus right side of (4), in m², which holds for the self-centred disc as for the pin.
-
-    ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
-    """
+    """Return left side minus right side of (4), in m², which also holds for the disc."""
     return pin_formulas.semicircle_residual(pin_of(disc), x, y)
 
 
@@ -137,7 +130,7 @@ def speed_difference_at(disc: DiscOnDisc, distance: float, alpha: float) -> floa
 def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
     """Return A² in m² by the second line of (26), corrected, at α in rad; negative if no A exists.
 
-    (24) inserted into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Raises ``ValueError`` as
+    (24) inserted into (23) gives the bracket 1 − ½sin²α + (3/16)·sin²2α. Errors are those of
     :func:`reduced_parameters`.
     """
     return _squared_distance(
@@ -146,10 +139,7 @@ def squared_distance(disc: DiscOnDisc, alpha: float) -> float:
 
 
 def squared_distance_as_printed(disc: DiscOnDisc, alpha: float) -> float:
-    """Return A² in m² by (26) as printed, with the wrong bracket 1 − ½cos²α + (3/16)·sin²α, for comparison.
-
-    Raises ``ValueError`` as :func:`reduced_parameters`.
-    """
+    """Return A² in m² by (26) as printed, with the wrong bracket 1 − ½cos²α + (3/16)·sin²α."""
     return _squared_distance(disc, alpha, 1.0 - 0.5 * math.cos(alpha) ** 2 + 0.1875 * math.sin(alpha) ** 2)
 
 
@@ -171,16 +161,15 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
     """Solve (26) for all its α and return the positions by (24), by increasing |α|.
 
-    The corrected (26) gives, in the paper's way, :func:`reference_model.self_centred_equilibria` of
-    :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises ``ValueError`` if stiffness, disc speed,
-    shaft damping or offset is zero.
+    The corrected (26) gives the equilibria of :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises
+    ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
     """
     _require_not_zero(disc, "shaft_damping", "offset")
     squared = squared_distance_as_printed if as_printed else squared_distance
     difference = reduced_parameters(disc).speed_difference
 
     def excess(alpha: float) -> float:
-        """Return the residual of the first line of (26), multiplied by cos α because A grows like its reciprocal."""
+        """Return the residual of the first line of (26) times cos α, because A grows like its reciprocal."""
         distance = math.sqrt(max(squared(disc, alpha), 0.0))
         return (speed_difference_at(disc, distance, alpha) - abs(difference)) * math.cos(alpha)
 
@@ -209,18 +198,17 @@ class WhirlAtRatio(NamedTuple):
 def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = None) -> WhirlAtRatio:
     """Return the whirl without offset in closed form, at the ratio tan α = R|ω − φ̇|/U of rim and centre slip.
 
-    A circle of radius ρ satisfies three balances. The radial one contains no friction, because the slip is along
-    the circle: its frequency is κ = ±k, as for the pin. Along the circle βkρ = μN·F(α), in the sense of ω and only
-    for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S| =
-    U·tan α. Together they give the load, see :func:`whirl_arm`::
+    The radial balance contains no friction, so the frequency is κ = ±k, as for the pin. Along the circle βkρ =
+    μN·F(α) for |ω| > k, as in (11), so U = (|ω| − k)ρ. About the centre b(ω − Ω − S) = μN·M(α) with S = ω − φ̇, R|S|
+    = U·tan α. Together they give the load::
 
         μN = b|ω − Ω| / [M + b(|ω| − k)/(βkR)·F·tan α]
 
-    ``alpha`` is in rad, 0 < α < π/2. The result does not depend on ``friction_force``. For (23) use
-    :class:`reference_model.contact.contact_law.ThreeTermRing`; None is the law of the parameters.
+    ``alpha`` is in rad, 0 < α < π/2. The result does not depend on ``friction_force``. ``contact`` None means the law
+    of the parameters; :class:`reference_model.contact.contact_law.ThreeTermRing` is (23).
 
-    Raises ``ValueError`` if α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <=
-    k; if the disc rests on single points or the support is not linear.
+    Raises ``ValueError`` if α is out of range; if stiffness, damping or shaft damping is zero; if Ω = ω or |ω| <= k;
+    or if the disc rests on single points or a nonlinear support.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the whirl")
@@ -249,10 +237,8 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
     """Return b|ω − Ω|/μN in m of the whirl as a function of slip and rim >= 0, whose ratio is U : R|ω − φ̇|.
 
-    It is M + b(|ω| − k)/(βkR)·F·rim/slip. At slip = 0 it is the limit, b|ω − Ω| over the onset load.
-
-    Raises ``ValueError`` if there is no whirl at any load (zero stiffness or damping, or |ω| <= k), or if the support
-    is not linear.
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit at slip = 0, b|ω − Ω| over the onset load. Raises
+    ``ValueError`` if stiffness or damping is zero, |ω| <= k, or the support is not linear.
     """
     require_linear_support(disc)
     per_load = pin_formulas.whirl_radius(pin_of(disc, friction_force=1.0))

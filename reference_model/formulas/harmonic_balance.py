@@ -6,11 +6,10 @@ With z = z_m + ρ·exp(iψ), ψ̇ = κ, the deflection of the support is q + ρ�
     mean             C·q + C₃·(|q|² + 2ρ²)·q = iμN·∂P/∂V·z_m/|z_m|
     first harmonic   m·κ² = C + C₃·(ρ² + 2|q|²),   βκρ = μN·∂P/∂U
 
-with the mean P of |U + V·exp(iψ)| over ψ, U = (ω − κ)ρ and V = ω|z_m|, which is the mean slip speed of a ring.
+with the mean slip speed P of a ring, U = (ω − κ)ρ and V = ω|z_m|.
 
-*Order of the error.* The balance omits the second harmonic, which is proportional to X0 like the mean and coupled to
-it. So the error of the mean is of order X0, like that of (18), which is this balance for C₃ = 0 to first order. ρ and
-κ do not depend on the sign of X0, so their errors are of order X0².
+The omitted second harmonic is proportional to X0, so the error of the mean is of order X0, like that of (18), which
+is this balance for C₃ = 0 to first order. ρ and κ do not depend on the sign of X0, so their errors are of order X0².
 """
 
 from __future__ import annotations
@@ -40,10 +39,8 @@ class BalancedWhirl:
 def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
     """Return the whirl of ``pin``, without a stop, by harmonic balance of its mean and its first harmonic.
 
-    The error of radius and frequency is of order X0², that of the mean of order X0. For X0 = 0 the result is exact.
-
-    Raises ``ValueError`` if there is a stop, whose force is not a polynomial, or no whirl without offset to start
-    from; ``RuntimeError`` if Newton's method does not converge near it, because the offset is too large.
+    Raises ``ValueError`` if there is a stop, or no whirl without offset to start from; ``RuntimeError`` if Newton's
+    method does not converge, because the offset is too large.
     """
     if pin.stop_stiffness > 0.0:
         raise ValueError(
@@ -57,7 +54,6 @@ def whirl_by_harmonic_balance(pin: PinOnDisc) -> BalancedWhirl:
         return radius * without_offset, turning * frequency, complex(x, y) * without_offset
 
     def residuals(unknowns: FloatArray) -> FloatArray:
-        """Return the residuals of both balances, as shares of friction."""
         radius, turning, mean = whirl(unknowns)
         q = mean - pin.offset
         slip, carried = abs(speed - turning) * radius, speed * abs(mean)

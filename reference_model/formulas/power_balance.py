@@ -1,4 +1,4 @@
-"""Energy and power balance of a trajectory, which checks any engine without a reference solution."""
+"""Energy balance of a trajectory, which checks any engine without a reference solution."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ComplexArray = NDArray[np.complex128]
 SPLINE_DEGREE = 5
 
 CROWDED = 0.05
-"""Samples closer to the end of a phase than this fraction of their usual distance are left out."""
+"""Distance from the end of a phase, over that of samples, below which samples are omitted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,16 +28,16 @@ class PowerBalance:
 
     Parameters
     ----------
-    times : array
+    times
         Times of the trajectory and bounds of its phases, in s.
-    drive_work : array
+    drive_work
         Work of the drive of the (master) disc.
-    friction_heat, damper_heat : array
-        Heat produced by friction and by the dampers, including a friction disc's shaft damper.
-    shaft_work : array
-        Work that a friction disc delivers to its shaft behind the damper; zero for a pin.
-    stored_energy : array
-        Kinetic energy plus energy of the springs, as absolute values.
+    friction_heat, damper_heat
+        Heat of friction and of the dampers, including a friction disc's shaft damper.
+    shaft_work
+        Work of a friction disc on its shaft behind the damper.
+    stored_energy
+        Kinetic energy plus energy of the springs.
 
     """
 
@@ -61,24 +61,22 @@ class PowerBalance:
 
     @property
     def turned_over(self) -> float:
-        """Energy that measures the residual: all heat plus the largest stored energy."""
+        """Scale of the residual: all heat plus the largest stored energy."""
         return float(self.friction_heat[-1] + self.damper_heat[-1] + np.max(self.stored_energy))
 
 
 def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> PowerBalance:
     """Return the energy balance of ``trajectory``, whose times must be close enough to resolve the motion.
 
-    In slip phases the friction heat is μN·∫P dt with the mean slip speed P of the contact: |w| for a pin, −F·u +
-    M·S (per newton of μN) for a disc; below the ε of a regularised engine friction is weaker. In stick phases the
-    heat is the work of the holding force and moment of eq. 6 on the engine's creep, zero for exact friction. The
-    drive's work is ω times the angular impulse on the body about the axis, which follows from the motion: ∫M dt =
-    [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection.
-    So the residual vanishes only if friction acts against the slip with the magnitude μN, the damping and the
-    springs are right, and the integrator conserves energy.
+    In slip phases the friction heat is μN·∫P dt with the mean slip speed P: |w| for a pin, −F·u + M·S (per newton of
+    μN) for a disc. In stick phases it is the work of the holding force and moment of eq. 6 on the engine's creep. The
+    drive's work is ω times the angular impulse on the body about the axis, ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y
+    dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual vanishes only if
+    friction, damping and springs are right and the integrator conserves energy.
 
-    The integrals are those of a quintic spline through the samples of each phase. Their error falls with the sixth
-    power of the sampling interval, or more slowly if the slip of a point is near zero or a stop begins to act.
-    Raises ``ValueError`` if the trajectory has only one time.
+    The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
+    sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` if there is only one
+    time.
     """
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")
@@ -104,14 +102,13 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
 
 
 def _shaft_of(body: System) -> tuple[float, float, float]:
-    """Return J in kg m², b in N m s/rad and Ω in rad/s; zeros for a pin."""
     if isinstance(body, DiscOnDisc):
         return body.polar_inertia, body.shaft_damping, body.shaft_speed
     return 0.0, 0.0, 0.0
 
 
 def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return times (n,), states (n, 4 or 6) and the integrals of :func:`_rates` since the start (n, 6)."""
+    """Return times (n,), states (n, 4 or 6) and the integrals of :func:`_rates` (n, 6)."""
     times, states, integrals = [], [], []
     total = np.zeros(6)
     for kind, t, state in _spans(trajectory):
@@ -124,7 +121,7 @@ def _integrals(trajectory: Trajectory, law: Contact) -> tuple[FloatArray, FloatA
 
 
 def _rates(trajectory: Trajectory, law: Contact, kind: str, state: FloatArray) -> FloatArray:
-    """Return friction power, |v|², r×v, C·y, φ̇ − Ω and its square for the states of a phase, shape (n, 6)."""
+    """Return friction power, |v|², r×v, C·y, φ̇ − Ω and its square in a phase, shape (n, 6)."""
     body = trajectory.system
     omega, X0 = body.disc_speed, body.offset
     _, b, Omega = _shaft_of(body)
@@ -144,12 +141,10 @@ def _rates(trajectory: Trajectory, law: Contact, kind: str, state: FloatArray) -
 
 
 def _of_deflection(function: Callable[[float], float], w: ComplexArray) -> FloatArray:
-    """Return a function of the support at deflections from (X0, 0), shape (n,)."""
     return np.array([function(d) for d in abs(w).tolist()])
 
 
 def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, ComplexArray, FloatArray]:
-    """Return position z, angle φ, velocity ż and spin φ̇, each (n,); angle and spin of a pin are zero."""
     places, velocities = np.split(state, 2, axis=1)
     z, v = (pair[:, 0] + 1j * pair[:, 1] for pair in (places, velocities))
     if isinstance(body, DiscOnDisc):
@@ -158,7 +153,7 @@ def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, 
 
 
 def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return the mean slip speed of the contact from the power of its friction, shape (n,)."""
+    """Return the mean slip speed from the power of friction, shape (n,)."""
     result = np.empty(len(u))
     for i, (slip, spin, phi) in enumerate(
         zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
@@ -182,7 +177,6 @@ def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:
 
 
 def _integral(t: FloatArray, rates: FloatArray) -> FloatArray:
-    """Return the integrals of ``rates``, shape (n, k), from ``t[0]``."""
     # A spline needs an odd degree and more samples than that.
     degree = min(SPLINE_DEGREE, (len(t) - 2) // 2 * 2 + 1)
     antiderivative = make_interp_spline(t - t[0], rates, k=degree).antiderivative()

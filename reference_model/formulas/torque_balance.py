@@ -1,10 +1,10 @@
 """All solutions of the force and moment balances of a disc in steady motion.
 
-Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio its
-force μN·F and its moment μN·M are known, which leaves one equation whose zeros are sought over all ratios.
+Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio
+force μN·F and moment μN·M are known, which leaves one equation to solve over all ratios.
 
-Two facts narrow the search. The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the
-sign of S. And M grows with W : U for every friction law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
+The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the sign of S. M grows with W : U
+for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
 """
 
 from __future__ import annotations
@@ -24,21 +24,20 @@ OfRatio = Callable[[float, float], float]
 """A function of slip and rim speed >= 0 that depends only on their ratio."""
 
 NO_SLIP = 1e-30
-"""Smallest ratio of slip to rim speed; the quotient then takes its limit."""
+"""Ratio of slip to rim speed below which the quotient takes its limit."""
 
 ROUNDING = 8.0 * sys.float_info.epsilon
 """Relative residual of a balance that rounding may cause."""
 
 
 def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
-    """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact.
+    """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact, by increasing W : U.
 
-    They come by increasing W : U. Nothing is yielded if every position or every spin is an equilibrium.
+    Nothing is yielded if every position or every spin is an equilibrium.
 
     Friction acts across the radius, so springs with the deflection d must pull by μN·F at a right angle to it: ρ² +
-    d² = X0², where d = μN·F/C on a linear support. With U = |ω|ρ, the length m = b|ω − Ω|/μN and tan α = W/U, the
-    torsional balance gives U = (μN·R/b)(m − M)/tan α, which leaves the zeros of (μN·R/(b|ω|)·(m − M)·cos α)² + (d² −
-    X0²)·sin² α.
+    d² = X0². With U = |ω|ρ, m = b|ω − Ω|/μN and tan α = W/U, the torsional balance gives U = (μN·R/b)(m − M)/tan α,
+    which leaves the zeros of (μN·R/(b|ω|)·(m − M)·cos α)² + (d² − X0²)·sin² α.
     """
     load, offset, torque = disc.friction_force, abs(disc.offset), shaft_torque(disc)
     speed, radius = abs(disc.disc_speed), disc.contact_radius
@@ -48,7 +47,7 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
             yield complex(disc.offset), disc.shaft_speed
         return
     if speed == 0.0 or support.pull(offset) == 0.0:
-        # Without a spring force friction is zero too: the centre does not slip.
+        # There is no friction without a spring force, so the centre does not slip.
         to_shaft = torque - load * contact.shares(0.0, 1.0).moment
         if to_shaft > 0.0 and (speed > 0.0 or support.centring):
             place = complex(disc.offset) if speed == 0.0 else 0j
@@ -66,7 +65,7 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
         deflection = support.deflection(load * resistance)
         return _difference(from_shaft**2, (offset - deflection) * (offset + deflection) * rim**2)
 
-    # If the shaft exerts no moment the disc does not spin relative to the master disc.
+    # The disc has no relative spin without a moment of the shaft.
     ratios = (
         [(1.0, 0.0)]
         if torque == 0.0
@@ -76,8 +75,7 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
         resistance, moment = at(slip, rim)
         deflection, spare_moment = support.deflection(load * resistance), largest_moment - moment
         squared_place = (offset - deflection) * (offset + deflection)
-        # U and W have the ratio slip : rim by both balances. Their size comes from the balance that keeps more
-        # digits.
+        # The size comes from the balance that keeps more digits.
         if spare_moment * offset**2 > squared_place * largest_moment:
             size = load * radius / disc.shaft_damping * spare_moment / rim
         else:
@@ -91,16 +89,15 @@ def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[t
 def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float, float]]:
     """Yield radius in m and spin in rad/s of all whirls of a disc without offset, the largest first.
 
-    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN, except pure spin, the onset. On a
-    nonlinear support the circle and the centre's slip are not proportional to the load, and the arm is that of this
-    load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
+    They solve :func:`reference_model.formulas.disc.whirl_arm` = b|ω − Ω|/μN; on a nonlinear support the arm depends
+    on the load. Raises ``ValueError`` if :func:`whirl_arm` does, or without damping or friction.
     """
     pin = pin_of(disc)
     require_drive(pin)
     speed, needed = abs(disc.disc_speed), shaft_torque(disc) / disc.friction_force
 
     def circle(resistance: float) -> tuple[float, float]:
-        """Return the radius at this share of friction, and the speed of the master disc relative to the centre."""
+        """Return the radius at this share of friction, and the slip speed of the centre."""
         radius = driven_radius(pin, disc.friction_force * resistance)
         return radius, (speed - circling_speed(pin, radius)) * radius
 
@@ -119,28 +116,27 @@ def circles(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[float
 
 
 def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
-    """Return the infimum of the loads in N with whirls, see :func:`circles`."""
+    """Return the smallest load in N with a whirl."""
     arm = whirl_arm(disc, contact)
     halves = (lambda q: arm(1.0, q)), (lambda q: arm(q, 1.0))
     return shaft_torque(disc) / max(largest_between(half, 0.0, 1.0) for half in halves)
 
 
 def _difference(one: float, other: float) -> float:
-    """Return one − other, or zero within rounding, which would otherwise count as several solutions."""
+    """Return one − other, but zero within rounding, which would otherwise count as several solutions."""
     difference = one - other
     return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
 
 
 def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
-    """Return φ̇ for |S|: S has the sign of ω − Ω."""
     return disc.disc_speed - math.copysign(relative_spin, disc.disc_speed - disc.shaft_speed)
 
 
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
-    """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip.
+    """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip, where ``allowed`` >= 0.
 
-    The search covers the ratios with ``allowed`` >= 0, which extend up to one ratio. The larger of slip and rim is 1,
-    so the ratio keeps its relative accuracy. The two halves meet where the friction of a ring has a kink.
+    The larger of slip and rim is 1, which keeps the relative accuracy. The two halves meet at the kink of a ring's
+    friction.
     """
     end = 1.0 if allowed(1.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(1.0, q), 0.0, 1.0)
     for q in zeros_between(lambda q: balance(1.0, q), 0.0, end):
@@ -148,5 +144,5 @@ def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterat
     if end == 1.0:
         end = 0.0 if allowed(0.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(q, 1.0), 0.0, 1.0)
         for q in reversed(zeros_between(lambda q: balance(q, 1.0), end, 1.0)):
-            if q < 1.0:  # q = 1 was found in the first half
+            if q < 1.0:
                 yield q, 1.0

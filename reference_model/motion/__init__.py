@@ -1,1 +1,1 @@
-"""Event-driven simulation: equations of motion, slip, stick, and the transitions between them."""
+"""Event-driven simulation of slip and stick."""

@@ -22,7 +22,7 @@ from reference_model.motion.stick import can_hold, release_delay, slip_direction
 from reference_model.systems import FloatArray
 
 CREEP = 1e-6
-"""Largest distance and slip speed, in scaled units, of creep that is followed in closed form."""
+"""Largest distance and slip speed, in scaled units, of creep in closed form."""
 
 ERROR = 0.01
 """Largest error of that distance, as a share of the local tolerance."""
@@ -52,15 +52,13 @@ class Creep:
 
     @property
     def way_left(self) -> float:
-        """Distance that the contact still slides until its slip has decayed."""
+        """Slip distance that remains."""
         return sum(size / rate for size, rate in (self.slow, self.fast))
 
     def slip(self, delays: FloatArray) -> FloatArray:
-        """Return the slip speed after ``delays``, shape (n,)."""
         return np.asarray(sum(size * np.exp(-rate * delays) for size, rate in (self.slow, self.fast)))
 
     def way(self, delays: FloatArray) -> FloatArray:
-        """Return the distance covered in ``delays``, shape (n,)."""
         return np.asarray(
             sum(size / rate * -np.expm1(-rate * delays) for size, rate in (self.slow, self.fast))
         )
@@ -76,7 +74,6 @@ class Body(ABC):
         self.autonomous = centre.disc_speed == 0.0 or centre.support.offset == 0.0
 
     def go(self, y: list[float]) -> tuple[float, list[float]]:
-        """Run from the unknowns ``y`` at t = 0; return the final time and unknowns."""
         run, t = self.run, 0.0
         run.record(t, lambda _: np.array([y]).T)
         self.begin(y)
@@ -85,7 +82,6 @@ class Body(ABC):
         return t, y
 
     def begin(self, y: list[float]) -> None:
-        """Enter the first phase."""
         stuck = self.sticky and self.coordinates.speed(y) == 0.0 and self.holds_for(y) > 0.0
         self.run.enter("stick" if stuck else "slip", 0.0, y)
 
@@ -100,13 +96,11 @@ class Body(ABC):
         return self.begin_to_slip(t, y)
 
     def slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow slip as long as its description is valid."""
         slowly = self.sticky and self.coordinates.speed(y) < self.coordinates.slow(y)
         end = (slide_slowly if slowly else slide)(self.run, self.coordinates, t, y, self.leave)
         return end.t, end.y
 
     def leave(self, y: list[float]) -> bool:
-        """Return whether slip needs another description from ``y`` on."""
         return self.creeping(self.coordinates, y) is not None
 
     def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
@@ -123,7 +117,6 @@ class Body(ABC):
         directions = [b - c for b, c in zip(moving[:-d], resting[:-d], strict=True)]
 
         def next_to_rest(way: float) -> list[float]:
-            """Return the unknowns after a distance along n, with almost no slip."""
             there = [a + way * b for a, b in zip(y[:-d], directions, strict=True)]
             return [*there, *[LEAST_SLIP * part for part in n]]
 
@@ -140,7 +133,7 @@ class Body(ABC):
         end = next_to_rest(creep.way_left)
         if motion.grip is not None and motion.grip(end) <= 0.0:
             return None
-        # Friction must hold the body where slip ends: almost no excess may be left there.
+        # Friction must hold the body where slip ends.
         left = abs(growth_at(end) / excess)
         return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
 
@@ -178,8 +171,7 @@ class Body(ABC):
     def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
         """Return the unknowns of a creeping body after ``delays``, shape (unknowns, n).
 
-        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are slip and distance as multiples of
-        the slip of ``y``.
+        The direction of slip is fixed on the master disc. ``slip`` and ``way`` are in units of the slip of ``y``.
         """
 
     @abstractmethod
@@ -224,7 +216,7 @@ class PinBody(Body):
         return np.array((z.real, z.imag, w.real, w.imag))
 
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`Body.begin_to_slip`; on a linear support by the series as long as it is accurate."""
+        """Like :meth:`Body.begin_to_slip`; on a linear support by the series while it is accurate."""
         run = self.run
         if not self.motion.support.linear:
             pull, omega = self.motion.pull(complex(y[0], y[1]), 0j), self.motion.disc_speed
@@ -232,7 +224,7 @@ class PinBody(Body):
             drift = -omega * y[1], omega * y[0]
             return begin_slip(run, self.coordinates, t, y[:2], drift, direction, self.leave)[:2]
         start = slip_from_rest(self.motion, complex(y[0], y[1]), tolerance=run.thresholds.series)
-        run.evaluations += len(start.positions)  # each order costs about one evaluation of the pull
+        run.evaluations += len(start.positions)
         stop = t + min(start.duration, start.rest)
         end = min(stop, run.end)
 
@@ -288,16 +280,13 @@ class DiscBody(Body):
         drift: Sequence[float],
         direction: FloatArray,
     ) -> tuple[float, list[float]]:
-        """Follow slip from rest in given coordinates; return time and standard unknowns."""
         end = begin_slip(self.run, coordinates, t, own, drift, direction, self.leaving(coordinates))
         return end.t, coordinates.standard(np.array([end.y]).T)[:, 0].tolist()
 
     def leaving(self, motion: Coordinates) -> Leave:
-        """Return the predicate whether slip needs another description."""
         return self.leave
 
     def drift(self, y: Sequence[float]) -> tuple[float, float, float]:
-        """Return the rates of x, y and φ of a disc that turns with the master disc."""
         omega = self.motion.centre.disc_speed
         return -omega * y[1], omega * y[0], omega
 

@@ -1,9 +1,8 @@
 """Equations of motion of the friction disc: eq. 19 to 21 for the relative velocities.
 
-The centre moves like a pin, with a force that also depends on the spin. The third component of the slip is r = κ(φ̇ −
-ω) with the radius of gyration κ = √(J/m). In (u, r), u = ż − iωz, the relative kinetic energy is m/2 times the
-squared length, so the length measures the slip of the whole disc. Friction is the gradient of −(μN/m)·P(u, S), with
-the mean slip speed P.
+The third component of the slip is r = κ(φ̇ − ω) with the radius of gyration κ = √(J/m). In (u, r), u = ż − iωz, the
+relative kinetic energy is m/2 times the squared length, and friction is the gradient of −(μN/m)·P(u, S), with the
+mean slip speed P.
 """
 
 from __future__ import annotations
@@ -24,9 +23,8 @@ from reference_model.systems import DiscOnDisc
 class DiscMotion:
     """Eq. 19 divided by the mass, for the unknowns x, y, φ, u_x, u_y, r.
 
-    ``centre`` contains the equations for a pin at the centre, with ``friction`` g = μN/m; ``gyration`` is κ =
-    √(J/m) in m, ``shaft_rate`` b/J in 1/s, and ``lag`` κ(ω − Ω) in m/s. ``length`` is the unit of length of these
-    parameters, in the unit of length of ``contact``.
+    ``centre`` contains the equations of a pin at the centre; ``gyration`` is κ in m, ``shaft_rate`` b/J in 1/s, and
+    ``lag`` κ(ω − Ω) in m/s. ``length`` is their unit of length in that of ``contact``.
     """
 
     centre: SlipMotion
@@ -38,7 +36,6 @@ class DiscMotion:
 
     @classmethod
     def of(cls, disc: DiscOnDisc, contact: Contact) -> DiscMotion:
-        """Return the equations of motion of ``disc`` with the friction law ``contact``."""
         gyration = math.sqrt(disc.polar_inertia / disc.mass)
         return cls(
             SlipMotion.of(disc),
@@ -49,7 +46,7 @@ class DiscMotion:
         )
 
     def rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, u_x, u_y, r; at rest, where friction is set-valued, without friction."""
+        """Return the rates of x, y, φ, u_x, u_y, r; without friction at rest."""
         x, y, angle, ux, uy, r = unknowns
         omega, g = self.centre.disc_speed, self.centre.friction
         u = ux + 1j * uy
@@ -60,7 +57,6 @@ class DiscMotion:
 
     @cached_property
     def at_once(self) -> DiscMotion:
-        """The vectorised equations, for arrays of shape (k,)."""
         return replace(self, contact=cast(Contact, at_once(self.contact)))
 
     def lead_over_rim(self, radius: float, unknowns: Sequence[float]) -> float:

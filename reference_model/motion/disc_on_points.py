@@ -1,8 +1,7 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
-A point that comes to rest while the disc turns about it stays at rest as long as the required friction does not
-exceed its share. In this pivot phase it has one degree of freedom (:mod:`reference_model.motion.pivot`). If two
-points rest, the whole disc sticks.
+A point that comes to rest while the disc turns about it stays at rest as long as its share of friction suffices: a
+pivot phase (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 """
 
 from __future__ import annotations
@@ -26,7 +25,6 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 from reference_model.systems import FloatArray
 
 SAMPLES_PER_TURN = 360
-"""Samples per turn of the margin of a stuck disc."""
 
 
 class PointsBody(DiscBody):
@@ -70,7 +68,7 @@ class PointsBody(DiscBody):
         return t, y
 
     def _rest(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Bring the disc to rest as a whole, so slow that the order of its points is irrelevant."""
+        """Bring the disc to rest as a whole; it is so slow that the order of its points does not matter."""
         rates = self.coordinates.rates(y)
         speed = self.coordinates.speed(y)
         falling = -sum(a * b for a, b in zip(y[3:], rates[3:], strict=True)) / speed
@@ -79,7 +77,6 @@ class PointsBody(DiscBody):
         return t + speed / falling, come_to_rest(self.run, self.coordinates, t, speed / falling, y)
 
     def leave(self, y: list[float]) -> bool:
-        """Like :meth:`DiscBody.leave`; also if a single point becomes slow."""
         return super().leave(y) or (self.sticky and self._slow_point(y) is not None)
 
     def leaving(self, motion: Coordinates) -> Leave:
@@ -92,7 +89,7 @@ class PointsBody(DiscBody):
         return lambda own: whole(motion.standard(np.array([own]).T)[:, 0].tolist())
 
     def _slow_point(self, y: Sequence[float]) -> int | None:
-        """Return the point that slips slowly and decelerates, or rests; None if there is none."""
+        """Return the point that slips slowly and decelerates, or rests."""
         u, turning = complex(y[3], y[4]), 1j * y[5] / (self.motion.gyration * self.motion.length)
         speeds = [abs(u + turning * arm) for arm in self.contact.arms(y[2])]
         slowest = min(speeds)
@@ -112,7 +109,6 @@ class PointsBody(DiscBody):
         return [*y[:3], y[5], v.real, v.imag]
 
     def _rest_on(self, i: int, t: float, y: Sequence[float]) -> bool:
-        """Make point ``i`` the pivot if its friction suffices; return whether it does."""
         holds = self.points[i].grip([*y[:3], y[5]]) > 0.0
         if holds:
             self.pivot = i
@@ -120,7 +116,6 @@ class PointsBody(DiscBody):
         return holds
 
     def _turn_about(self, i: int, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow the rotation about point ``i`` until its friction no longer suffices or the disc rests."""
         motion, own = self.pivoting[i], [*y[:3], y[5]]
         creep = self.creeping(motion, own)
         if creep is not None:
@@ -137,7 +132,7 @@ class PointsBody(DiscBody):
         return end.t, y
 
     def _slip_from(self, i: int, t: float, y: Sequence[float]) -> tuple[float, list[float]]:
-        """Follow point ``i`` as it slips from rest, unless the disc stops before the slip matters."""
+        """Follow point ``i`` as it slips from rest, unless the disc stops before that matters."""
         own = [*y[:3], y[5]]
         point = self.points[i]
         if point.gain(own) < self._least_speed:
@@ -156,7 +151,7 @@ class PointsBody(DiscBody):
         return forces / centre.friction, moment / centre.friction
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """Like :meth:`DiscBody.holds_for`: up to the first root of the margin within one turn."""
+        """Like :meth:`DiscBody.holds_for`, up to the first root of the margin within one turn."""
         centre = self.motion.centre
 
         def margin(delay: float) -> float:
@@ -165,16 +160,15 @@ class PointsBody(DiscBody):
         if margin(0.0) < -ROUNDING:
             return 0.0
         if centre.disc_speed == 0.0 or centre.support.offset == 0.0:
-            return math.inf  # relative to the disc, nothing turns
+            return math.inf
         delays = np.linspace(0.0, 2.0 * math.pi / abs(centre.disc_speed), SAMPLES_PER_TURN + 1)
         margins = self.limit.margins(*self._share(y, delays))
         if margins[0] < ROUNDING and margin(1e-6 * delays[1]) < margins[0]:
-            return 0.0  # already at the limit
+            return 0.0
         for k in range(1, SAMPLES_PER_TURN + 1):
             given_way = float(delays[k])
             if margins[k] >= 0.0:
-                # Next to a local minimum of the samples the margin may dip by as much as it changes to the next
-                # samples.
+                # Near a local minimum the margin may dip by as much as it changes to the next samples.
                 around = margins[k - 1 : k + 2]
                 if margins[k] > around.min() or margins[k] > np.ptp(around):
                     continue
@@ -190,7 +184,6 @@ class PointsBody(DiscBody):
         return math.inf
 
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Like :meth:`DiscBody.begin_to_slip`: the disc slips, or pivots about one of its points."""
         pivot = self._pivot_of(y)
         if pivot is None:
             return super().begin_to_slip(t, y)
@@ -210,9 +203,9 @@ class PointsBody(DiscBody):
         return None
 
     def direction(self, y: Sequence[float]) -> FloatArray:
-        """Like :meth:`DiscBody.direction`: normal to the limit surface.
+        """Like :meth:`DiscBody.direction`, normal to the limit surface.
 
-        If friction is exceeded it is the minimiser of ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
+        If friction is exceeded it minimises ½q² + g·P(q) − a·q, where a − g∇P(q) = q.
         """
         forces, moment = self._share(y)
         if self.limit.margins(forces, moment)[0] > -GRAZING:

@@ -1,10 +1,8 @@
 """Event-driven simulation of pin and disc with set-valued Coulomb friction.
 
-- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`). A disc has three
-  components of slip: two of its centre and one of its rim.
-- An implicit method takes over for stiff slip (:mod:`.slip.stiff`). Slip that decays forever ends in closed form
-  (:mod:`.bodies`).
-- In stick, pin and disc turn with the master disc up to the first root of eq. 7 (:mod:`.stick`).
+- Fast slip is integrated directly, slow slip in slip-polar coordinates (:mod:`.slip.slide`), and stiff slip by an
+  implicit method (:mod:`.slip.stiff`). Slip that decays forever ends in closed form (:mod:`.bodies`).
+- In stick, the body turns with the master disc up to the first root of eq. 7 (:mod:`.stick`).
 - The slip of a pin begins with a series (:func:`.stick.slip_from_rest`), that of a disc by collocation
   (:mod:`.slip.breakaway`).
 - A disc on single points may also pivot about a resting point (:mod:`.disc_on_points`).
@@ -55,7 +53,7 @@ def simulate_with(
 ) -> Trajectory:
     """Simulate like :func:`reference_model.simulate`, with explicit thresholds.
 
-    If a slip phase has lasted ``slipping`` s the motion ends, possibly before the end of ``times``.
+    The motion ends early if a slip phase has lasted ``slipping`` s.
     """
     clock = time.perf_counter()
     state = checked_state(system, initial_state)
@@ -112,10 +110,10 @@ def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Un
 
 @dataclass(frozen=True)
 class _Frame:
-    """Conversion between states in SI units and scaled unknowns relative to the turning master disc.
+    """Conversion between states in SI units and scaled unknowns relative to the master disc.
 
-    ``lengths`` are the units of the positions, shape (2,) or (3,): m, and rad for the angle. ``speeds`` are those of
-    the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
+    ``lengths``, shape (2,) or (3,), are the units of the positions in m, and of the angle in rad. ``speeds`` are
+    those of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
     """
 
     disc_speed: float
@@ -124,7 +122,6 @@ class _Frame:
 
     @classmethod
     def of(cls, system: System, unit: Units) -> _Frame:
-        """Return the frame of ``system``."""
         lengths, speeds = [unit.length] * 2, [unit.speed] * 2
         if isinstance(system, DiscOnDisc):
             lengths.append(1.0)
@@ -144,7 +141,6 @@ class _Frame:
         return [*(place / self.lengths).tolist(), *(relative / self.speeds).tolist()]
 
     def states(self, unknowns: FloatArray) -> FloatArray:
-        """Return the states, (4 or 6,) or (n, 4 or 6), for ``unknowns`` of the same shape."""
         place, relative = np.split(unknowns, 2, axis=-1)
         place = place * self.lengths
         return np.concatenate((place, relative * self.speeds + self._carried(place)), axis=-1)

@@ -20,17 +20,15 @@ class Units:
 
     @property
     def speed(self) -> float:
-        """Unit of speed in m/s."""
         return self.length / self.time
 
     @classmethod
     def of(cls, system: System, state: FloatArray) -> Units:
         """Return the units for the motion of ``system`` from ``state``.
 
-        Time is scaled by the faster of springs and master disc; without them by the dampers, and without dampers by
-        the decay of slip. Length is scaled by the motion of the centre, because a fast spin must not hide it.
-        Hardening and a stop shorten both units by the same factor if the motion may reach them, which leaves the unit
-        of speed unchanged.
+        Time is scaled by the faster of springs and master disc, or by the dampers, or by the decay of slip. Length is
+        scaled by the motion of the centre, because a fast spin must not hide it. Hardening and a stop shorten both
+        units by the same factor if the motion may reach them.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass
@@ -49,20 +47,19 @@ class Units:
             # The largest deflection that the speed or friction can cause.
             reach = max(place, support.circle(speed**2), support.deflection(friction))
             hard = math.sqrt(support.tangent(reach)) if reach < math.inf else 0.0
-        if rate == 0.0:  # free on a disc at rest
+        if rate == 0.0:
             rate = hard or (friction / slip if friction > 0.0 < slip else 1.0)
         length = max(place, speed / rate, friction / rate**2)
         faster = max(hard / rate, 1.0)
         return cls((length if length > 0.0 else 1.0) / faster, 1.0 / (faster * rate))
 
     def springs(self, system: System) -> float:
-        """Return the natural frequency of linear springs in these units; 1 without springs or with nonlinear ones."""
+        """Return the natural frequency of linear springs in these units; else 1."""
         if system.stiffness == 0.0 or not Support.of(system).linear:
             return 1.0
         return system.natural_frequency * self.time
 
     def of_pin(self, motion: SlipMotion) -> SlipMotion:
-        """Return the equations of motion of a pin, or of a disc's centre, in these units."""
         return SlipMotion(
             damping=motion.damping * self.time,
             support=motion.support.scaled(self.time**2, self.length),
@@ -71,7 +68,6 @@ class Units:
         )
 
     def of_disc(self, motion: DiscMotion) -> DiscMotion:
-        """Return the equations of motion of a disc in these units."""
         return DiscMotion(
             centre=self.of_pin(motion.centre),
             gyration=motion.gyration / self.length,

@@ -1,7 +1,6 @@
 """Equations of motion of the pin on the rotating disc: eq. 1, and eq. 10 as a second formulation.
 
-The plane is complex, z = x + iy. A point fixed on the disc moves with iωz, so the slip velocity is w = ż − iωz, and
-the right-hand side of eq. 1 is −μN·w/|w|.
+The plane is complex, z = x + iy. A point of the disc moves with iωz, so the slip velocity is w = ż − iωz.
 """
 
 from __future__ import annotations
@@ -33,7 +32,6 @@ class SlipMotion:
 
     @classmethod
     def of(cls, system: System) -> SlipMotion:
-        """Return the equations of motion of a pin, or of the centre of a disc."""
         return cls(
             system.damping / system.mass,
             Support.of(system).scaled(1.0 / system.mass),
@@ -42,14 +40,11 @@ class SlipMotion:
         )
 
     def pull(self, z: complex, w: complex) -> complex:
-        """Return a(z, w), the relative acceleration without friction, in m/s².
-
-        This is the acceleration by support and damper minus d(iωz)/dt = iωż.
-        """
+        """Return a(z, w), the acceleration by support and damper minus d(iωz)/dt = iωż, in m/s²."""
         carried, drag = self._factors
         return self.support.force(z) - drag * (w + carried * z)
 
-    @cached_property  # needed by every evaluation
+    @cached_property
     def _factors(self) -> tuple[complex, complex]:
         return 1j * self.disc_speed, self.damping + 1j * self.disc_speed
 
@@ -59,8 +54,7 @@ def simulate_polar_form(
 ) -> FloatArray:
     """Integrate eq. 10, the polar form of eq. 1, through pure slip; return x, y, vx, vy, shape (n, 4).
 
-    It cannot stick, and it is singular at the centre. ``initial_state`` is x, y, vx, vy at ``times[0]``, away from
-    the centre; ``tolerance`` is at least SciPy's smallest. Raises ``ValueError`` if the support is not linear, and
+    It cannot stick, and it is singular at the centre. Raises ``ValueError`` if the support is not linear, and
     ``RuntimeError`` if the integrator fails.
     """
     require_linear_support(pin)

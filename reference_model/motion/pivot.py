@@ -1,9 +1,9 @@
 """A disc on single points that turns about one of them, which slips slowly or rests.
 
-The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. All other points follow:
-v_j = v + i(r/κ)(a_j − a_i) with the arms a. So v keeps its relative accuracy down to zero. The point accelerates by B
-+ Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
-slip λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, as long as this is at most gq.
+The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. So v keeps its relative
+accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point accelerates by B +
+Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In slip
+λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, up to gq.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ CLOSE = 0.25
 
 @dataclass(frozen=True)
 class OnePoint:
-    """Equations of motion of a disc in the coordinates of its contact point number ``point``."""
+    """Equations of motion of a disc in the coordinates of its contact point ``point``."""
 
     motion: DiscMotion
     contact: Points
@@ -37,7 +37,6 @@ class OnePoint:
 
     @property
     def at_once(self) -> OnePoint:
-        """The vectorised equations, for arrays of shape (k,)."""
         motion = self.motion.at_once
         return OnePoint(motion, cast(Points, motion.contact), self.point)
 
@@ -47,7 +46,6 @@ class OnePoint:
         return self.motion.centre.friction * self.contact.shares[self.point]
 
     def arm(self, angle: float) -> complex:
-        """Return the arm of the point at the disc's ``angle``."""
         return self.contact.arm(self.point, angle) / self.motion.length
 
     @property
@@ -56,12 +54,11 @@ class OnePoint:
         return max(1.0, abs(self.arm(0.0)) / self.motion.gyration)
 
     def velocity(self, unknowns: Sequence[float]) -> complex:
-        """Return the slip velocity of the point for the standard unknowns of the disc."""
         _, _, angle, ux, uy, r = unknowns
         return complex(ux, uy) + 1j * r / self.motion.gyration * self.arm(angle)
 
     def slipping_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, r, v_x, v_y; if the point rests, without its own friction."""
+        """Return the rates of x, y, φ, r, v_x, v_y, at v = 0 without the point's own friction."""
         v = unknowns[4] + 1j * unknowns[5]
         carried, spin_up, arm, free = self._without_friction(unknowns, v)
         friction = -self.most * (v / (abs(v) + NONE))
@@ -70,7 +67,6 @@ class OnePoint:
         return (*carried, spin_up + torque, acceleration.real, acceleration.imag)
 
     def pivoting_rates(self, unknowns: Sequence[float]) -> tuple[float, ...]:
-        """Return the rates of x, y, φ, r while the point rests."""
         carried, spin_up, arm, free = self._without_friction(unknowns, 0j)
         torque = (arm.conjugate() * self._holding(arm, free)).imag / self.motion.gyration
         return (*carried, spin_up + torque)
@@ -83,7 +79,7 @@ class OnePoint:
     def leaving(self, unknowns: Sequence[float]) -> FloatArray:
         """Return the direction of the incipient slip, a unit vector e with B − gq·G·e = c·e, c >= 0.
 
-        Its components along and across the arm are B_∥/(c + gq) and B_⊥/(c + gq·(1 + |a|²/κ²)).
+        Along and across the arm it is B_∥/(c + gq) and B_⊥/(c + gq·(1 + |a|²/κ²)).
         """
         _, _, arm, free = self._without_friction(unknowns, 0j)
         axis = arm / abs(arm) if arm != 0.0 else 1.0 + 0j
@@ -100,11 +96,11 @@ class OnePoint:
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
-        """Return the relative margin of the point's friction over the friction required to hold it."""
+        """Return the relative margin of the point's friction over that required to hold it."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
-        """Return the slip speed that the point would gain, for lack of friction, until the disc rests, or inf."""
+        """Return the slip speed that a point without enough friction gains before the disc rests, or inf."""
         r = unknowns[3]
         falling = -math.copysign(1.0, r) * self.pivoting_rates(unknowns)[3]
         if falling <= 0.0:
@@ -116,7 +112,6 @@ class OnePoint:
         return lacking * self.most * left * math.hypot(1.0, leverage)
 
     def slipping(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates for slip of the point."""
         slow = thresholds.slow_slip * self.most
         passing = CLOSE * self.contact.spacing(self.point) / self.motion.length / self.motion.gyration
 
@@ -127,7 +122,6 @@ class OnePoint:
         return Coordinates(self.slipping_rates, many, 2, slow_slip, turning=3, **self._common)
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
-        """Return the coordinates of the disc that turns about the resting point, with the slip r."""
         slow, many = thresholds.slow_slip * self.motion.centre.friction, self.at_once.pivoting_rates
         return Coordinates(
             self.pivoting_rates,
@@ -145,7 +139,6 @@ class OnePoint:
         return {"pace": self.motion.pace, "standard": self._standard, "angle": 2, "surfaces": surfaces}
 
     def _standard(self, unknowns: FloatArray) -> FloatArray:
-        """Return the standard unknowns of the disc, shape (6, n), for these, shape (4 or 6, n)."""
         x, y, angle, r = unknowns[:4]
         v = unknowns[4] + 1j * unknowns[5] if len(unknowns) == 6 else 0.0
         u = v - 1j * r / self.motion.gyration * self.arm(0.0) * np.exp(1j * angle)
@@ -158,7 +151,7 @@ class OnePoint:
     def _without_friction(
         self, unknowns: Sequence[float], v: complex
     ) -> tuple[tuple[float, float, float], float, complex, complex]:
-        """Return the rates of x, y, φ, the rate of r, the arm and B, all without the friction of this point."""
+        """Return the rates of x, y, φ and r, the arm and B, without the friction of this point."""
         x, y, angle, r = unknowns[:4]
         motion, kappa = self.motion, self.motion.gyration
         omega, g = motion.centre.disc_speed, motion.centre.friction

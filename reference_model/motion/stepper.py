@@ -1,4 +1,4 @@
-"""The state of a running simulation: thresholds, records, and the steps of its integrators."""
+"""Thresholds, records, and steps of a running simulation."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from reference_model.trajectory import SimulationError, StepCount
 
 Kind = Literal["slip", "pivot", "stick"]
 Sampler = Callable[[FloatArray], FloatArray]
-"""Takes times (n,) and returns the motion at them, shape (unknowns, n)."""
+"""Takes times (n,) and returns the motion, shape (unknowns, n)."""
 
 STABLE = 3.0
-"""Step times largest decay rate where stability begins to limit DOP853; the limit is 6."""
+"""Product of step and largest decay rate where stability begins to limit DOP853; the limit is 6."""
 
 STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Change of slip (relative) plus time (in T) of the longest short step."""
+"""Largest relative change of slip plus scaled time of a short step."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
@@ -56,21 +56,21 @@ class StepError(SimulationError):
 
 @dataclass(frozen=True)
 class Thresholds:
-    """Thresholds between descriptions of the motion; results must not depend on them.
+    """Thresholds between descriptions of the motion; results do not depend on them (tested).
 
     Parameters
     ----------
     slow_slip
-        Upper limit of slow slip, in g·T (T: unit of time), which is described in slip-polar coordinates.
+        Upper limit of slow slip, which uses slip-polar coordinates, in units of g·T with the unit T of time.
     stretching
         s₀ of the stretched time as a multiple of ``slow_slip``.
     rest_time
         Largest error in T of the closed form for the time of coming to rest.
     reversal_slip
-        Slip speed, in units of length per T, below which slip that friction cannot hold counts as reversed.
+        Scaled slip speed below which slip that friction cannot hold counts as reversed.
     common_rest
-        Slip speed, in units of length per T, below which all points of a disc rest together, and which a point at
-        rest must be able to gain before the disc rests in order to slip.
+        Scaled slip speed below which all points of a disc rest together. A point slips from rest only if it can gain
+        this speed before the disc rests.
     series
         Size of the last terms of the initial series of slip.
     safety
@@ -89,11 +89,10 @@ class Thresholds:
 
 @dataclass
 class Run:
-    """A simulation from t = 0 on, in scaled times and unknowns.
+    """A simulation from t = 0 on, in scaled times and unknowns, half of them relative velocities.
 
-    ``times``, shape (n,), are the requested times, the first of them 0. Half of the ``unknowns`` are relative
-    velocities. ``seconds`` converts a scaled time to s, ``tolerance`` is the requested one, and ``springs`` the
-    natural frequency in 1/T. The run ends if a slip phase lasts for ``slipping``.
+    ``times``, shape (n,), are the requested times, the first of them 0. ``seconds`` converts a scaled time to s, and
+    ``springs`` is the natural frequency in 1/T. The run ends if a slip phase lasts for ``slipping``.
     """
 
     times: FloatArray
@@ -104,10 +103,10 @@ class Run:
     springs: float
     slipping: float = math.inf
     motion: FloatArray = field(init=False)
-    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)  # kind, start, unknowns
+    phases: list[tuple[Kind, float, FloatArray]] = field(default_factory=list)
     evaluations: int = 0
     patience: int = PATIENCE
-    recorded: int = 0  # number of times
+    recorded: int = 0
 
     def __post_init__(self) -> None:
         self.motion = np.empty((len(self.times), self.unknowns))
@@ -118,11 +117,10 @@ class Run:
 
     @property
     def steps(self) -> int:
-        """Number of steps taken."""
         return self._count.steps
 
     def enter(self, kind: Kind, t: float, y: Sequence[float] | FloatArray) -> None:
-        """Begin a phase of this kind, unless it is the current kind."""
+        """Begin a phase unless it is of the current kind."""
         if not self.phases or self.phases[-1][0] != kind:
             self.phases.append((kind, t, np.array(y)))
             self.end = min(t + (self.slipping if kind == "slip" else math.inf), float(self.times[-1]))
@@ -140,7 +138,6 @@ class Run:
             )
 
     def count_step(self, since: float) -> None:
-        """Count one more step, from ``since``; raise ``SimulationError`` if there are or will be too many."""
         if too_many := self._count.count(since):
             raise SimulationError(
                 f"stopped at t = {self.seconds(since):g} s because {too_many}: the parameters are very stiff, or the "
@@ -148,11 +145,9 @@ class Run:
             )
 
     def pending(self, t: float) -> bool:
-        """Return whether a requested time before or at ``t`` is not yet recorded."""
         return self.recorded < len(self.times) and bool(self.times[self.recorded] <= t)
 
     def record(self, until: float, sample: Sampler) -> None:
-        """Store the motion at the times up to ``until`` that are not yet recorded."""
         stop = int(np.searchsorted(self.times, until, side="right"))
         if stop > self.recorded:
             self.motion[self.recorded : stop] = sample(self.times[self.recorded : stop]).T
@@ -160,11 +155,10 @@ class Run:
 
 
 class SwitchingSurface(NamedTuple):
-    """A surface of continuous but not smooth rates.
+    """A surface where the rates are continuous but not smooth.
 
-    ``value`` takes the unknowns and changes sign on the surface. ``trend`` takes the unknowns and their rates and
-    returns a number with the sign of the rate of ``value``, which detects steps that cross the surface and come
-    back.
+    ``value`` changes sign on the surface. ``trend`` takes the unknowns and their rates and returns the sign of the
+    rate of ``value``, which detects steps that cross the surface and come back.
     """
 
     value: Callable[[list[float]], float]
@@ -178,12 +172,9 @@ class SwitchingSurface(NamedTuple):
 class Stepper:
     """Steps of a Runge-Kutta method that end on ``surfaces`` where the rates are not smooth.
 
-    Across such a surface an error estimate is unreliable, so a step that has crossed one is repeated up to it. The
-    method is explicit, or implicit collocation.
-
-    ``rates`` takes one state if explicit, and is vectorised if implicit. ``y`` are the initial unknowns, and
-    ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the unknowns and the
-    first step to try.
+    A step across such a surface has an unreliable error estimate and is repeated up to it. ``rates`` are vectorised
+    for collocation only. ``tolerated`` returns the allowed errors of a step. ``implicit`` contains the scales of the
+    unknowns and the first step to try.
     """
 
     def __init__(
@@ -202,39 +193,34 @@ class Stepper:
         first_step = None if implicit is None else implicit[1]
         self._dense: DenseOutput | OdeSolution | None = None
         self._solver: Explicit | Radau
-        self._stiff_steps = 0  # stiff steps minus other steps
+        self._stiff_steps = 0
         self._tolerated = tolerated
         self._end = span[1]
         self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond it
         self._usual_step = math.inf
-        self._since = 0.0  # time before the last step
+        self._since = 0.0
         self._start(span[0], np.array(y), self._end, first_step)
 
     @property
     def t(self) -> float:
-        """Current time or stretched time."""
         return float(self._solver.t)
 
     @property
     def y(self) -> FloatArray:
-        """Current unknowns."""
         return np.asarray(self._solver.y)
 
     @property
     def rates(self) -> FloatArray:
-        """Current rates."""
         return np.asarray(self._solver.f)
 
     @property
     def settled(self) -> bool:
-        """True if the implicit method has found its step size."""
         return isinstance(self._solver, Radau) and self._solver.settled
 
     def stiff_for_long(self, change: float) -> bool:
-        """Return whether the explicit method has taken many stiff steps.
+        """Return whether the explicit method has taken many stiff steps; ``change`` is the relative change of slip.
 
-        ``change`` is the relative change of slip in the last step. Stiff steps are limited by stability, or by
-        accuracy because something decays much faster than slip changes.
+        Stiff steps are limited by stability, or by accuracy because something decays much faster than slip changes.
         """
         stiffness = self.stiffness
         stiff = stiffness > STABLE or stiffness > max(STIFF, APART * change) or change < SHORT
@@ -247,7 +233,7 @@ class Stepper:
         return self._solver.stiffness
 
     def dense_output(self) -> DenseOutput | OdeSolution:
-        """Return the interpolant of the last step, as accurate as the end of the step."""
+        """Return the interpolant of the last step, as accurate as its end."""
         if self._dense is None:
             solver = self._solver
             self._dense = solver.dense_output() if isinstance(solver, Radau) else self._interpolant(solver)

@@ -1,8 +1,7 @@
 """Stick phases (eq. 6 to 9): the required friction, the time of release, and the start of slip.
 
 In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and friction balances the pull a(z, 0). A friction
-disc sticks only as a whole. Friction then holds the constant moment of its shaft and a force up to the limit
-surface, so the centre is a stuck pin with reduced friction.
+disc sticks only as a whole, so its centre is a stuck pin with reduced friction.
 """
 
 from __future__ import annotations
@@ -23,13 +22,13 @@ from reference_model.systems import FloatArray
 GRAZING = 1e-8
 """Relative excess of the pull over friction that does not count as a release.
 
-An excess δ moves the pin by about g·δ²/ω², far less than the rounding of the position.
+An excess δ moves the pin by about g·δ²/ω², below rounding.
 """
 
 NARROW = 1e-5
 """Smallest angle in rad that the search for the first release resolves.
 
-Over a smaller angle of release the pin would move by about NARROW³ of its path.
+A pin released over a smaller angle moves by about NARROW³ of its path.
 """
 
 ROUNDING = 1e-12
@@ -37,7 +36,7 @@ ROUNDING = 1e-12
 
 
 def can_hold(motion: SlipMotion, z: complex) -> bool:
-    """Return whether friction can hold a pin at rest on the disc at ``z`` (eq. 6)."""
+    """Return whether friction can hold a pin at rest at ``z`` (eq. 6)."""
     return abs(motion.pull(z, 0.0)) <= motion.friction
 
 
@@ -45,8 +44,7 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position: a single harmonic, whose first upward crossing has a closed form. On a nonlinear support see
-    :func:`_first_release`.
+    of the position: a single harmonic, whose first upward crossing has a closed form on a linear support.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -55,27 +53,25 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     p, q, g = abs(constant), abs(turning), motion.friction
     if motion.disc_speed == 0.0 or p + q <= g * (1.0 + GRAZING):
         return math.inf
-    # The angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle
-    # form of the law of cosines is accurate where an arccos would lose digits.
+    # Angle between the two pulls, in its direction of growth; friction holds outside ± limit. The half-angle form is
+    # accurate where an arccos would lose digits.
     angle = cmath.phase(turning / constant) * math.copysign(1.0, motion.disc_speed)
     limit = 2.0 * math.atan2(
         math.sqrt((p + q - g) * (p + q + g)), math.sqrt(max((g - p + q) * (g + p - q), 0.0))
     )
     turn = (-limit - angle) % (2.0 * math.pi)
     if 2.0 * math.pi - turn < ROUNDING:
-        turn = 0.0  # already at the limit
+        turn = 0.0
     return turn / abs(motion.disc_speed)
 
 
 def _first_release(motion: SlipMotion, z: complex) -> float:
     """Return the delay of :func:`release_delay` by a search for the first root over one turn of the disc.
 
-    Relative to the disc the pin rests and the offset moves by X0·h while the disc turns by h. So the margin of
-    friction over the pull changes by at most Λh. Here Λ is |X0| times the tangent stiffness at the largest deflection
-    on the way or, relative to the ground, |z| times the sum of that stiffness and |ω² − iωβ/m|. The deflection is at
-    most the mean of its values at both ends plus min(|X0|, |z|)·h/2. This bounds the margin from below between two
-    angles. Where the bound is negative the interval is halved, the first half first, until it can contain one root
-    only.
+    While the disc turns by h the margin of friction over the pull changes by at most Λh. Relative to the disc the
+    offset moves, so Λ = |X0|·T with the tangent stiffness T at the largest deflection on the way. Relative to the
+    ground the pin moves, so Λ = |z|·(T + |ω² − iωβ/m|). An interval where this allows a negative margin is halved,
+    the first half first, down to NARROW.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
         return math.inf  # the pull turns but keeps its size
@@ -119,8 +115,8 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
     """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface at that moment. The points of the limit surface are the force and
-    moment at all ratios of U and S: while U = cos α falls and S ~ sin α grows, the moment grows and the force falls.
+    Its friction is the force on the limit surface at that moment. While U = cos α falls and S ~ sin α grows, the
+    moment on this surface grows and the force falls.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
@@ -147,7 +143,7 @@ def slip_direction(motion: DiscMotion, contact: IsotropicContact, z: complex) ->
     strength, g = abs(pull), motion.centre.friction
 
     def growth(beta: float) -> tuple[float, float]:
-        """Return the components of a − g∇P along n (growth of slip) and across it (rotation of n)."""
+        """Return the components of a − g∇P along n and across it."""
         c, s = math.cos(beta), math.sin(beta)
         shares = contact.shares(motion.length * c, -s / motion.gyration)
         force = strength - g * shares.resistance
@@ -168,8 +164,7 @@ class SlipStart:
     """Slip that grows from rest, as a power series in time.
 
     ``positions`` and ``slip`` are the coefficients of z and w, accurate for ``duration`` in s. ``rest`` is the time
-    in s of the return to rest, or inf. It is valid within ``duration``, after a release where the pull exceeds
-    friction only slightly and briefly.
+    in s of the return to rest, or inf.
     """
 
     positions: NDArray[np.complex128]
@@ -178,7 +173,6 @@ class SlipStart:
     rest: float
 
     def at(self, delays: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-        """Return z and w at ``delays``, shape (n,), after the start, each of shape (n,)."""
         powers = np.asarray(delays)[:, np.newaxis] ** np.arange(len(self.positions))
         return powers @ self.positions, powers @ self.slip
 
@@ -186,13 +180,11 @@ class SlipStart:
 def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance: float = 1e-12) -> SlipStart:
     """Return the slip of a pin from rest at ``z`` if the pull is at least friction; linear supports only.
 
-    With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. At rest θ is the direction of the
-    pull. If the pull exceeds friction, slip grows linearly and the series converges. If they are equal (release from
-    stick), slip grows quadratically with its direction slaved to the pull. Then the series is asymptotic, with an
-    error like exp(−2g/(κt)), κ = d|a|/dt. Both cases obey the same recurrence, at order t^k: (|a₀| + k·s₁)·θ_k =
-    known, (k+1)·s_{k+1} = (Re b)_k.
-
-    Within ``duration`` the last terms of slip and direction stay below ``tolerance``.
+    With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. If the pull exceeds friction, slip
+    grows linearly and the series converges. If they are equal (release from stick), slip grows quadratically with its
+    direction slaved to the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. In both
+    cases order t^k satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k. Within ``duration`` its last terms
+    stay below ``tolerance``.
     """
     omega = 1j * motion.disc_speed
     position = np.zeros(terms + 1, dtype=complex)
@@ -213,7 +205,7 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
         slip[k] = np.dot(speed[1 : k + 1], direction[k - 1 :: -1])
         velocity[k] = slip[k] + omega * position[k]
         pull[k] = -(motion.damping + omega) * velocity[k] - motion.support.stiffness * position[k]
-        # Coefficient k of exp(iθ), and of b = a·exp(−iθ), without the terms that contain θ_k itself.
+        # Coefficient k of exp(iθ), and of b = a·exp(−iθ), without the terms that contain θ_k.
         direction[k] = 1j * np.dot(order[1:k] * theta[1:k], direction[k - 1 : 0 : -1]) / k
         b = np.dot(pull[: k + 1], direction[k::-1].conj())
         turning = np.dot(speed[2 : k + 1], (order[k - 1 : 0 : -1] * theta[k - 1 : 0 : -1]))
@@ -227,10 +219,9 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
 
 def _first_rest(speed: FloatArray, duration: float) -> float:
-    """Return the first zero of the slip speed up to ``duration``, or inf.
+    """Return the first zero of the slip speed, a series with the coefficients ``speed``, up to ``duration``, or inf.
 
-    ``speed`` contains the coefficients of the slip speed over time. At a release the first of them should vanish, and
-    its rounding error adds a root near zero, where slip rises.
+    At a release the first coefficient should vanish, and its rounding error adds a root near zero, where slip rises.
     """
     if not math.isfinite(duration):
         return math.inf

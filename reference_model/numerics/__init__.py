@@ -1,1 +1,1 @@
-"""General numerical methods, independent of friction: roots, continuation, collocation."""
+"""General numerical methods, independent of friction."""

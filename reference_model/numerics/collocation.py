@@ -1,8 +1,8 @@
 """Radau IIA collocation: an implicit method of high order for stiff motions, with a dense polynomial.
 
 A polynomial passes through the start of a step and solves the equations of motion at its nodes, the last of them at
-the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). The polynomial is as accurate between
-the nodes as at its end. SciPy's ``Radau`` has order 5; tolerances down to 1e-14 need the order 15 of this module.
+the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). Tolerances down to 1e-14 need its order
+15; SciPy's ``Radau`` has order 5.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ FROM_START = np.linalg.inv(legendre.legvander(np.append(-1.0, POINTS), NODES))
 """Matrix from values at the start and the nodes to Legendre coefficients."""
 
 MOST_ITERATIONS, MOST_JACOBIANS = 10, 3
-"""Limits on Newton iterations and on Jacobians, which take most of the work, before the step is reduced."""
+"""Largest numbers of Newton iterations and of Jacobians, which take most of the work."""
 
 CONVERGED = 0.01
-"""Change of the unknowns, as a share of their tolerances, of a converged Newton iteration."""
+"""Change of the unknowns in a converged Newton iteration, as a share of their tolerances."""
 
 STALLED = 0.3
 """Ratio of successive changes above which Newton's method needs a new Jacobian."""
@@ -45,7 +45,7 @@ LARGEST_GROWTH = 2.0
 """Largest ratio of successive steps."""
 
 SETTLED = 5
-"""Steps without much growth after a transient until the step size has settled."""
+"""Number of successive steps with little growth that count as settled."""
 
 LEAST_SHARE = 1e-8
 """Smallest step as a share of the first."""
@@ -65,8 +65,7 @@ RatesAt = Callable[[FloatArray], FloatArray]
 def jacobians_at(rates: RatesAt, values: FloatArray, found: FloatArray, changes: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes by differences, shape (NODES, n, n).
 
-    ``values`` are the unknowns, ``found`` their rates, and ``changes`` those of the unknowns, each of shape (NODES,
-    n).
+    ``values``, their rates ``found`` and their ``changes`` have the shape (NODES, n).
     """
     nodes, n = values.shape
     moved = values[:, np.newaxis] + changes[:, np.newaxis] * np.eye(n)
@@ -79,7 +78,7 @@ class Scales(NamedTuple):
     """Scales of the unknowns of a motion.
 
     ``differences`` takes unknowns (k, n) and returns their changes for numerical derivatives. ``most``, shape (n,),
-    is the largest change of each unknown in one Newton iteration.
+    are the largest changes in a Newton iteration.
     """
 
     differences: Callable[[FloatArray], FloatArray]
@@ -87,7 +86,7 @@ class Scales(NamedTuple):
 
 
 class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
-    """The motion in a step from ``first`` to ``last`` as a Legendre series with ``coefficients`` (NODES + 1, n)."""
+    """The motion in a step as a Legendre series with ``coefficients`` (NODES + 1, n)."""
 
     def __init__(self, first: float, last: float, coefficients: FloatArray) -> None:
         super().__init__(first, last)
@@ -108,9 +107,7 @@ class Polynomial(DenseOutput):  # type: ignore[misc]  # SciPy has no types
 class Radau:
     """Steps by collocation, with an interface like that of SciPy's solvers.
 
-    ``y``, shape (n,), are the unknowns at ``t``, ``end`` is the final time, and ``first_step`` the first step to
-    try. ``tolerated`` takes the unknowns and returns the allowed errors of a step. ``scales`` serve differences and
-    Newton's method.
+    ``tolerated`` takes the unknowns, shape (n,), and returns the allowed errors of a step.
     """
 
     def __init__(
@@ -151,7 +148,7 @@ class Radau:
         return self._polynomial
 
     def step(self) -> str | None:
-        """Take one step, as long as the tolerances allow; return an error message, or None."""
+        """Take one step; return an error message, or None."""
         h, most = self._next, LARGEST_GROWTH
         while True:
             h = min(h, self.t_bound - self.t)
@@ -181,9 +178,8 @@ class Radau:
             self.status = "finished"
         return None
 
-    @np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
+    @np.errstate(over="ignore", divide="ignore", invalid="ignore")
     def _collocate(self, h: float) -> Polynomial | None:
-        """Solve for the unknowns at the nodes of a step; return None if Newton's method does not converge."""
         places = self.t + 0.5 * h * (POINTS + 1.0)
         if self._polynomial is None:
             values = self.y + np.outer(places - self.t, self.f)
@@ -212,7 +208,7 @@ class Radau:
             size = float(np.max(abs(change) / self._tolerated))
             if not math.isfinite(size):
                 return None
-            if size < CONVERGED or STALLED * last < size < 0.5:  # the latter at the level of rounding
+            if size < CONVERGED or STALLED * last < size < 0.5:
                 self._jacobian = jacobians[-1]
                 coefficients = FROM_START @ np.vstack((self.y, values))
                 return Polynomial(self.t, self.t + h, coefficients)

@@ -1,7 +1,7 @@
 """Functions called from Python, compiled once per machine and kept on disk until their sources change.
 
 numba's cache checks only the file of the function itself, although functions and constants of other files are
-compiled into it. So each package keeps its compiled functions in a folder named after a digest of all its sources.
+compiled into it. So each package keeps compiled functions in a folder named after a digest of its sources.
 """
 
 from __future__ import annotations
@@ -43,8 +43,7 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the global interpreter lock. ``package`` is the folder of all sources that are compiled into it,
-    and ``kinds`` contains the compiled functions by the types of their arguments.
+    It runs without the interpreter lock. ``package`` is the folder of all sources that are compiled into it.
     """
 
     def __init__(self, function: Callable[..., None], package: Path) -> None:
@@ -54,7 +53,7 @@ class CompiledOnce:
         digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
-        """Call the function; a call with new argument types first compiles it or loads it from disk."""
+        """Call the function; compile or load it first for new argument types."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)
@@ -64,7 +63,7 @@ class CompiledOnce:
 def compiled_for(
     kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
 ) -> Any:
-    """Return numba's dispatcher of a function for these types; other threads and processes wait for it."""
+    """Return numba's dispatcher of a function for these types; others wait for it."""
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
         if folder:
@@ -78,7 +77,6 @@ def compiled_for(
 
 @contextmanager
 def _cached_in(folder: str) -> Iterator[None]:
-    """Make numba cache functions in ``folder`` that are decorated in this context."""
     before = config.CACHE_DIR
     config.CACHE_DIR = folder
     try:
@@ -89,7 +87,7 @@ def _cached_in(folder: str) -> Iterator[None]:
 
 @cache
 def digest_of(package: Path) -> str:
-    """Return a digest of all sources of a package; call it at import, because compiled functions belong to these."""
+    """Return a digest of a package's sources; call it at import, because compiled functions belong to these."""
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):
         digest.update(
@@ -134,7 +132,7 @@ def _delete_old(place: Path, package: Path) -> None:
 
 @contextmanager
 def _locked(lock: Path) -> Iterator[None]:
-    """Hold a lock between processes, which is released when its owner ends. Without locks work may be done twice."""
+    """Hold a lock between processes, or none where there are no locks and work may be done twice."""
     with ExitStack() as held:
         with suppress(OSError, NameError):
             file = held.enter_context(lock.open("w"))

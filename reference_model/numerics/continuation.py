@@ -31,7 +31,6 @@ TURN = 0.97
 """Smallest cosine of the angle between the tangents at neighbouring points."""
 
 SHORTEST = 1e-9
-"""Smallest step, in units of the scales."""
 
 
 class ContinuationError(RuntimeError):
@@ -42,7 +41,7 @@ class ContinuationError(RuntimeError):
 class Curve:
     """Points along a curve, shape (n, d); a closed curve repeats its first point at the end.
 
-    ``ends`` are the indices of the limits that the first and the last point lie on; empty for a closed curve.
+    ``ends`` are the indices of the limits at its first and last point; empty for a closed curve.
     """
 
     points: FloatArray
@@ -59,17 +58,17 @@ def follow(
 ) -> Curve:
     """Follow the curve through ``start`` in both directions until it reaches a limit or closes.
 
-    Raises ``ContinuationError`` if Newton's method does not converge at the start or further along the curve.
+    Raises ``ContinuationError`` if Newton's method does not converge.
 
     Parameters
     ----------
     equations
-        Takes the d unknowns, shape (d,), and returns the d − 1 residuals that are zero on the curve.
+        Takes the unknowns, shape (d,), and returns d − 1 residuals that are zero on the curve.
     limits
         Takes the unknowns and returns numbers, shape (m,), that are positive in the region of interest. Both
         functions must be defined a little beyond it.
     start, scales : array of shape (d,)
-        A point near the curve, within the limits, and the changes of the unknowns that count as equally large.
+        A point near the curve, and changes of the unknowns that count as equally large.
     step
         Largest distance between neighbouring points in units of ``scales``.
 
@@ -88,8 +87,6 @@ def follow(
 
 @dataclass(frozen=True, eq=False)
 class _Tracer:
-    """The continuation in units of the scales."""
-
     equations: Function
     limits: Function
     scales: FloatArray
@@ -142,7 +139,7 @@ class _Tracer:
 
         point, converged = near, False
         for iteration in range(1, ITERATIONS + 1):
-            if not converged:  # kept for the last iterations: its error is at most CONVERGED
+            if not converged:
                 slopes = _slopes(excess, point)
             correction = np.linalg.solve(slopes, excess(point))
             point = point - correction
@@ -152,12 +149,10 @@ class _Tracer:
         raise ContinuationError(f"Newton's method finds no point of the curve near {near * self.scales}")
 
     def tangent(self, point: FloatArray) -> FloatArray:
-        """Return the unit vector along the curve, in one of its two directions."""
         return _along(_slopes(lambda unknowns: self.equations(unknowns * self.scales), point))
 
 
 def _along(slopes: FloatArray) -> FloatArray:
-    """Return the unit vector, shape (d,), in the null space of ``slopes``, shape (d − 1, d)."""
     return np.asarray(np.linalg.svd(slopes / np.linalg.norm(slopes, axis=1, keepdims=True))[2][-1])
 
 

@@ -1,7 +1,7 @@
 """Dormand and Prince's explicit method of eighth order: SciPy's DOP853, faster for few unknowns.
 
-Each stage is one matrix product, and the unknowns reach the equations of motion as a list. Coefficients, step control
-and interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.4 and II.5).
+Coefficients, step control and interpolant are SciPy's (Hairer, Nørsett and Wanner, Solving Ordinary Differential
+Equations I, II.4 and II.5).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Rates = Callable[[list[float]], Sequence[float]]
 """Takes the unknowns and returns their rates; the equations are autonomous."""
 
 Tolerated = Callable[[FloatArray], FloatArray]
-"""Takes the unknowns and returns the allowed errors of a step, of the same shape."""
+"""Takes the unknowns and returns the allowed errors of a step."""
 
 TIGHTEST = 3e-14
 """Smallest relative tolerance that SciPy's integrators accept."""
@@ -28,7 +28,7 @@ SAFETY, LEAST_FACTOR, LARGEST_FACTOR = 0.9, 0.2, 10.0
 
 STAGES = DOP853.n_stages
 _WEIGHTS = np.zeros((STAGES, STAGES + 1))
-"""Row s gives the unknowns of stage s + 1, the last row those at the end, from y and h times the earlier rates."""
+"""Row s combines y and h times the earlier rates into the unknowns of stage s + 1; the last row is for the end."""
 _WEIGHTS[:-1, 1:] = DOP853.A[1:]
 _WEIGHTS[-1, 1:] = DOP853.B
 _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
@@ -37,9 +37,7 @@ _ERRORS = np.vstack((DOP853.E5, DOP853.E3))
 class Explicit(DOP853):  # type: ignore[misc]  # SciPy has no types
     """Steps of the method, with the interface of SciPy's solvers.
 
-    ``y``, shape (n,), are the unknowns at ``t`` and ``end`` > t is the final time. ``first_step`` None chooses a
-    step. ``tolerated`` takes the unknowns and returns the allowed errors of a step, shape (n,). ``most`` is the
-    longest step.
+    ``first_step`` None chooses a step; ``most`` is the longest step.
     """
 
     t: float

@@ -13,7 +13,7 @@ NODES = 121
 REACH = 3.25  # the outermost nodes are about 1e-17 of the interval from its ends
 
 FLAT = 1e-13
-"""Relative change between nodes that rounding alone may cause, for example next to the ends."""
+"""Relative change between nodes that rounding alone may cause."""
 
 
 def nodes_between(left: float, right: float) -> FloatArray:
@@ -27,9 +27,8 @@ def nodes_between(left: float, right: float) -> FloatArray:
 def zeros_between(function: Callable[[float], float], left: float, right: float) -> list[float]:
     """Return the zeros of a continuous ``function`` on [left, right] in increasing order.
 
-    A zero shows as a change of sign between two of the :func:`nodes_between`, or as one of a pair in a dip towards
-    zero whose bottom is then searched for. Only two dips between three neighbouring nodes could hide zeros.
-    Neighbouring nodes that are zeros count as one zero.
+    A zero shows as a change of sign between two of the :func:`nodes_between`, or in a dip towards zero. Only two dips
+    between three neighbouring nodes could hide zeros. Neighbouring nodes that are zeros count as one zero.
     """
     return sorted(set(_zeros(function, nodes_between(left, right).tolist())))
 
@@ -40,7 +39,7 @@ def zero_between(function: Callable[[float], float], left: float, right: float) 
 
 
 def largest_between(function: Callable[[float], float], left: float, right: float) -> float:
-    """Return the largest value of a continuous ``function`` on [left, right], searched for like the zeros."""
+    """Return the largest value of a continuous ``function`` on [left, right]."""
     nodes = nodes_between(left, right).tolist()
     values = [function(node) for node in nodes]
     best = int(np.argmax(values))
@@ -69,7 +68,7 @@ def _zeros(function: Callable[[float], float], nodes: list[float]) -> Iterator[f
 
 
 def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
-    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if the run contains it."""
+    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if it contains it."""
     last = next((i for i in range(first, len(nodes)) if values[i] != 0.0), len(nodes)) - 1
     if first == 0:
         return nodes[0]
@@ -77,7 +76,6 @@ def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
 
 
 def _bottom(function: Callable[[float], float], left: float, right: float, sign: float) -> float:
-    """Return the minimum of ``sign`` times ``function``, to 1e-9 of the interval."""
     found = minimize_scalar(
         lambda x: sign * function(x),
         bounds=(left, right),

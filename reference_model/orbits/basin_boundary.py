@@ -2,7 +2,7 @@
 
 If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
 eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
-boundary is the root of an equation. End states show the side of a start, which brackets the root.
+boundary is a root, which end states bracket.
 """
 
 from __future__ import annotations
@@ -25,13 +25,10 @@ from reference_model.systems import FloatArray, checked_state, finite_number, re
 COMPONENTS = ("x", "y", "vx", "vy")
 
 NEAR = 0.3
-"""Angle in rad within which a release counts as near that of the orbit.
-
-A root lies on the boundary whatever this value.
-"""
+"""Angle in rad within which a release counts as near that of the orbit; roots do not depend on it."""
 
 SPARE = 0.1
-"""Error that the search for a point may leave, over the tolerance of the orbit."""
+"""Error of a point over the tolerance of the orbit."""
 
 DISTINCT = 0.1
 """Smallest relative difference in radius that distinguishes two motions."""
@@ -39,7 +36,7 @@ DISTINCT = 0.1
 
 @dataclass(frozen=True)
 class Separatrix:
-    """The two sides of the stable set of a saddle orbit; ``releases`` is the release map of the pin."""
+    """The two sides of the stable set of a saddle orbit; ``releases`` is the pin's release map."""
 
     orbit: StickSlipOrbit
     releases: ReleaseMap
@@ -80,8 +77,7 @@ class Separatrix:
     def miss(self, start: ArrayLike) -> float:
         """Return the angular distance from the orbit at the pin's first release near it.
 
-        It is positive for releases after that of the orbit. Without a near release it is ±NEAR, depending on the
-        final motion.
+        It is positive for releases after that of the orbit, and ±NEAR without a near release, by the final motion.
         """
 
         def near(release: Release) -> bool:
@@ -99,7 +95,7 @@ class Separatrix:
     def point_between(self, first: FloatArray, second: FloatArray) -> FloatArray:
         """Like :func:`boundary_point`, for states of shape (4,)."""
 
-        @functools.cache  # the search evaluates the ends again
+        @functools.cache
         def miss(share: float) -> float:
             return self.miss(first + share * (second - first))
 
@@ -117,11 +113,9 @@ class Separatrix:
 def boundary_point(orbit: StickSlipOrbit, first: ArrayLike, second: ArrayLike) -> FloatArray:
     """Return the crossing of the basin boundary, shape (4,), on the straight line between two starts.
 
-    The boundary is the stable set of the saddle ``orbit``, whose tolerance is that of the point. ``first`` and
-    ``second``, shape (4,), lead to different motions.
-
-    Raises ``ValueError`` if the orbit is not a saddle that separates two motions, or both starts lead to the same
-    motion; ``RuntimeError`` if something other than the stable set of this orbit separates them.
+    The boundary is the stable set of the saddle ``orbit``, whose tolerance is that of the point. Raises
+    ``ValueError`` if the orbit does not separate two motions, or both starts lead to the same motion;
+    ``RuntimeError`` if something other than this stable set separates them.
     """
     separatrix = Separatrix.of(orbit)
     return separatrix.point_between(*(checked_state(orbit.system, state) for state in (first, second)))
@@ -137,24 +131,23 @@ def basin_boundary(
 ) -> tuple[Curve, ...]:
     """Return the basin boundary in a rectangle of starts, as curves with points of shape (n, 2).
 
-    Each curve names the limits where it ends: 0 and 1 are the lower limits of both components, 2 and 3 the upper.
-    Raises ``ValueError`` if the orbit is not a saddle that separates two motions, or the rectangle or the
-    resolution is invalid; ``RuntimeError`` if a boundary is not in the stable set of this orbit, or a curve cannot
-    be followed.
+    The ``ends`` of a curve are 0 and 1 at the lower limits of both components, 2 and 3 at the upper. Raises
+    ``ValueError`` if the orbit does not separate two motions, or an argument is invalid; ``RuntimeError`` if a
+    boundary is not in the stable set of this orbit, or a curve cannot be followed.
 
     Parameters
     ----------
     orbit
-        The saddle whose stable set is the boundary. Its tolerance is that of the points.
-    components : (str, str)
-        State components that vary in the rectangle: two of "x", "y", "vx", "vy".
-    ranges : pair of (float, float)
+        The saddle, with the tolerance of the points.
+    components
+        Components that vary in the rectangle: two of "x", "y", "vx", "vy".
+    ranges
         Their ranges in m or m/s.
     others : array-like of shape (4,)
-        State that supplies the other components.
+        Supplies the other components.
     cells
-        Number of grid cells in each direction. Points of a curve are at most one cell apart, and curves that no
-        grid edge crosses exactly once are missed.
+        Grid cells in each direction. Points of a curve are at most one cell apart, and curves that no grid edge
+        crosses exactly once are missed.
 
     """
     separatrix = Separatrix.of(orbit)
@@ -163,7 +156,7 @@ def basin_boundary(
     state = checked_state(orbit.system, others)
     require_whole("cells", cells, least=2)
 
-    @functools.cache  # searches evaluate their ends again, and curves their points
+    @functools.cache  # searches repeat their ends, and curves their points
     def miss(*point: float) -> float:
         start = state.copy()
         start[places] = point
@@ -193,7 +186,6 @@ def _checked_places(components: tuple[str, str]) -> list[int]:
 def _checked_ranges(
     components: tuple[str, str], ranges: Sequence[tuple[float, float]]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the lower and the upper limits, each of shape (2,)."""
     if len(ranges) != 2 or any(len(limits) != 2 for limits in ranges):
         raise ValueError(f"ranges = {ranges!r}: they must be two pairs of numbers")
     for name, limits in zip(components, ranges, strict=True):

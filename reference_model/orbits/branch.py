@@ -1,4 +1,4 @@
-"""Continuation of orbits in the load: the branch of whirls or modulated cycles, and the fold where whirls end."""
+"""Continuation of orbits in the load, to the fold where whirls end."""
 
 from __future__ import annotations
 
@@ -22,12 +22,9 @@ def whirl_branch(
 ) -> Iterator[Orbit]:
     """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
 
-    Each orbit is predicted from the two before it, for a relative decrease of x by at most ``step``, down to
-    ``until`` > 0 in m. If Newton's method fails, the step is halved. The load may rise or fall along the branch,
-    and stick phases may appear. Engine and tolerance are those of ``orbit``; trajectories have ``samples``
-    intervals.
-
-    Raises ``RuntimeError`` if the branch breaks off, so that even a step of ``step``/64 finds no orbit.
+    Each orbit is predicted from the two before it. The relative decrease of x is at most ``step``, halved if Newton's
+    method fails, down to ``until`` > 0 in m. The load may rise or fall, and stick phases may appear. Raises
+    ``RuntimeError`` if even a step of ``step``/64 finds no orbit.
     """
     seek = whirl_orbit if orbit.turn == 0.0 else modulated_cycle
     before, last = None, orbit
@@ -55,7 +52,6 @@ def whirl_branch(
 
 
 def _extrapolated(before: Orbit, last: Orbit, x: float) -> Orbit:
-    """Return a guess for the orbit at the crossing ``x`` by linear extrapolation."""
     ahead = (x - last.state[0]) / (last.state[0] - before.state[0])
     load = last.system.friction_force + ahead * (last.system.friction_force - before.system.friction_force)
     return replace(
@@ -74,12 +70,11 @@ def last_whirl(
     tolerance: float = 1e-12,
     precision: float = 0.0,
 ) -> Orbit:
-    """Return the whirl at the smallest load with a whirl: the fold of the branch.
+    """Return the whirl at the smallest load with a whirl: the fold, where it meets the unstable whirl.
 
-    There the whirl meets the unstable whirl that separates it from the other motions. The paper does not give this
-    load. The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the
-    crossing x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
-    before it folds.
+    The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the crossing
+    x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before it
+    folds.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

@@ -2,10 +2,8 @@
 
 At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of the
 pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the orbits,
-and its slope there is their multiplier.
-
-The map has gaps, where the pin never sticks again or sticks permanently, and jumps where the next stick phase
-vanishes and a later one takes its place.
+and its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
+where the next stick phase vanishes.
 """
 
 from __future__ import annotations
@@ -29,31 +27,31 @@ from reference_model.systems import FloatArray, PinOnDisc, checked_tolerance, re
 from reference_model.trajectory import Trajectory
 
 SEARCH_TIMES = (1.5, 16.0)
-"""Search times for a release, in the longer of a turn of the disc and a period of the pin on its springs.
+"""Search times for a release, in units of the longer of a turn of the disc and a free period of the pin.
 
-A pin that does not stick again within the second is taken never to do so.
+A pin that does not stick within the second is assumed never to stick.
 """
 
 NODES = 48
-"""Number of initial nodes of the map; gaps and orbits less than π/NODES apart may be missed."""
+"""Number of initial nodes; gaps and orbits less than π/NODES apart may be missed."""
 
 NODES_OF_PIECE = 32
-"""Number of spline nodes between two gaps, which resolve two neighbouring fixed points as well."""
+"""Number of spline nodes between two gaps, enough to resolve neighbouring fixed points."""
 
 ROUNDING = 1e-12
-"""Pull of a stuck pin, per distance and as a fraction of ω², within rounding of zero, as for ω = k and β = 0."""
+"""Pull per distance, as a fraction of ω², that counts as zero, as for ω = k and β = 0."""
 
 EDGE = 1e-5
 """Tolerance in rad of the edges of the gaps."""
 
 ROUGH = 1e-6
-"""Tolerance of the search for fixed points, before each is refined to the requested tolerance."""
+"""Tolerance of the search for fixed points, before they are refined."""
 
 JUMP = 1e-4
-"""Smallest residual in rad of a sign change that is a jump and not a fixed point."""
+"""Residual in rad above which a change of sign is a jump, not a fixed point."""
 
 SLOPE_STEPS = (1e-3, 1e-4, 1e-5)
-"""Steps in rad of the fourth-order central differences for the multiplier; the first that meets no gap is used."""
+"""Steps in rad of the central differences for the multiplier; the first that meets no gap is used."""
 
 
 class Release(NamedTuple):
@@ -66,10 +64,7 @@ class Release(NamedTuple):
 
 @dataclass(frozen=True)
 class ReleaseMap:
-    """The map from one release of a pin to the next.
-
-    The pin has friction, an offset and a turning disc; ``tolerance`` is that of ``simulate``.
-    """
+    """The map from one release to the next, of a pin with friction, an offset and a turning disc."""
 
     pin: PinOnDisc
     tolerance: float
@@ -82,7 +77,7 @@ class ReleaseMap:
 
     @property
     def turn(self) -> float:
-        """The longer of one turn of the disc and one period of the pin on its springs, in s."""
+        """The longer of a turn of the disc and a free period of the pin, in s."""
         return 2.0 * math.pi / min(abs(self.pin.disc_speed), self.pin.natural_frequency)
 
     @property
@@ -115,7 +110,7 @@ class ReleaseMap:
         return -math.copysign(1.0, self.pin.disc_speed) * cmath.phase(pull / self._offset_pull)
 
     def first(self, state: ArrayLike, wanted: Callable[[Release], bool]) -> tuple[Release | None, FloatArray]:
-        """Return the first ``wanted`` release after ``state``, shape (4,), or None, and the last state reached."""
+        """Return the first ``wanted`` release after ``state``, or None, and the last state."""
         for turns in SEARCH_TIMES:
             times = [0.0, turns * self.turn]
             trajectory = REFERENCE(self.pin, state, times, tolerance=self.tolerance)
@@ -132,11 +127,11 @@ class ReleaseMap:
 
     def after(self, angle: float) -> Release | None:
         """Return the release after one at ``angle``; None if the pin never sticks again."""
-        # Because of rounding the pin may be held for another moment.
+        # Rounding may hold the pin for another moment.
         return self.first(self.state(angle), lambda release: release.time > release.stick_time)[0]
 
     def slope(self, angle: float) -> float:
-        """Return the derivative of the map at ``angle`` by central differences, with shorter steps next to a gap."""
+        """Return the derivative of the map at ``angle`` by central differences."""
         for step in SLOPE_STEPS:
             near, far = (
                 (self.change(angle + reach) - self.change(angle - reach)) / (2.0 * reach)
@@ -147,7 +142,7 @@ class ReleaseMap:
         return 1.0 + near + (near - far) / 3.0
 
     def pieces(self) -> Iterator[tuple[float, float]]:
-        """Yield intervals of angles, in increasing order, with a next stick phase."""
+        """Yield intervals of angles with a next stick phase, in increasing order."""
         nodes = (np.arange(NODES) + 0.5) * math.pi / NODES
         sticks = [self.after(node) is not None for node in nodes.tolist()]
         start: float | None = EDGE if sticks[0] else None
@@ -161,7 +156,6 @@ class ReleaseMap:
             yield start, math.pi - EDGE
 
     def _edge(self, inside: float, outside: float) -> float:
-        """Return the edge of a gap between two angles, on the side with a next stick phase."""
         while abs(outside - inside) > EDGE:
             middle = 0.5 * (inside + outside)
             if self.after(middle) is None:
@@ -191,7 +185,7 @@ class ReleaseMap:
         return [float(zero) for zero in spline.roots(extrapolate=False)]
 
     def change(self, angle: float) -> float:
-        """Return the change of the angle from one release to the next; nan without a next release."""
+        """Return the change of the angle from one release to the next, or nan."""
         release = self.after(angle) if 0.0 < angle < math.pi else None
         return math.nan if release is None else release.angle - angle
 
@@ -200,9 +194,8 @@ class ReleaseMap:
 class StickSlipOrbit(Orbit):
     """A periodic motion of a pin with one stick phase per period; as an :class:`Orbit` it starts in mid-slip.
 
-    ``release``, shape (4,), is the state at the release, and ``release_angle`` the lag α in rad of the pull behind
-    that of the offset there. ``stick_time`` is in s. ``multiplier`` is the growth factor per period of a small
-    deviation of α.
+    ``release``, shape (4,), is the state at the release, ``release_angle`` its lag α in rad, and ``stick_time`` is in
+    s. ``multiplier`` is the growth of a small deviation of α per period.
     """
 
     system: PinOnDisc
@@ -227,12 +220,9 @@ def stick_slip_orbits(
 ) -> tuple[StickSlipOrbit, ...]:
     """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
-    The stable ones are stick-slip cycles. An orbit with a multiplier > 1 is a saddle: its stable set separates the
-    starts that lead to two other motions. There are no such motions without offset or friction, or on a disc at
-    rest.
-
-    ``tolerance`` is that of ``simulate``, and ``samples`` the number of intervals of the returned trajectories.
-    Raises ``ValueError`` if they are invalid, ``pin`` is not a pin, or its support is not linear.
+    The stable ones are stick-slip cycles. One with a multiplier > 1 is a saddle, whose stable set separates the
+    starts that lead to two other motions. There are none without offset or friction, or on a disc at rest. Raises
+    ``ValueError`` if an argument is invalid, or the support is not linear.
     """
     require_system(pin, PinOnDisc)
     require_linear_support(pin)
@@ -244,7 +234,7 @@ def stick_slip_orbits(
 def _orbit(releases: ReleaseMap, angle: float, samples: int) -> StickSlipOrbit:
     pin, tolerance = releases.pin, releases.tolerance
     release = releases.after(angle)
-    assert release is not None  # the angle is a fixed point
+    assert release is not None
     period = release.time
     state = releases.state(angle)
     start = REFERENCE(pin, state, [0.0, 0.5 * (period - release.stick_time)], tolerance=tolerance).at_end

@@ -22,19 +22,19 @@ from reference_model.systems import FloatArray, PinOnDisc
 BoolArray = NDArray[np.bool_]
 
 DIRECTIONS = 64
-"""Number of directions that are tried first, about a tenth of a radian apart."""
+"""Number of directions that are tried first."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Sizes of the shocks that are tried first, over the speed of the disc's surface at the whirl or at the offset."""
+"""Sizes of the shocks that are tried first, over the speed of the disc at the whirl or at the offset."""
 
 PERIODS = 500.0
-"""Longest time to an end state, in periods of the free oscillation, unless the start lies on the boundary."""
+"""Longest time to an end state, in free periods, unless the start lies on the boundary."""
 
 COARSE, FINE = 1e-2, 1e-7
 """Relative widths of bisection: for the direction, and to check the result."""
 
 ANGLE = 1e-4
-"""Tolerance of the direction in rad; the size has a minimum there and depends on its square."""
+"""Tolerance of the direction in rad; the smallest size depends on its square."""
 
 
 @dataclass(frozen=True)
@@ -64,9 +64,8 @@ class Shock:
 def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
     """Return the smallest shock that throws ``pin`` from its equilibrium into the whirl.
 
-    Raises ``ValueError`` if there is no equilibrium, none of the shocks tried leads to the whirl, or there is no
-    saddle orbit with a stick phase between the two; ``RuntimeError`` if the boundary is not in the stable set of
-    that orbit.
+    Raises ``ValueError`` if there is no equilibrium, no tried shock leads to the whirl, or no saddle orbit with a
+    stick phase lies between the two; ``RuntimeError`` if the boundary is not in the stable set of that orbit.
     """
     rest = _rest(pin)
     saddles = [orbit for orbit in stick_slip_orbits(pin, tolerance=tolerance) if not orbit.stable]
@@ -97,11 +96,10 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 
 
 def by_bisection(shock: Shock) -> float:
-    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, from end states.
+    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, by their end states.
 
-    The relative error is ``FINE``. The search covers 0.9 to 1.15 times the size of ``shock``.
-
-    Raises ``ValueError`` if the end state does not change in this range.
+    The relative error is ``FINE``. Raises ``ValueError`` if the end state does not change between 0.9 and 1.15 times
+    the size of ``shock``.
     """
     pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
     low, high = (
@@ -124,7 +122,6 @@ def _rest(pin: PinOnDisc) -> FloatArray:
 
 
 def _shocks(angles: float | FloatArray) -> FloatArray:
-    """Return changes of the state by shocks of 1 m/s, shape (n, 4)."""
     angles = np.atleast_1d(angles)
     zero = np.zeros_like(angles)
     return np.column_stack((zero, zero, np.cos(angles), np.sin(angles)))
@@ -138,7 +135,7 @@ def _whirls(pin: PinOnDisc, rest: FloatArray, angles: FloatArray, sizes: FloatAr
 
 
 def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each angle two sizes that bracket the onset of the whirl; inf if none of the sizes leads there."""
+    """Return for each angle two sizes that bracket the onset of the whirl, or inf."""
     reach = abs(pin.disc_speed) * max(
         abs(pin.offset), pin.friction_force / (pin.damping * pin.natural_frequency)
     )
@@ -155,7 +152,6 @@ def _first_crossings(pin: PinOnDisc, rest: FloatArray, angles: FloatArray) -> tu
 def _bisected(
     pin: PinOnDisc, rest: FloatArray, angles: FloatArray, low: FloatArray, high: FloatArray, width: float
 ) -> FloatArray:
-    """Return the smallest sizes that lead to the whirl, between ``low`` and ``high``; inf where these are inf."""
     sizes = np.full(len(angles), math.inf)
     there = np.flatnonzero(np.isfinite(high))
     low, high, angles = low[there].copy(), high[there].copy(), angles[there]

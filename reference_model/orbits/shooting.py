@@ -1,10 +1,10 @@
 """Periodic orbits by shooting, with any engine's ``simulate``.
 
-With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period. Without
-offset the system is isotropic, and a motion may recur up to a rotation about the axis.
+With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period, without
+offset up to a rotation about the axis.
 
-Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 return maps, each a simulation, to fail
-without an orbit near the guess, compared with 10 to 16 here.
+Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 simulations to fail without an orbit
+near the guess, compared with 10 to 16 here.
 """
 
 from __future__ import annotations
@@ -44,34 +44,34 @@ PERIOD, LOAD, TURN = -3, -2, -1
 """Indices of the other unknowns of shooting: T, μN, and the angle θ of a rotation about the axis."""
 
 CENTRAL = 3e-4
-"""Relative step of the fourth-order central differences for multipliers.
+"""Relative step of the central differences for multipliers.
 
-The measured error of multipliers is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with an offset.
+The measured error is 1e-11 for the pin, 1e-9 for the disc without offset and 1e-7 with an offset.
 """
 
 MOST_ITERATIONS = 25
 
 CONVERGED = 1e-9
-"""Largest relative residual of an orbit; Newton's method continues below it until rounding stops it."""
+"""Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""Largest residual over an engine's precision, if that is more: a residual contains its noise several times."""
+"""Largest residual over the engine's precision, which a residual contains several times."""
 
 SLOW = 0.3
-"""Share of the residual that may be left after an iteration before the derivatives are computed again."""
+"""Share of the residual that may remain after an iteration before new derivatives are needed."""
 
 FARTHEST_PERIOD = 0.5
 """Largest relative change of the period of an orbit near the guess."""
 
 COLLAPSED = 1e-6
-"""Smallest size relative to the guess; below it the pin has collapsed onto the axis."""
+"""Smallest size relative to the guess, below which the pin has collapsed onto the axis."""
 
 
 @dataclass(frozen=True)
 class ShootingProblem:
     """The return map of an engine and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
 
-    ``precision`` is the relative noise of its states, whatever the tolerance.
+    ``precision`` is the relative noise of the states.
     """
 
     simulate: Simulate
@@ -85,11 +85,11 @@ class ShootingProblem:
         return max(CONVERGED, ABOVE_NOISE * self.precision)
 
     def unknowns(self, state: FloatArray, period: float, load: float, turn: float) -> FloatArray:
-        """Return the unknowns of the motion that starts from ``state``, shape (4,) or (6,)."""
+        """Return the unknowns of the motion from ``state``, shape (4,) or (6,)."""
         return np.array([*without_angle(state), period, load, turn])
 
     def start(self, unknowns: FloatArray) -> FloatArray:
-        """Return the initial state for ``unknowns``, shape (4,) or (6,), with the angle zero."""
+        """Return the initial state, shape (4,) or (6,), with the angle zero."""
         part = unknowns[:PERIOD]
         return np.insert(part, 2, 0.0) if isinstance(self.system, DiscOnDisc) else part.copy()
 
@@ -101,8 +101,8 @@ class ShootingProblem:
         return rotated(without_angle(end), -float(unknowns[TURN])) - unknowns[:PERIOD]
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
-        """Return the derivatives of ``miss`` by the ``sought`` unknowns, by forward differences."""
-        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise of the map
+        """Return the derivatives of ``miss`` by the ``sought`` unknowns."""
+        step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise
         columns = []
         for i in sought:
             shifted = unknowns.copy()
@@ -128,7 +128,7 @@ class ShootingProblem:
         """Return the scales of the unknowns."""
         size = np.abs(unknowns)
         size[:PERIOD] = size_of(self.system, unknowns[:PERIOD])
-        if size[TURN] > 0.0:  # of many turns in a period, one sets the scale
+        if size[TURN] > 0.0:  # one turn sets the scale of many
             size[PERIOD] /= size[TURN]
             size[TURN] = 1.0
         return size
@@ -138,10 +138,9 @@ class ShootingProblem:
 class Orbit:
     """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
-    ``state``, shape (4,) or (6,), is the initial state. It lies on the x axis, y = 0, unless the guess started
-    elsewhere; the angle of a disc is zero. ``period`` is in s. ``residual`` is the distance between start and end,
-    relative to the size of the orbit, and ``problem`` its return map. ``turn`` is the rotation of the motion about
-    the axis in a period, in rad, including whole turns; 0 if it recurs without rotation.
+    ``state``, shape (4,) or (6,), is the initial state, with the angle zero. ``period`` is in s. ``residual`` is the
+    distance between start and end, relative to the size of the orbit. ``turn`` is the rotation about the axis in a
+    period, in rad, including whole turns; 0 if the motion recurs without rotation.
     """
 
     system: System
@@ -170,8 +169,7 @@ class Orbit:
     def from_the_right(self) -> Orbit:
         """Return the same orbit, started at the sample with the largest x.
 
-        It crosses its own y at a right angle there. So it is a guess for the next orbit whether or not they cross the
-        x axis.
+        It crosses its own y at a right angle there, so it is a guess for the next orbit even away from the x axis.
         """
         states = self.trajectory.states
         state = self.problem.start(np.array([*without_angle(states[np.argmax(states[:, 0])]), 0.0, 0.0, 0.0]))
@@ -188,9 +186,9 @@ class Orbit:
 
     @cached_property
     def multipliers(self) -> tuple[complex, ...]:
-        """Eigenvalues of the linearised return map (Floquet multipliers), largest first.
+        """Floquet multipliers, largest first.
 
-        One of them is 1, for a shift in time; if the motion recurs up to a rotation, so is a second one.
+        One is 1, for a shift in time, and a second one if the motion recurs up to a rotation.
         """
         multipliers = np.linalg.eigvals(self.monodromy)
         return tuple(complex(multiplier) for multiplier in sorted(multipliers, key=abs, reverse=True))
@@ -212,7 +210,7 @@ def shoot(
 ) -> Orbit:
     """Solve for the ``sought`` unknowns by Newton's method with Broyden updates; return the orbit.
 
-    Raises ``NoOrbitError`` if the iteration does not converge.
+    Raises ``NoOrbitError`` if it does not converge.
     """
     scale, period = problem.size(unknowns)[:PERIOD], float(unknowns[PERIOD])
     best, smallest = unknowns, math.inf
@@ -228,7 +226,7 @@ def shoot(
         miss = problem.miss(unknowns)
         size = float(np.max(np.abs(miss) / scale))
         if smallest < problem.converged and size >= 0.5 * smallest:
-            break  # rounding level reached
+            break
         if size < smallest:
             best, smallest = unknowns, size
         if slopes is None or size > SLOW * last:
@@ -258,7 +256,7 @@ def shoot(
 
 
 def hold_crossing(x: float, guess: object, unknowns: FloatArray, sought: list[int]) -> None:
-    """Fix x at y = 0 and make the load unknown, starting from that of a ``guess`` that is an orbit."""
+    """Fix x at y = 0 and make the load unknown, starting from that of an orbit as ``guess``."""
     unknowns[[X, Y]] = x, 0.0
     sought[sought.index(X)] = LOAD
     if isinstance(guess, Orbit):
@@ -298,6 +296,6 @@ def size_of(system: System, part: FloatArray) -> FloatArray:
 
 
 def rotated(part: FloatArray, angle: float) -> FloatArray:
-    """Return the state without angle, rotated about the axis by ``angle`` in rad."""
+    """Return the state without angle, rotated by ``angle`` in rad."""
     z, v = (complex(part[i], part[i + 1]) * cmath.exp(1j * angle) for i in (X, VX))
     return np.array([z.real, z.imag, v.real, v.imag, *part[SPIN:]])

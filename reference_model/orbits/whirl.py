@@ -1,4 +1,4 @@
-"""The whirl with an offset, close to a circle, and the whirl whose radius oscillates (Fig. 11), by shooting."""
+"""The whirl with an offset and the whirl whose radius oscillates (Fig. 11), by shooting."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ RECURRENCE = 0.05
 """Largest relative difference of two recurrent states."""
 
 LEAST_MODULATION = 1e-6
-"""Smallest relative oscillation of the radius of a modulated cycle; a whirl found to ``CONVERGED`` has less."""
+"""Smallest relative oscillation of the radius of a modulated cycle; a converged whirl has less."""
 
 
 def whirl_orbit(
@@ -49,31 +49,27 @@ def whirl_orbit(
 ) -> Orbit:
     """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
-    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T,
-    with differences for the derivatives of the flow Φ. The phase is fixed by y, which is that of the guess. Only
-    ``simulate`` is used, so orbits with stick phases are found too.
+    Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, at
+    the y of the guess. It also finds orbits with stick phases.
 
-    Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points;
-    ``RuntimeError`` if Newton's method does not converge, because such an orbit does not exist near the guess.
+    Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points; ``RuntimeError``
+    if Newton's method does not converge.
 
     Parameters
     ----------
     system
-        Parameters of a system with a whirl without offset: |ω| > k on a linear support.
+        A system with a whirl without offset: |ω| > k on a linear support.
     simulate
-        The engine; by default the reference, compiled if possible. Use ``functools.partial(simulate, contact=...)``
-        for a disc with another friction law.
+        The engine, such as ``functools.partial(simulate, contact=...)`` for another friction law.
     guess
-        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset.
-        With a large offset the whirl of a disc no longer crosses the x axis: then use :meth:`Orbit.from_the_right`
-        of the orbit for a nearby offset.
+        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset. If
+        the whirl does not cross the x axis, use :meth:`Orbit.from_the_right` of the orbit for a nearby offset.
     at_crossing
-        Fixed value of x at y = 0, in m; the load μN becomes unknown in its place. So a branch can be followed
-        around its folds, where two whirls of the same load meet.
+        Fixed value of x at y = 0, in m, with the load μN as an unknown, so that a branch can turn at folds.
     tolerance, samples
-        Tolerance for ``simulate``, and number of intervals of the returned trajectory.
+        That of ``simulate``, and number of intervals of the trajectory.
     precision
-        Relative noise of the engine's states, whatever the tolerance, for example 1e-6 in single precision.
+        Relative noise of the engine's states, such as 1e-6 in single precision.
 
     """
     require_start(system, guess, (Orbit, Whirl, type(None)), at_crossing, samples)
@@ -107,15 +103,14 @@ def modulated_cycle(
 ) -> Orbit:
     """Return the cycle of a whirl whose radius oscillates, X0 = 0 only, by shooting (Fig. 11).
 
-    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts
-    where the radius is largest or smallest, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts at
+    an extreme of the radius, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
-    ``guess`` is a simulation that ends close to the cycle and covers more than a period of the modulation, at times
-    close enough to resolve a revolution; or the cycle for nearby parameters. Other arguments are those of
-    :func:`whirl_orbit`.
+    ``guess`` is the cycle for nearby parameters, or a simulation that ends close to the cycle, covers more than a
+    period of the modulation and resolves a revolution. Other arguments are those of :func:`whirl_orbit`.
 
     Raises ``ValueError`` if the offset is not zero, a disc rests on single points, or ``guess`` does not recur;
-    ``RuntimeError`` if Newton's method does not converge or finds a whirl of constant radius.
+    ``RuntimeError`` without convergence, or if the radius turns out to be constant.
     """
     require_start(system, guess, (Orbit, Trajectory), at_crossing, samples)
     if system.offset != 0.0:
@@ -144,7 +139,7 @@ def modulated_cycle(
 
 
 def _recurrence(trajectory: Trajectory) -> tuple[FloatArray, float, float]:
-    """Return state on the x axis, period and rotation of the last recurrence of a maximum of the radius."""
+    """Return state on the x axis, period and rotation of the last recurrence of a largest radius."""
     states, times = trajectory.states, trajectory.times
     velocities = trajectory.system.state_size // 2
     z = states[:, 0] + 1j * states[:, 1]

@@ -1,8 +1,8 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
 This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
-up to its torsional balance, see :func:`reference_model.formulas.disc.whirl_arm`. With two parameters of the disc this
-makes three unknowns, and a boundary has two equations, the balance and one of
+up to its torsional balance. With two parameters of the disc this makes three unknowns for two equations, the balance
+and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -37,40 +37,39 @@ FAST, SLOW = 1, -1
 NEAREST = 8.0
 """Largest ln(U/|U − W|) of the curves.
 
-The derivatives of a ring's friction grow like this number for U → W. With it as an unknown the curves are smooth.
+The derivatives of a ring's friction grow like this number, so curves are smooth with it as an unknown.
 """
 
 FARTHEST = 2e-3
 """Smallest ln(U/|U − W|), approximately the smallest U : W or W : U."""
 
 SCALE = 3.0
-"""Change of ln(U/|U − W|) that counts as much as the whole range of a parameter."""
+"""Change of ln(U/|U − W|) that counts as much as the range of a parameter."""
 
 INERTIA = "polar_inertia"
 
 SLOWEST = 3e-3
-"""Smallest frequency ν of a pair on a Hopf curve, as a fraction of k; below it the pair is about to become real."""
+"""Smallest frequency ν on a Hopf curve, as a fraction of k; below it the pair soon becomes real."""
 
 NODES = 41
-"""Number of ratios tried on each line."""
 
 SAME = 3e-3
-"""Largest distance of a start from a known curve, in units of the scales, to lie on it."""
+"""Distance from a known curve, in units of the scales, below which a start lies on it."""
 
 LINES = 9
 """Number of starting lines in each direction of the plane."""
 
 INSET = 1e-6
-"""Distance of the outermost lines from the borders of a plane, so that all starts lie inside."""
+"""Distance of the outermost lines from the borders, so that all starts lie inside."""
 
 
 @dataclass(frozen=True)
 class ParameterPlane:
     """A rectangle in two parameters of a disc; all others are those of ``disc``.
 
-    ``names`` are those of two parameters in ``DiscOnDisc``, except contact, offset and nonlinear support; ``lower``
-    and ``upper`` are the limits of their ranges. Raises ``ValueError`` if a name is not allowed, a range is empty
-    or includes parameters without a whirl at any load, or there is an offset or a nonlinear support.
+    ``names`` are two parameters except contact, offset and nonlinear support, with ranges from ``lower`` to
+    ``upper``. Raises ``ValueError`` if a name is not allowed, a range is empty or includes parameters without a whirl
+    at any load, or there is an offset or a nonlinear support.
     """
 
     disc: DiscOnDisc
@@ -117,9 +116,9 @@ class ParameterPlane:
 class Boundary:
     """A curve in a plane.
 
-    ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points in the units of the two
-    parameters, and ``alpha``, shape (n,), the angle of (24) of the whirl in rad: tan α = R|ω − φ̇|/U; π/2 for a
-    whirl of zero radius. The last point of a ``closed`` curve equals the first one.
+    ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the
+    angle of (24) of the whirl in rad, tan α = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve
+    equals the first one.
     """
 
     kind: Kind
@@ -133,11 +132,9 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
-    The search starts from ``LINES`` lines in each direction, including the borders. It misses only
-    closed curves between neighbouring lines. ``step`` is the largest distance of neighbouring points, in units of
-    the ranges; ``contact`` None means the law of the parameters.
-
-    Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
+    The search starts from ``LINES`` lines in each direction and misses only closed curves between them. ``step`` is
+    the largest distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the
+    parameters. Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
     """
     return tuple(
         boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)
@@ -149,9 +146,8 @@ def crossings(
 ) -> tuple[float, ...]:
     """Return where a line in ``plane`` crosses the curves of a kind: increasing values of the other parameter.
 
-    ``value`` is that of the parameter ``name``, which is constant along the line. Other arguments are those of
-    :func:`boundaries`. Raises ``ValueError`` like it, if ``name`` is not in the plane, or if ``value`` is not in
-    its range.
+    The parameter ``name`` is ``value`` along the line. Raises ``ValueError`` like :func:`boundaries`, or if ``name``
+    or ``value`` is not in the plane.
     """
     if name not in plane.names:
         raise ValueError(f"name = {name!r}: it must be one of {' and '.join(plane.names)}")
@@ -180,9 +176,9 @@ def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | N
 
 @dataclass(frozen=True, eq=False)
 class _Condition:
-    """The equations of a boundary, for the unknowns (two parameters, ln(U/|U − W|)).
+    """The equations of a boundary. Unknowns are two parameters and, except at the onset, ln(U/|U − W|).
 
-    They hold on one side of U = W and for one sign of ω − Ω. At the onset only the two parameters are unknown.
+    They hold on one side of U = W and for one sign of ω − Ω.
     """
 
     plane: ParameterPlane
@@ -199,7 +195,6 @@ class _Condition:
         return (1.0, smaller) if self.side == FAST else (smaller, 1.0)
 
     def alpha(self, unknowns: FloatArray) -> float:
-        """Return the angle of (24) in rad."""
         slip, rim = self.ratio(unknowns)
         return math.atan2(rim, slip)
 
@@ -215,26 +210,21 @@ class _Condition:
         return found
 
     def disc(self, unknowns: FloatArray) -> DiscOnDisc:
-        """Return the disc with the two parameters."""
         return self.at(*unknowns[:2].tolist())[0]
 
     def balance(self, unknowns: FloatArray) -> float:
-        """Return the residual of the whirl's torsional balance, in N m."""
         disc, arm = self.at(*unknowns[:2].tolist())
         torque = disc.shaft_damping * self.sense * (disc.disc_speed - disc.shaft_speed)
         return disc.friction_force * arm(*self.ratio(unknowns)) - torque
 
     def coefficients(self, unknowns: FloatArray) -> Coefficients:
-        """Return the coefficients of the characteristic equation."""
         return characteristic_coefficients(self.disc(unknowns), *self.ratio(unknowns), self.law)
 
     def margin(self, unknowns: FloatArray) -> float:
-        """Return the second residual of the boundary."""
         found = self.coefficients(unknowns)
         return found.hurwitz if self.kind == "Hopf" else found.constant
 
     def equations(self, unknowns: FloatArray) -> FloatArray:
-        """Return the residuals of the boundary."""
         rest = () if self.kind == "onset" else (self.margin(unknowns),)
         return np.array([self.balance(unknowns), *rest])
 
@@ -254,20 +244,17 @@ class _Condition:
         return np.array(inside)
 
     def starts(self) -> Iterator[FloatArray]:
-        """Yield the crossings of the curves with the lines."""
         for across in (0, 1):
             for value in self.plane.lines(across).tolist():
                 yield from self.crossings(across, value)
 
     def crossings(self, across: int, value: float) -> Iterator[FloatArray]:
-        """Yield the points of the curves, within the limits, for a ``value`` of one parameter."""
         found = [self.whirl(across, value)] if self.kind == "onset" else self.zeros(across, value)
         for point in found:
             if point is not None and np.all(self.limits(point) > 0.0):
                 yield point
 
     def zeros(self, across: int, value: float) -> Iterator[FloatArray | None]:
-        """Yield the whirls on a line whose :meth:`margin` is zero."""
         ratios = np.geomspace(FARTHEST, NEAREST, NODES)
         if self.plane.names[1 - across] != INERTIA:
 
@@ -290,11 +277,10 @@ class _Condition:
 
     @staticmethod
     def pair(across: int, value: float, other: float) -> tuple[float, float]:
-        """Return the two parameters on a line."""
         return (value, other) if across == 0 else (other, value)
 
     def whirl(self, across: int, value: float, *nearness: float) -> FloatArray | None:
-        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter; None if none exists."""
+        """Return the unknowns of the whirl at a ratio, on a line with one constant parameter, or None."""
         along = 1 - across
         low, high = self.plane.lower[along], self.plane.upper[along]
 
@@ -331,14 +317,13 @@ def _composed(
 
 
 def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:
-    """Yield a zero of ``function`` between any neighbouring ``nodes`` of different sign."""
     for (left, low), (right, high) in itertools.pairwise((node, function(node)) for node in nodes.tolist()):
         if low * high < 0.0:
             yield float(brentq(function, left, right))
 
 
 def _near(point: FloatArray, curve: FloatArray) -> bool:
-    """Return whether a point lies on the polygon through the points of a curve, within its sag."""
+    """Return whether a point lies on the polygon through the points of a curve, within SAME."""
     begin, along = curve[:-1], np.diff(curve, axis=0)
     share = np.sum((point - begin) * along, axis=1) / np.sum(along**2, axis=1)
     feet = begin + np.clip(share, 0.0, 1.0)[:, np.newaxis] * along

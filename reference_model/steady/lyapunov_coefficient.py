@@ -1,8 +1,8 @@
 """The first Lyapunov coefficient of a whirl at its Hopf boundary: soft or hard onset of modulation.
 
-Near a Hopf boundary the motion is ż = λz + c·z|z|² in one complex amplitude z, in suitable coordinates. If Re c < 0 a
-small stable cycle grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the whirl
-before the boundary, and beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied
+Near a Hopf boundary the motion is ż = λz + c·z|z|² in a complex amplitude z. If Re c < 0 a small stable cycle, of
+amplitude √(−Re λ/Re c), grows out of the whirl beyond the boundary. If Re c > 0 an unstable cycle shrinks onto the
+whirl before the boundary, and beyond it the motion jumps to another attractor (Kuznetsov 2004, Elements of applied
 bifurcation theory, sections 3.5 and 5.4).
 """
 
@@ -21,7 +21,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, checked_state
 STEP = 8e-3
 """Step of the differences, in units of the distance to infinite derivatives of friction.
 
-Truncation and rounding errors of the third difference are far below 1 %.
+Errors of the third difference are far below 1 %.
 """
 
 SIZE = 4
@@ -34,19 +34,18 @@ ComplexVector = NDArray[np.complex128]
 def growth_by_amplitude(disc: DiscOnDisc, state: ArrayLike, contact: IsotropicContact | None = None) -> float:
     """Return Re c in 1/s of a whirl without offset and with a pair of eigenvalues on the imaginary axis.
 
-    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. So a cycle of the
-    amplitude √(−Re λ/Re c) exists near the boundary. ``state``, shape (6,), lies on the whirl, with the centre on
-    the x axis; ``contact`` None means the law of the parameters.
+    The amplitude a is that of the radius, r = ρ·(1 + a·cos νt), with ȧ = Re λ·a + Re c·a³. ``state``, shape (6,),
+    lies on the whirl, with the centre on the x axis.
 
-    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, the disc rests on single
-    points, or its support is not linear.
+    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are real, or the disc rests on single
+    points or a nonlinear support.
     """
     require_linear_support(disc)
     law = isotropic_contact_of(disc, contact, "the modulation")
     radius, _, _, _, speed, spin = checked_state(disc, state).tolist()
     whirl = np.array([radius, 0.0, speed, disc.disc_speed - spin])
     slip, rim = abs(speed - disc.disc_speed * radius), disc.contact_radius * abs(whirl[3])
-    # A fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.
+    # Fraction of the distance to where a point of the ring comes to rest, or the centre reaches the axis.
     scales = np.array([radius, radius, radius, abs(whirl[3])]) * min(abs(slip / rim - 1.0), 0.3)
     rates = polar_rates(disc, law)
 
@@ -80,10 +79,7 @@ def polar_rates(disc: DiscOnDisc, law: IsotropicContact) -> Rates:
 
 
 def _real_cubic_coefficient(rates: Rates) -> float:
-    """Return Re c at the origin, with z such that the first component deviates by Re z: half of (5.62) in Kuznetsov.
-
-    Raises ``ValueError`` if the eigenvalues nearest to the imaginary axis are not a complex pair.
-    """
+    """Return Re c at the origin for z whose real part is the first component: half of (5.62) in Kuznetsov."""
     origin = np.zeros(SIZE)
     at_origin = rates(origin)
     step = 1e-2 * STEP

@@ -1,7 +1,8 @@
 """Linear stability of sliding motions of pin and disc, from analytic Jacobians of eq. 1 and 19.
 
-Eigenvalues are in 1/s, as tuples of complex numbers with the slowest decay first. With an isotropic contact nothing
-depends on the angle of a disc, so steady motions have five states without it.
+Eigenvalues are in 1/s, slowest decay first. With an isotropic contact nothing depends on the angle of a disc, so
+steady motions have five states without it. ``contact`` None means the law of the parameters. All functions but
+:func:`sliding_jacobian` raise ``ValueError`` for a disc on single points.
 """
 
 from __future__ import annotations
@@ -27,14 +28,10 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
-    """Return the derivative of the right side of eq. 1 or 19 by the state, for a sliding contact.
+    """Return the derivative of the right side of eq. 1 or 19 by the state for a sliding contact, (4, 4) or (6, 6).
 
-    ``state`` is x, y in m and vx, vy in m/s of a pin, or x, y, angle (rad), vx, vy, spin (rad/s) of a disc; the
-    result has shape (4, 4) or (6, 6). ``contact`` is the friction law of a disc; None means the law of the
-    parameters.
-
-    Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the
-    state is invalid or exactly at the stop of the support; or if a contact is given for a pin.
+    Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the state
+    is invalid or exactly at the stop of the support; or if a contact is given for a pin.
     """
     state = checked_state(system, state)
     size = system.state_size // 2
@@ -53,7 +50,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of the arguments of friction, u_x, u_y, S and φ, by x, y, φ and by their rates.
+        # Derivatives of u_x, u_y, S and φ by x, y, φ and by their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]
@@ -65,11 +62,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
 def jacobian_without_angle(
     system: System, state: ArrayLike, contact: IsotropicContact | None = None
 ) -> FloatArray:
-    """Return :func:`sliding_jacobian` without row and column of the angle.
-
-    The shape is (4, 4) for a pin, (5, 5) for a disc. Parameters and errors are those of :func:`sliding_jacobian`;
-    ``ValueError`` is also raised for single points, whose friction depends on the angle.
-    """
+    """Return :func:`sliding_jacobian` without the angle: shape (4, 4) for a pin, (5, 5) for a disc."""
     if isinstance(system, PinOnDisc):
         return sliding_jacobian(system, state, contact)
     law = isotropic_contact_of(system, contact, "steady motions")
@@ -82,17 +75,14 @@ def equilibrium_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
-    A pin slips along the circumference, so friction resists its radial velocity like a damper μN/(|ω|ρ*) and its
-    tangential velocity not at all. So its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ +
-    C, and (3) is always stable if β > 0, as the paper says below (5). For a disc, and for a pin on a nonlinear
-    support, they are those of :func:`sliding_jacobian` without the angle.
+    Friction resists the radial velocity of a pin like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So
+    its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and (3) is always stable if β > 0,
+    as the paper says below (5). For a disc, and on a nonlinear support, they are those of
+    :func:`jacobian_without_angle`.
 
     ``state``, shape (6,), is that of a disc with its centre at rest, see
-    :func:`reference_model.self_centred_equilibria`; a pin needs none. ``contact`` is that of
-    :func:`sliding_jacobian`.
-
-    Raises ``ValueError`` if a pin has no such equilibrium, or has it on the axis, where it does not slide; if a
-    disc rests on single points, whose friction depends on the angle; and as :func:`sliding_jacobian`.
+    :func:`reference_model.self_centred_equilibria`. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a pin
+    has no such equilibrium or has it on the axis, where it does not slide.
     """
     if isinstance(system, DiscOnDisc):
         if state is None:
@@ -123,15 +113,10 @@ def turning_frame_jacobian(
 ) -> FloatArray:
     """Return the Jacobian of a whirl in the axes that turn with it, shape (4, 4) for a pin, (5, 5) for a disc.
 
-    The unknowns are the position in m and the absolute velocity in m/s, both in components along the turning axes,
-    and the spin of a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) −
-    κ×v.
-
-    ``state`` lies on the whirl, with the centre on the x axis: y = vx = 0. A pin needs none, because it has at most
-    one whirl. ``contact`` is that of :func:`sliding_jacobian`.
-
-    Raises ``ValueError`` if a pin has no whirl; if the state cannot lie on a whirl; if a disc rests on single
-    points, whose friction depends on the angle; and as :func:`sliding_jacobian`.
+    The unknowns are position in m and absolute velocity in m/s, in components along the turning axes, and the spin of
+    a disc in rad/s. Without offset the whirl is a fixed point there: p' = v − κ×p, v' = a(p, v) − κ×v. ``state`` of a
+    disc lies on the whirl, with the centre on the x axis. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a
+    pin has no whirl or the state cannot lie on one.
     """
     state = _state_on_whirl(system, state)
     jacobian = jacobian_without_angle(system, state, contact)
@@ -145,13 +130,13 @@ def whirl_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of a whirl in the frame that turns with it: an exact zero, then three or four more.
 
-    The zero belongs to the free phase. For a pin the other three are the roots of the corrected (13). Parameters and
+    The zero belongs to the free phase. For a pin the others are the roots of the corrected (13). Parameters and
     errors are those of :func:`turning_frame_jacobian`.
     """
     state = _state_on_whirl(system, state)
     jacobian = turning_frame_jacobian(system, state, contact)
-    # A rotation of the whole motion is the free phase: (0, 1) in position, (−κ, 0) in velocity. Deflating this
-    # direction keeps the rounding error of a zero eigenvalue out of the others.
+    # A rotation of the whole motion is the free phase: (0, 1) in position, (−κ, 0) in velocity. Deflation keeps the
+    # rounding error of its zero eigenvalue out of the others.
     phase = np.zeros(len(jacobian))
     phase[1], phase[2] = 1.0, -_frequency(system, state)
     others = [i for i in range(len(jacobian)) if i != 1]
@@ -162,20 +147,17 @@ def whirl_eigenvalues(
 def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the largest μN in N for a stable rotation of a centred disc about the axis.
 
-    With the centre on the axis only the relative spin S slides, and b(ω − Ω − S) = μN·M sign S, where M is the
-    moment of pure spin (R for a ring). Against a small slip u of the centre friction is a damper μN·g/|S| that
-    turns with the master disc, g/|S| = ∂F/∂U at U = 0 (1/(2R|S|) for a ring, W = R|S|)::
+    With the centre on the axis b(ω − Ω − S) = μN·M sign S, where M is the moment of pure spin (R for a ring). Against
+    a small slip u of the centre friction is a damper μN·g/|S| that turns with the master disc, g/|S| = ∂F/∂U at U = 0
+    (1/(2R|S|) for a ring). With the stiffness C for small deflections::
 
         mz̈ + (β + μN·g/|S|)·ż + (C − iω·μN·g/|S|)·z = 0
 
-    C is the stiffness for small deflections, so hardening and a stop with a gap do not matter. A motion z ~
-    exp(±ikt) in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN. The
-    instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
+    A motion z ~ exp(±ikt) in the sense of ω neither grows nor decays if μN·g(|ω| − k) = βk|S|, which is linear in μN.
+    The instability ends at the load b|ω − Ω| = μN·M, above which the disc sticks.
 
-    The result does not depend on ``friction_force``. ``contact`` None means the law of the parameters. Raises
-    ``ValueError`` if there is an offset, so that the centre does not rest on the axis; if |ω| <= k, where the
-    rotation is stable at every load; if b = 0 or Ω = ω, where the disc may stick at every load; or if the disc
-    rests on single points.
+    Raises ``ValueError`` if there is an offset; if |ω| <= k, where the rotation is always stable; or if b = 0 or Ω =
+    ω, where the disc may stick at every load.
     """
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
@@ -199,7 +181,7 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
 
 
 def slowest_first(eigenvalues: Iterable[complex]) -> tuple[complex, ...]:
-    """Return the eigenvalues by decreasing real part, then by decreasing imaginary part."""
+    """Return the eigenvalues by decreasing real part, then imaginary part."""
     return tuple(sorted((complex(value) for value in eigenvalues), key=lambda v: (-v.real, -v.imag)))
 
 
@@ -231,5 +213,5 @@ def _oscillator_eigenvalues(mass: float, damping: float, stiffness: float) -> tu
         oscillating = complex(-damping, math.sqrt(-discriminant)) / (2.0 * mass)
         return oscillating, oscillating.conjugate()
     faster = -(damping + math.sqrt(discriminant)) / 2.0
-    # From the product of the roots, because their difference cancels for strong damping.
+    # From the product of the roots, because the difference cancels for strong damping.
     return complex(stiffness / faster), complex(faster / mass)

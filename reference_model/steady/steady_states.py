@@ -31,7 +31,7 @@ class SelfCentredEquilibrium:
     """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
 
     The position ``x``, ``y`` is in m. ``eigenvalues`` are in 1/s, slowest decay first: four for a pin, five for a
-    disc, whose angle drops out. The equilibrium is ``stable`` if all small deviations decay.
+    disc, without its angle. The equilibrium is ``stable`` if all small deviations decay.
     """
 
     x: float
@@ -41,19 +41,19 @@ class SelfCentredEquilibrium:
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, shape (4,)."""
+        """State, shape (4,)."""
         return np.array([self.x, self.y, 0.0, 0.0])
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningEquilibrium(SelfCentredEquilibrium):
-    """The self-centred equilibrium of a disc, which spins about its resting centre with ``spin`` φ̇ in rad/s."""
+    """The self-centred equilibrium of a disc with the ``spin`` φ̇ in rad/s about its resting centre."""
 
     spin: float
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the angle zero, shape (6,)."""
+        """State with the angle zero, shape (6,)."""
         return resting(self.x, self.y, self.spin)
 
 
@@ -62,9 +62,8 @@ class Whirl:
     """A motion on a circle about the axis with permanent slip (11).
 
     ``radius`` is in m, ``frequency`` in rad/s, negative if clockwise. ``eigenvalues`` are in 1/s in the frame that
-    turns with the whirl: first the exact zero of the free phase, then the others, slowest decay first: three for a
-    pin, four for a disc, whose angle drops out. The whirl is ``stable`` if all small deviations decay, apart from a
-    shift in phase.
+    turns with the whirl: first the exact zero of the free phase, then three for a pin or four for a disc, slowest
+    decay first. The whirl is ``stable`` if all small deviations decay, apart from a shift in phase.
     """
 
     radius: float
@@ -74,29 +73,29 @@ class Whirl:
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the centre on the x axis, shape (4,)."""
+        """State with the centre on the x axis, shape (4,)."""
         return np.array([self.radius, 0.0, 0.0, self.frequency * self.radius])
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpinningWhirl(Whirl):
-    """The whirl of a disc, which spins about its circling centre with a constant ``spin`` φ̇ in rad/s."""
+    """The whirl of a disc with the constant ``spin`` φ̇ in rad/s about its circling centre."""
 
     spin: float
 
     @property
     def state(self) -> FloatArray:
-        """State for a simulation, with the centre on the x axis and the angle zero, shape (6,)."""
+        """State with the centre on the x axis and the angle zero, shape (6,)."""
         return circling(self.radius, self.frequency, self.spin)
 
 
 def resting(x: float, y: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its resting centre."""
+    """Return the state of a disc whose centre rests."""
     return np.array([x, y, 0.0, 0.0, 0.0, spin])
 
 
 def circling(radius: float, frequency: float, spin: float) -> FloatArray:
-    """Return the state of a disc that spins about its circling centre, which is on the x axis."""
+    """Return the state of a disc whose centre circles, on the x axis."""
     return np.array([radius, 0.0, 0.0, 0.0, frequency * radius, spin])
 
 
@@ -117,27 +116,26 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one: that of (3) if μN < C·|X0| and ω ≠ 0. It has none
+    A pin has at most one: that of (3). It has none
 
-    - if μN >= C·|X0|, which includes X0 = 0; at equality the pin would stick on the axis;
+    - if μN >= C·|X0|; at equality the pin would stick on the axis;
     - if ω = 0 with friction: the pin sticks;
     - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
 
-    A disc has one if friction cannot hold it at rest on the axis against springs and shaft. On the continuous ring
-    it is unique: at a given radius the torsional balance allows one spin, and the balance of forces, (Cρ)² +
-    (μN·F)² = (C·X0)², allows one radius, because F and M are derivatives of one convex function of slip. If X0 = 0,
-    C = 0 or ω = 0 the disc spins about a centre without slip. If b = 0 and ω = Ω it behaves like a pin. It has none
+    A disc on a ring has at most one: at a given radius the torsional balance allows one spin, and the balance of
+    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function of slip. It
+    has none
 
     - if friction holds the disc at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0²
-    with the deflection d at the force μN·F. :func:`why_no_equilibrium` returns the condition that fails.
+    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
+    the deflection d at the force μN·F.
 
-    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` if a disc
-    rests on single points, if a contact is given for a pin, or if the centre slips exactly as fast as the rim of a
-    continuous ring, where eigenvalues do not exist.
+    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` for a disc
+    on single points, a contact of a pin, or a centre that slips exactly as fast as the rim of a ring, where
+    eigenvalues do not exist.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
@@ -177,24 +175,22 @@ def whirls(system: DiscOnDisc, contact: IsotropicContact | None = None) -> tuple
 def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whirl, ...]:
     """Return every motion of ``system`` on a circle about the axis with permanent slip; X0 = 0 only.
 
-    A pin has at most one: that of (11) if |ω| > k, in the sense of the disc's rotation. There is none
+    A pin has at most one: that of (11). It has none
 
-    - if |ω| <= k: the pin would overtake the disc, and friction would brake it as the damping does;
+    - if |ω| <= k: the pin would overtake the disc, and friction would brake it;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
     - if μN = 0: nothing drives it;
     - if C = 0: nothing holds the pin on a circle.
 
-    A disc may have several, the largest first, all with the pin's frequency ±k and smaller than the pin's. The same
-    conditions hold, and the load must reach :func:`smallest_load_with_whirl`. :func:`why_no_whirl` returns the
-    condition that fails.
+    A disc may have several, listed from the largest. They have the pin's frequency ±k and smaller radii. The same
+    conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
-    On a nonlinear support the frequency grows with the circle. The pin's circle has the speed μN/β, see
-    :func:`reference_model.formulas.pin.whirl_radius`. It is a whirl if the disc turns faster; otherwise, and if β =
-    0, the pin finally sticks. The circles of a disc are smaller and slower, because its friction acts only partly
-    along the circle, so a disc may have whirls where a pin sticks.
+    On a nonlinear support the frequency grows with the circle, and the pin's circle, with the speed μN/β, is a whirl
+    only if the disc turns faster. The friction of a disc acts only partly along the circle, so its circles are
+    slower, and it may have whirls where a pin sticks.
 
-    Raises ``ValueError`` if the offset is not zero, where the orbit is not a circle about the axis; otherwise
-    arguments and errors are those of :func:`self_centred_equilibria`.
+    Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
+    :func:`self_centred_equilibria`.
     """
     _require_centred(system)
     if isinstance(system, PinOnDisc):
@@ -237,10 +233,7 @@ def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWh
 
 
 def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) -> str | None:
-    """Return the condition that fails if :func:`self_centred_equilibria` finds none; else None.
-
-    Parameters and errors are those of :func:`self_centred_equilibria`.
-    """
+    """Return the condition that fails if :func:`self_centred_equilibria` finds none; else None."""
     if self_centred_equilibria(system, contact):
         return None
     if isinstance(system, PinOnDisc):
@@ -263,10 +256,7 @@ def why_no_equilibrium(system: System, contact: IsotropicContact | None = None) 
 
 
 def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str | None:
-    """Return the condition that fails if :func:`whirls` finds none; else None.
-
-    Parameters and errors are those of :func:`whirls`.
-    """
+    """Return the condition that fails if :func:`whirls` finds none; else None."""
     if whirls(system, contact):
         return None
     if isinstance(system, PinOnDisc):
@@ -288,13 +278,9 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    The balances of a whirl give its load in closed form for each ratio of slip to rim speed, see
-    :func:`reference_model.formulas.disc.whirl_at`. The smallest of these loads belongs either to a whirl of zero
-    radius, where it is :func:`reference_model.steady.stability.onset_load`, or to a fold, where two whirls meet.
-
-    The result does not depend on ``friction_force``. ``contact`` None means the law of the parameters. Raises
-    ``ValueError`` if whirls do not exist at any load, see :func:`whirls`, or if the support is not linear, where
-    whirls may begin and end at several loads.
+    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold,
+    where two whirls meet. It does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at
+    any load, or if the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
     _require_centred(disc)
@@ -314,7 +300,7 @@ def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
 
 
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
-    """Return why a disc never has a whirl. Its partial friction may drive a whirl where a pin's may not."""
+    """Return why a disc has no whirl. Its partial friction may drive one where a pin's may not."""
     return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
 
 

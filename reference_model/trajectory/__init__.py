@@ -16,30 +16,30 @@ if TYPE_CHECKING:
 
 
 class SimulationError(RuntimeError):
-    """An engine failed or returned non-finite numbers; the message names the time and a remedy."""
+    """An engine failed or returned non-finite numbers."""
 
 
 MOST_STEPS = 5_000_000
 """Largest number of steps, some minutes of work."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""Number of steps for a measurement of the pace, and largest number of remaining steps at that pace."""
+"""Number of steps that measure the pace, and largest number that may remain at that pace."""
 
 
 @dataclass
 class StepCount:
-    """Counts the steps of a motion from time 0 to ``end``, in any unit of time; all engines share the limit."""
+    """Count the steps of a motion from time 0 to ``end``, in any unit; all engines share the limit."""
 
     end: float
     steps: int = 0
     _looked_back: tuple[float, int] = (0.0, 0)
 
     def look_from(self, t: float) -> None:
-        """Measure the pace from the time ``t`` on, after a short slow passage."""
+        """Measure the pace from the time ``t`` on."""
         self._looked_back = t, self.steps
 
     def count(self, t: float) -> str:
-        """Count one more step, which ends at ``t``; return a message if there are or will be too many, else ""."""
+        """Count a step that ends at ``t``; return a message if there are or will be too many, else ""."""
         self.steps += 1
         if self.steps > MOST_STEPS:
             return f"more than {MOST_STEPS:,} steps are needed"
@@ -53,10 +53,10 @@ class StepCount:
 
 @dataclass(frozen=True)
 class Phase:
-    """A time span of slip, stick or pivoting.
+    """A time span of slip, stick or pivoting, which ends where the next one starts.
 
-    ``initial_state`` is the state at ``start``. A phase ends where the next one starts. In a "pivot" phase one of
-    several contact points rests on the master disc and the disc turns about it.
+    ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about one of several contact
+    points, which rests on the master disc.
     """
 
     kind: Literal["slip", "pivot", "stick"]
@@ -68,7 +68,7 @@ class Phase:
 def phases_of(
     begun: Sequence[tuple[Literal["slip", "pivot", "stick"], float, FloatArray]], end: float
 ) -> tuple[Phase, ...]:
-    """Return the phases for their kinds, starts in s and first states; the last phase lasts until ``end``."""
+    """Return the phases for their kinds, starts in s and first states; the last one lasts until ``end``."""
     ends = [*(start for _, start, _ in begun[1:]), end]
     return tuple(
         Phase(kind, start, until, state) for (kind, start, state), until in zip(begun, ends, strict=True)
@@ -79,9 +79,8 @@ def phases_of(
 class Solution:
     """How a trajectory was computed.
 
-    ``method`` describes the integrator, and ``tolerance`` is the requested one. ``evaluations`` counts those of the
-    equations of motion, and ``steps`` accepted steps. ``wall_time`` is in s. ``regularisation`` is the slip speed ε
-    in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
+    ``evaluations`` counts those of the equations of motion, ``steps`` the accepted ones, and ``wall_time`` is in s.
+    ``regularisation`` is the slip speed ε in m/s below which friction is μN·|w|/ε; 0 for exact Coulomb friction.
     """
 
     method: str
@@ -100,9 +99,9 @@ NOT_TOLD = Solution("not told", tolerance=math.nan, evaluations=0, steps=0, wall
 class Trajectory:
     """The motion of a system at the requested times.
 
-    ``times``, shape (n,), are in s. ``states``, shape (n, 4) or (n, 6), are x, y in m and vx, vy in m/s of a pin,
-    or x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` last from ``times[0]`` to ``times[-1]`` without
-    gaps; they are () if the engine does not report them. ``solution`` describes the computation.
+    ``times``, shape (n,), are in s. ``states``, shape (n, 4) or (n, 6), are x, y in m and vx, vy in m/s of a pin, or
+    x, y, angle (rad), vx, vy, spin (rad/s) of a disc. ``phases`` cover all times without gaps; () if the engine
+    reports none.
     """
 
     system: System
@@ -146,14 +145,13 @@ class Trajectory:
 
     @property
     def stick_times(self) -> FloatArray:
-        """Alternating start and end times in s of the stick phases, shape (2·phases,)."""
+        """Alternating start and end times of the stick phases in s, shape (2·phases,)."""
         return np.array([time for phase in self.stick_phases for time in (phase.start, phase.end)])
 
     def plot(self, figure: Figure | None = None) -> Figure:
         """Draw the path in the plane and radius, slip speed and spin over time; stick phases are shaded.
 
-        ``figure`` is the matplotlib figure to draw in; None makes a new one. Curves join the requested times.
-        Raises ``ModuleNotFoundError`` without matplotlib.
+        ``figure`` is the matplotlib figure, None for a new one. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import figure_of
 
@@ -165,9 +163,8 @@ class Trajectory:
     ) -> FuncAnimation:
         """Return an animation; save it with ``.save("motion.gif")`` or show it in a notebook by ``.to_jshtml()``.
 
-        ``speed`` is the simulated time in s per second of the animation. ``places`` are the contact points of
-        :class:`Points`, because a trajectory does not store them. Positions between requested times are interpolated.
-        Raises ``ModuleNotFoundError`` without matplotlib.
+        ``speed`` is in simulated seconds per second. ``places`` are the contact points of :class:`Points`, which a
+        trajectory does not store. Raises ``ModuleNotFoundError`` without matplotlib.
         """
         from reference_model.trajectory.pictures import animation_of
 

@@ -1,4 +1,4 @@
-"""Figures and animations of a motion, with matplotlib; SI units."""
+"""Figures and animations of a motion with matplotlib."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def animation_of(
     places: Iterable[tuple[float, ...]] | None = None,
     speed: float = 1.0,
 ) -> FuncAnimation:
-    """Move the pin or the disc, seen in the fixed frame; the spoke turns with the master disc."""
+    """Animate the pin or the disc in the fixed frame."""
     speed = positive_number("speed", speed, "s/s")
     if (times[-1] - times[0]) * FRAMES_PER_SECOND > speed * MOST_FRAMES:
         raise ValueError(f"speed = {speed:g} s/s: more than {MOST_FRAMES:,} frames; use a larger speed")
@@ -111,7 +111,6 @@ def animation_of(
 
 
 def _contact_places(system: System, places: Iterable[tuple[float, ...]] | None) -> Any:
-    """Return the positions of the contact points relative to the centre at φ = 0, as complex numbers in m."""
     if places is not None:
         return np.array([complex(*place[:2]) for place in places])
     if isinstance(system, DiscOnDisc) and system.contact_points:

@@ -1,1 +1,1 @@
-"""Common parts of the kernels of pins and discs: lanes, laws, requested times and convergence."""
+"""Common parts of the kernels of pins and discs."""

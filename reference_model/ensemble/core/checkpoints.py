@@ -17,17 +17,17 @@ from reference_model.ensemble.task import LENGTH, PACE_SIZE, RATE, SHORT, SPAN, 
 from reference_model.systems import FloatArray
 
 NONE, ON_THE_WAY, SLIPS, STICKS = 0.0, 1.0, 2.0, 3.0
-"""Kinds: unused room; no phase begins; slip begins; stick begins."""
+"""Kinds: unused; within a phase; slip begins; stick begins."""
 
 Checkpoints = NDArray[Any]
-"""Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace``, zeros where a phase begins.
+"""Records, shape (n,), of ``kind``, ``time`` in s, ``state`` in SI units and ``pace`` (zeros where a phase begins).
 
-Independently of these, they store the increasing ``requested`` times.
+They also store the increasing ``requested`` times.
 """
 
 
 def empty_checkpoints(n: int, state_size: int, requested: FloatArray | tuple[()] = ()) -> Checkpoints:
-    """Return ``n`` checkpoints, none of them taken, with up to n ``requested`` times in s."""
+    """Return ``n`` unused checkpoints with up to n ``requested`` times in s."""
     room = np.zeros(n, dtype=_layout(state_size))
     room["requested"] = np.inf
     room["requested"][: len(requested)] = requested
@@ -45,14 +45,12 @@ def _layout(state_size: int) -> np.dtype[Any]:
 
 @inlined
 def recorded(settings: Any) -> bool:
-    """Return whether checkpoints are requested."""
     requested: bool = settings.checkpoints.size > 0
     return requested
 
 
 @scalar
 def next_requested(memory: Any, settings: Any) -> float:
-    """Return the next requested time in units, or inf."""
     if memory.passed < settings.checkpoints.size:
         requested: float = settings.checkpoints[memory.passed].requested * memory.rate
         return requested
@@ -61,7 +59,7 @@ def next_requested(memory: Any, settings: Any) -> float:
 
 @scalar
 def mark_requested(lanes: Any, moment: Any, memory: Any, lane: int, until: float, settings: Any) -> bool:
-    """Return whether times up to ``until`` are requested; mark them as passed, and store the pace of ``moment``."""
+    """Return whether times up to ``until`` are requested; mark them as passed and store the pace of ``moment``."""
     before = memory.passed
     while memory.passed < settings.checkpoints.size and next_requested(memory, settings) <= until:
         memory.passed += 1

@@ -1,10 +1,8 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
-Both are resistances, as shares of μN, to slip of the centre and of the rim (the moment over R). Times the speeds they
-give the mean slip speed P.
-
-The ring's are complete elliptic integrals by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the
-smaller over the larger of U = |u| and the rim's |W|, and c the halved differences of a and g::
+Both are resistances, as shares of μN, to slip of the centre and of the rim. Those of the ring are elliptic integrals
+by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the smaller over the larger of U = |u| and the
+rim's |W|, and c the halved differences of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 
@@ -29,10 +27,10 @@ NEAREST = 1e-16
 """Smallest relative distance from U = |W| that makes a difference."""
 
 SMALL = 1e-4
-"""k² below which the terms after c₁² in the sum over k² are less than their own rounding."""
+"""k² below which the terms after c₁² in the sum over k² are lost in rounding."""
 
 HALVINGS = 7
-"""Number of means of a and g; both then agree to rounding for all k."""
+"""Number of means of a and g, which then agree to rounding for all k."""
 
 QUARTER = (
     float.fromhex("0x1.921fb54400000p+0"),
@@ -77,7 +75,7 @@ def points_shares(
 ) -> tuple[float, float, float, float]:
     """Return the resistances along x, y and the rim, and the mean slip speed, of points on a ring.
 
-    ``around`` contains (cos, sin) of each point in sequence. A point at rest contributes nothing. Compiled code only.
+    ``around`` contains (cos, sin) of each point in sequence. A point at rest contributes nothing.
     """
     raise NotImplementedError
 
@@ -101,7 +99,7 @@ def _points_shares(ux: Any, uy: Any, rim: Any, around: Any) -> Callable[..., Any
 
 @inlined
 def turned(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle of up to 1e6 rad without a branch, by quarter turns (Cody and Waite)."""
+    """Return cosine and sine of an angle up to 1e6 rad without a branch, by quarter turns (Cody and Waite)."""
     quarters = np.rint(angle * (2.0 / math.pi))
     x = ((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]) - quarters * QUARTER[2]
     m = x * x
@@ -111,7 +109,7 @@ def turned(angle: float) -> tuple[float, float]:
     for coefficient in COSINE[1:]:
         cosine = cosine * m + coefficient
     sine *= x
-    turn = quarters - 4.0 * np.rint(0.25 * quarters)  # -2 to 2
+    turn = quarters - 4.0 * np.rint(0.25 * quarters)
     odd = abs(turn) == 1.0
     c = sine if odd else cosine
     s = cosine if odd else sine

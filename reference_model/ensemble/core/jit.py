@@ -19,43 +19,41 @@ from reference_model.numerics.compiled_once import CompiledOnce
 extending: Any = numba.extending  # not fully typed
 
 PART: Any = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""Options of functions that only compiled code calls; wrappers for Python would take time to compile."""
+"""Options of functions that only compiled code calls: wrappers take time to compile."""
 
 INLINED: Any = {**PART, "forceinline": True}
 """Options of overloads."""
 
 SOURCES = Path(__file__).parents[2]
-"""Folder of all sources of a kernel; some of its constants are defined outside ``ensemble``."""
+"""Folder of all sources of a kernel, some of them outside ``ensemble``."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def inlined(function: Function) -> Function:
-    """Compile ``function`` into each of its callers, so that a loop over lanes that calls it can be vectorised."""
+    """Compile ``function`` into each caller, so that loops over lanes can be vectorised."""
     return cast(Function, extending.register_jitable(**INLINED)(function))
 
 
 def scalar(function: Function) -> Function:
-    """Compile ``function`` as one that its callers call, because it is large or has several callers.
+    """Compile ``function`` to be called, not inlined, because it is large or has several callers.
 
-    It is compiled again with each direct or indirect caller. So in a chain of calls only some functions should be
-    scalar, and the others ``written_out``.
+    Each direct or indirect caller compiles it again, so only some functions in a chain of calls should be scalar.
     """
     return cast(Function, extending.register_jitable(**PART)(function))
 
 
 def written_out(function: Function) -> Function:
-    """Insert ``function`` into its only caller before numba compiles the caller, with the functions passed to it."""
+    """Insert ``function`` into its only caller before compilation, with the functions passed to it."""
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 
 def called_from_python(function: Callable[..., None]) -> CompiledOnce:
-    """Compile ``function`` as one that Python calls."""
     return CompiledOnce(function, SOURCES)
 
 
 def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
-    """Return a function with these ``arguments`` and ``lines``, for code that must be unrolled before compilation."""
+    """Return a function with these ``arguments`` and ``lines``, for code that must be unrolled."""
     namespace: dict[str, Any] = {"math": math}
     exec("\n    ".join([f"def function({arguments}):", *lines]), namespace)
     function: Callable[..., Any] = namespace["function"]
@@ -66,7 +64,7 @@ def generated(arguments: str, lines: Sequence[str]) -> Callable[..., Any]:
 def wide_vectors(typing: Any) -> Any:
     """Let the calling function use the widest vectors of the processor, without effect on results.
 
-    LLVM uses 256 bits on many processors that have 512 (figures: ``benchmarks/ensemble.py``).
+    LLVM uses 256 bits on many processors that have 512.
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:

@@ -1,11 +1,9 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
 Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
-inlined functions of numbers and tuples. The step is also compiled for one lane, because a single trajectory would pay
-for all.
-
-A round is one trial step in every lane, each with its own step size. A lane raises a flag at rare events (rest,
-release, the end), which scalar code handles. Results are the same bit by bit in every lane and next to any others.
+inlined functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events
+(rest, release, the end) a lane raises a flag, which scalar code handles. Results are the same bit by bit in every
+lane.
 """
 
 from __future__ import annotations
@@ -24,7 +22,7 @@ from reference_model.systems import FloatArray
 
 
 class _Lanes(Protocol):
-    """The motion ``now`` and after the ``trial`` step, and a flag that is positive if a lane needs attention."""
+    """The motion ``now`` and after the ``trial`` step, and a flag that is positive at an event."""
 
     now: Any
     trial: Any
@@ -39,11 +37,11 @@ Kind = TypeVar("Kind")
 
 
 Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
-"""Writes the start of a trajectory, given by its number, to the trial of a lane; returns whether it has ended."""
+"""Writes the start of a trajectory, given by its number, to a lane's trial; returns whether it has ended."""
 Advance = Callable[[Lanes, Kind], None]
 """Makes a trial step in all lanes, or in the first one only."""
 HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
-"""Handles a lane with a flag and may change its trial; returns whether the trajectory has ended."""
+"""Handles a flag and may change the trial; returns whether the trajectory has ended."""
 Store = Callable[[Lanes, Memory, int, Results], None]
 """Writes the result of a trajectory from the trial of its lane."""
 Idle = Callable[[Lanes, int], None]
@@ -69,9 +67,7 @@ def run(
 ) -> None:
     """Run the trajectories ``first`` to ``last`` (excluded) of ``task``, and write their ends to ``results``.
 
-    ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), the data that no vector needs; both
-    are zeros. ``kind`` contains properties for the compiler. ``settings`` is passed often and should contain few
-    arrays.
+    ``record``, shape (1,), contains all lanes, and ``memory``, shape (LANES,), their scalar data; both are zeros.
     """
     wide_vectors()
     busy = np.zeros(LANES, dtype=np.bool_)
@@ -80,7 +76,7 @@ def run(
     for lane in range(LANES):
         idle(record[0], lane)
     while True:
-        # Taken again in every round, because the lanes exist only while something refers to the array.
+        # Again in every round, because the lanes exist only while something refers to the array.
         lanes = record[0]
         for lane in range(LANES):
             ended = False
@@ -109,14 +105,12 @@ def run(
 
 @inlined
 def row_of(values: FloatArray, number: int) -> FloatArray:
-    """Return the row of a trajectory in an array with a row for each, or a single one for all."""
     row: FloatArray = values[number if values.shape[0] > 1 else 0]
     return row
 
 
 @scalar
 def store_end(lanes: Any, memory: Any, lane: int, results: Results) -> None:
-    """Write the end of a lane in SI units, except for its state."""
     number, length, rate, found = memory.number, memory.length, memory.rate, memory.found
     results.times[number] = lanes.trial.state.time[lane] / rate
     results.ends[number], results.steps[number] = memory.end, int(lanes.steps[lane])

@@ -1,4 +1,4 @@
-"""Constants of pins and discs in units that make a motion of order one, forces, and the duration of rest."""
+"""Scaled constants of pins and discs, forces, and the duration of rest."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from reference_model.ensemble.core.jit import inlined, scalar
 from reference_model.motion.stick import GRAZING, ROUNDING
 
 ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
-"""Relative slip that counts as none: a body that moves with the disc to rounding error sticks."""
+"""Largest relative slip that counts as rounding, so that the body sticks."""
 
 CREEP = 0.1
-"""Largest excess of the pull for creeping slip, as a fraction of the pull's change in a turn or of g."""
+"""Largest excess of the pull in creep, as a fraction of the pull's change in a turn or of g."""
 
 
 class PinLaw(NamedTuple):
     """Constants of a pin, divided by its mass, scaled so that motion is of order one.
 
-    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``disc_speed`` ω, ``offset`` X0, ``stretching`` s₀.
-    ``free`` = 1 keeps time unstretched without friction, where nothing rests.
+    ``stiffness`` is k², ``damping`` β/m, ``friction`` g = μN/m, ``stretching`` s₀. ``free`` = 1 keeps time
+    unstretched without friction, where nothing rests.
     """
 
     stiffness: float
@@ -36,8 +36,8 @@ class PinLaw(NamedTuple):
 class DiscLaw(NamedTuple):
     """Constants of a disc, scaled so that motion is of order one; seven are those of a pin.
 
-    ``around`` contains the unit vectors to the contact points, (cos, sin) of each in sequence; () for the ring.
-    ``leverage`` is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
+    ``around`` contains (cos, sin) of the direction of each contact point in sequence; () for the ring. ``leverage``
+    is η = R/κ, ``shaft_rate`` b/J, ``lag`` κ(ω − Ω) and ``curling`` 1/κ.
     """
 
     around: tuple[float, ...]
@@ -64,7 +64,7 @@ Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, f
 def units(
     k: float, c: float, g: float, omega: float, offset: float, place: float, speed: float
 ) -> tuple[float, float]:
-    """Return the unit of length in m and the inverse unit of time in 1/s, as ``units.Units.of`` for a pin."""
+    """Return the unit of length in m and the inverse unit of time in 1/s, as ``Units.of`` for a pin."""
     rate = max(k, abs(omega))
     if rate == 0.0:
         rate = c
@@ -76,7 +76,6 @@ def units(
 
 @inlined
 def pull(z: complex, w: complex, law: Law) -> complex:
-    """Return a(z, w), the relative acceleration without friction."""
     v = w + 1j * law.disc_speed * z
     acceleration: complex = -law.stiffness * (z - law.offset) - (law.damping + 1j * law.disc_speed) * v
     return acceleration
@@ -98,7 +97,6 @@ def ring_friction(
 def points_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return the friction of points, like :func:`ring_friction`; computed in the frame of the disc."""
     c, s = turned(angle)
     fx, fy, moment, power = points_shares(c * ux + s * uy, c * uy - s * ux, law.leverage * r, law.around)
     return s * fy - c * fx, -s * fx - c * fy, -law.leverage * moment, power
@@ -106,7 +104,7 @@ def points_friction(
 
 @scalar
 def release_delay(z: complex, law: PinLaw) -> float:
-    """Return how long a pin at rest at ``z`` sticks, like ``stick.release_delay``: eq. 7; inf for permanent stick."""
+    """Return how long a pin at rest at ``z`` sticks, like ``stick.release_delay``: eq. 7."""
     constant = law.stiffness * law.offset
     turning = pull(z, 0j, law) - constant
     p, q, g = abs(constant), abs(turning), law.friction
@@ -128,7 +126,7 @@ def release_delay(z: complex, law: PinLaw) -> float:
 
 @scalar
 def sticking_radius(law: PinLaw) -> float:
-    """Return the largest distance from the axis with permanent stick of a pin (9), where p + q = g."""
+    """Return the largest distance from the axis with permanent stick of a pin (9)."""
     turning = abs(complex(law.stiffness - law.disc_speed**2, law.disc_speed * law.damping))
     spare = law.friction - law.stiffness * abs(law.offset)
     return spare / turning if turning > 0.0 else math.inf
@@ -138,10 +136,9 @@ def sticking_radius(law: PinLaw) -> float:
 def creeps_by_turns(radius: float, last: float, law: PinLaw) -> bool:
     """Return whether a pin released at the radius ``last`` and then at ``radius`` creeps inward forever.
 
-    Its pull has a constant part p = k²|X0| and a part q, proportional to the radius, that turns with the pin. Once
-    per turn they add up to g + δ, around which the pull falls like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the
-    resulting slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ never reaches zero. Nor does it if c² >=
-    4K: see ``pin.slip.creeps_steadily``.
+    Once per turn the constant pull p = k²|X0| and the turning pull q add up to g + δ, around which the pull falls
+    like B·(ωt)²/2, B = p·q/(p + q). With K = k² − ω² the slip reduces δ by 4.5·K·δ²/(B·ω²), less than all of it, so δ
+    never reaches zero. Nor does it if c² >= 4K: see ``pin.slip.creeps_steadily``.
     """
     inward = law.stiffness - law.disc_speed**2
     constant = law.stiffness * abs(law.offset)

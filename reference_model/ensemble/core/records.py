@@ -1,7 +1,7 @@
 """Records: the data of a lane, by name.
 
-For the compiler all fields have constant offsets from one address, so it sees that no two rows overlap and can
-vectorise loops over lanes. An array of rows or a tuple of arrays would take four times as long.
+All fields have constant offsets from one address, so the compiler can vectorise loops over lanes. An array of rows or
+a tuple of arrays would take four times as long.
 """
 
 from __future__ import annotations
@@ -31,22 +31,20 @@ class Record:
 
 
 class Rows(Generic[Numbers]):
-    """A field with the numbers of a named tuple per lane: a row for each of them, under its name."""
+    """A field with a row for each number of a named tuple, under its name."""
 
     def __getattr__(self, name: str) -> FloatArray:
-        """Return a row; compiled code only, like everything about rows."""
         raise NotImplementedError
 
 
 @cache
 def layout(record: type) -> np.dtype[Any]:
-    """Return the memory layout of a record, or of a named tuple as part of one."""
+    """Return the memory layout of a record or of a named tuple."""
     hints = get_type_hints(record, include_extras=True)
     return np.dtype([(name, *_placed(hint)) for name, hint in hints.items()], align=True)
 
 
 def _placed(hint: Any) -> tuple[Any, ...]:
-    """Return type and shape of a field."""
     if get_origin(hint) is Annotated:
         return np.float64, (get_args(hint)[1],)
     if get_origin(hint) is Rows:
@@ -61,21 +59,20 @@ def at(rows: Rows[Any], lane: int) -> tuple[float, ...]:
 
 
 def put(rows: Rows[Numbers], lane: int, numbers: Numbers | tuple[float, ...]) -> None:
-    """Store the numbers of a named tuple, or numbers in its order, in one lane; compiled code only."""
+    """Store numbers in the order of the named tuple in one lane; compiled code only."""
     raise NotImplementedError
 
 
 def fill(record: Any, numbers: Any) -> None:
-    """Store the numbers of a named tuple or of a similar record; compiled code only."""
+    """Store the numbers of a named tuple or record; compiled code only."""
     raise NotImplementedError
 
 
 def clear(record: Any) -> None:
-    """Set all fields to zero; compiled code only."""
     raise NotImplementedError
 
 
-# All are unrolled over the fields of the record, because a loop would need to access fields by number.
+# Unrolled over the fields, because a loop would need to access fields by number.
 
 
 @overload(at, jit_options=INLINED, strict=False)

@@ -1,4 +1,4 @@
-"""Recurrence of a motion: convergence of successive values, and measures from one value to the next."""
+"""Convergence of successive values of a motion, and measures from one value to the next."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ ACCURACY = 1e-4
 """Relative distance that may remain when a motion counts as converged."""
 
 STILL = 1e-2
-"""Distance between crossings, as a fraction of the distance allowed by ACCURACY, that is only noise."""
+"""Distance between crossings that is only noise, as a fraction of that allowed by ACCURACY."""
 
 NO_WINDOW = 0
 """Kind of a window that measures nothing."""
 
 
 class Series(Record):
-    """The last values of a kind, the last two distances between successive values, and their number."""
+    """The last values of a kind, the last two distances between values, and their number."""
 
     values: Annotated[FloatArray, 5]
     last: float
@@ -30,7 +30,7 @@ class Series(Record):
 
 
 class Measures(NamedTuple):
-    """Measures of an end state: smallest and largest radius, and mean slip speed."""
+    """Smallest and largest radius, and mean slip speed in an end state."""
 
     least: float
     largest: float
@@ -38,7 +38,7 @@ class Measures(NamedTuple):
 
 
 class Window(Record):
-    """Kind of the measurement, its start, the slip distance at the start, and the range of the radius so far."""
+    """Kind and start of the measurement, the slip distance there, and the range of the radius so far."""
 
     kind: int
     since: float
@@ -49,7 +49,7 @@ class Window(Record):
 
 @scalar
 def compared(series: Series, values: Tuple, scale: float) -> bool:
-    """Compare with earlier values of the same kind; return whether less than ACCURACY·scale remains to converge."""
+    """Compare with earlier values; return whether less than ACCURACY·scale remains to converge."""
     square = 0.0
     for i in range(5):
         square += (values[i] - series.values[i]) ** 2
@@ -62,7 +62,7 @@ def compared(series: Series, values: Tuple, scale: float) -> bool:
 
 @scalar
 def converged(last: float, before: float, first: float, scale: float) -> bool:
-    """Return whether the last three distances between crossings imply that less than ACCURACY·scale remains."""
+    """Return whether three successive distances imply that less than ACCURACY·scale remains."""
     allowed = ACCURACY * scale
     if max(last, before, first) < STILL * allowed and not last > before > first:
         return True  # near a saddle they are small too, but grow
@@ -72,18 +72,15 @@ def converged(last: float, before: float, first: float, scale: float) -> bool:
 
 @inlined
 def open_window(window: Window, kind: int, t: float, way: float, radius: float) -> None:
-    """Begin to measure."""
     window.kind, window.since, window.way = kind, t, way
     window.least, window.largest = radius, radius
 
 
 @inlined
 def see_radius(window: Window, radius: float) -> None:
-    """Include a radius in the window."""
     window.least, window.largest = min(window.least, radius), max(window.largest, radius)
 
 
 @inlined
 def measured(window: Window, t: float, way: float) -> Measures:
-    """Return the measures of the window up to the time ``t``."""
     return Measures(window.least, window.largest, (way - window.way) / (t - window.since))

@@ -1,8 +1,4 @@
-"""Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`.
-
-Slip grows like ½κt² with its direction slaved to the pull, which is stiff. An implicit method for all nodes of a step
-(:mod:`.core.stepping.implicit`) follows it until an explicit one can.
-"""
+"""Slip of a disc from rest, as in :mod:`reference_model.motion.slip.breakaway`."""
 
 from __future__ import annotations
 
@@ -25,7 +21,7 @@ from reference_model.numerics.collocation import NODES
 from reference_model.systems import FloatArray
 
 ACCURACY = 1e-12
-"""Allowed contribution of the last terms of the polynomials, in the kernel's units."""
+"""Allowed scaled contribution of the last terms of the polynomials."""
 
 
 @scalar
@@ -35,11 +31,11 @@ def grown(
     """Return position, slip, rotation, duration and work of slip that begins at ``z`` along (``n``, ``turning``).
 
     It ends where an explicit method can continue, or after ``longest``. ``first`` is the initial rate of slip. The
-    rotation is relative to the master disc and multiplied by κ; the work is that of friction per newton. A duration
-    of zero means that the motion could not be resolved.
+    rotation is relative to the master disc, times κ; the work is that of friction per newton. The duration is zero if
+    the motion could not be resolved.
     """
     carried = 1j * law.disc_speed
-    change = -(law.stiffness + (law.damping + carried) * carried) * carried * z  # of the pull, by time
+    change = -(law.stiffness + (law.damping + carried) * carried) * carried * z
     gain = (n.conjugate() * change).real
     along = np.array((n.real, n.imag, turning))
     start, rate = zeros(3), zeros(3)
@@ -64,7 +60,7 @@ def grown(
         there = position_after(z, w, step, law)
         goes = (complex(w[-1, 0], w[-1, 1]) * there.conjugate()).real
         if goes * outward < 0.0:
-            break  # ends at an extreme of the radius, which must be recorded
+            break  # at an extreme of the radius, which must be recorded
         z, outward = there, goes
         for j in range(NODES):
             turn += step * INTEGRAL[-1, j] * w[j, 2]
@@ -82,7 +78,6 @@ def grown(
 
 @scalar
 def _last_terms(f: FloatArray) -> float:
-    """Return the largest of the last two coefficients of the polynomials through ``f``."""
     largest = 0.0
     for row in (NODES - 2, NODES - 1):
         for k in range(3):

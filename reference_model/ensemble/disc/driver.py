@@ -1,7 +1,6 @@
-"""Ensembles of discs and single discs: from parameters to results.
+"""Ensembles of discs and single discs.
 
-Compiled code does not follow contact points that come to rest. The plain reference continues such a trajectory until
-all points slip, and hands it back.
+Compiled code does not follow contact points that come to rest. The plain reference continues until all points slip.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 from reference_model.trajectory import Trajectory
 
 LEAST_SLIP = 0.1
-"""Turns of the master disc, or of the free centre; compiled code continues once all points have slipped this long."""
+"""Duration of slip of all points before compiled code continues, in turns of the master disc or free centre."""
 
 
 def simulate_discs(
@@ -41,14 +40,12 @@ def simulate_discs(
     n: int,
     threads: int,
 ) -> Results:
-    """Simulate ``n`` discs like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     settings = _settings(disc, tolerance, early_end, no_regions() if varied else trapping_regions(disc))
     task = Task(parameter_table(disc, PARAMETERS, varied), starts, np.full(1, duration))
     return _run_through(disc, task, n, settings, varied, tolerance, threads)
 
 
 def follow_disc(disc: DiscOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    """Record the motion of a disc from ``state`` on."""
     table = parameter_table(disc, PARAMETERS)
     settings = _settings(disc, tolerance, False, no_regions())
 
@@ -77,7 +74,6 @@ def _settings(disc: DiscOnDisc, tolerance: float, early_end: bool, regions: NDAr
 
 
 def _run(task: Task, n: int, settings: DiscSettings, threads: int = 1) -> Results:
-    """Run trajectories as far as compiled code can follow them."""
     kernel, results = run_points if settings.around else run_rings, Results.empty(n, DiscOnDisc.state_size)
     in_chunks(lambda first, last: kernel(task, settings, results, first, last), n, threads)
     return results
@@ -92,7 +88,6 @@ def _run_through(
     tolerance: float,
     threads: int = 1,
 ) -> Results:
-    """Run trajectories to their ends; the plain reference continues those handed over."""
     results = _run(task, n, settings, threads)
     durations = np.broadcast_to(task.durations, results.times.shape)
     handed = np.flatnonzero(results.ends == HANDED_OVER)
@@ -118,7 +113,6 @@ def _run_through(
 def _continue_until_slip(
     disc: DiscOnDisc, results: Results, i: int, duration: float, tolerance: float, early_end: bool
 ) -> None:
-    """Continue a trajectory with the plain reference until all points slip again, or to its end."""
     state, t = results.states[i], float(results.times[i])
     for motion, stuck in _through_rest(disc, state, t, duration, tolerance):
         results.steps[i] += motion.solution.steps
@@ -143,8 +137,8 @@ def _through_rest(
 ) -> Iterator[tuple[Trajectory, bool]]:
     """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
-    Each part includes the requested ``times`` within it, and whether the disc is permanently stuck. It is if it has
-    been stuck for a turn of the master disc.
+    Each part includes the requested ``times`` within it, and whether the disc has been stuck for a turn, which counts
+    as permanent.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration

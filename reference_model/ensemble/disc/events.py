@@ -1,19 +1,19 @@
 """End states of a disc, detected during its motion.
 
 Self-centred
-    The state is checked once per free period. It converges if d·q/(1 − q) is small, with the distance d between
-    checks and q the larger of its last two ratios (:mod:`.core.recurrence`). Because a motion may come close to an
-    unstable equilibrium and leave it later, as some of Fig. 11 do, the equilibrium must also attract, and be as
-    close by Newton's method (:mod:`.stability`).
+    The state, checked once per free period, converges: d·q/(1 − q) is small, with the distance d between checks and q
+    the larger of its last two ratios (:mod:`.core.recurrence`). A motion may pass close to an unstable equilibrium,
+    as in Fig. 11, so the equilibrium must also attract, and be as close by Newton's method (:mod:`.stability`).
 Whirl
-    The same for the states where x is largest. Without an offset the whirl is a circle, where the radius, the
-    velocities along and across it, and the spin converge from check to check.
+    The same for the states where x is largest. Without an offset the radius, the velocities along and across it, and
+    the spin converge from check to check.
 Modulated
-    Without an offset, the same for the states where the radius is largest, while the radius continues to oscillate.
+    Without an offset, the same for the states where the radius is largest, while it continues to oscillate.
 Stuck, or stick-slip
     As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).
 
-Known trapping regions (:mod:`.trapping`) end trajectories earlier.
+Known trapping regions (:mod:`.trapping`) end trajectories earlier. Functions that return a bool return whether the
+trajectory ends.
 """
 
 from __future__ import annotations
@@ -68,16 +68,15 @@ from reference_model.ensemble.disc.memory import (
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
 Stride = Callable[[DiscLanes, DiscMemory, int, DiscLaw], None]
-"""Replaces the trial step by an implicit one, if that is worthwhile."""
+"""Replaces the trial step by an implicit one, if worthwhile."""
 
 Slow = Callable[[DiscLanes, DiscMemory, int, DiscLaw, DiscSettings], bool]
-"""Handles slow slip or rest; returns whether the trajectory ends."""
 
 Attracts = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
-"""Returns whether a nearby steady motion, an equilibrium or a circle, attracts, as ``stability.attracts``."""
+"""Returns whether a nearby equilibrium or circle attracts, as ``stability.attracts``."""
 
 STILL = 1e-2
-"""Largest oscillation, over the radius or ω times it, of a motion that goes to a point or to a circle."""
+"""Largest oscillation, over the radius or ω times it, of a motion that approaches a point or a circle."""
 
 
 @written_out
@@ -90,7 +89,6 @@ def handle_flag_with(
     slow: Slow,
     attracts: Attracts,
 ) -> bool:
-    """Handle the flag of a lane; return whether its trajectory ends here."""
     law = law_of(lanes, lane, settings.around)
     if int(lanes.flag[lane]) & STIFF:
         stride(lanes, memory, lane, law)
@@ -98,7 +96,7 @@ def handle_flag_with(
     if flag & LOST:
         memory.end = UNDECIDED
         return True
-    passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]  # by more than rounding
+    passed = lanes.trial.state.time[lane] > lanes.now.state.time[lane]
     if flag & IS_DUE and passed and check_due(lanes, memory, lane, law, settings, attracts):
         return True
     if lanes.trial.state.time[lane] >= lanes.duration[lane] - AT_END:
@@ -113,7 +111,7 @@ def found(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, end: int, t: float, way: float, radius: float,
     law: DiscLaw, settings: DiscSettings,
 ) -> bool:  # fmt: skip
-    """Measure an end state from here to the next similar crossing; return whether the trajectory ends."""
+    """Measure an end state from here to the next similar crossing."""
     window = memory.window
     if window.kind != kind:
         open_window(window, kind, t, way, radius)
@@ -130,7 +128,7 @@ def found(
 
 @inlined
 def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
-    """Return r in the last step, by the cubic through r and its rate at both ends."""
+    """Return r in the last step, by a cubic."""
     r0, r1 = lanes.now.state.r[lane], lanes.trial.state.r[lane]
     k0, k1 = lanes.now.rates, lanes.trial.rates
     d0, d1 = span * k0.r[lane] / k0.time[lane], span * k1.r[lane] / k1.time[lane]
@@ -143,7 +141,6 @@ def spin_at(lanes: DiscLanes, lane: int, u: float, span: float) -> float:
 def record_extreme(
     lanes: DiscLanes, memory: DiscMemory, lane: int, flag: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Record where x is largest, or the radius is extreme; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
     step = last_step(lanes, lane)
@@ -171,7 +168,7 @@ def record_extreme(
         met = compared(memory.turns, values, abs(v))
         ended = met and record_turn(lanes, memory, lane, OF_TURN, u, abs(z), law, settings)
         if turns <= 1.0:
-            see_radius(memory.window, radius)  # again, because it belongs to a window that opens here
+            see_radius(memory.window, radius)  # again, for the window that opens here
     return ended
 
 
@@ -180,7 +177,7 @@ def record_turn(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw,
     settings: DiscSettings,
 ) -> bool:  # fmt: skip
-    """Record a crossing in the last step that repeats the previous one; return whether the trajectory ends there."""
+    """Record a crossing that repeats the previous one."""
     t0, t1 = lanes.now.state.time[lane], lanes.trial.state.time[lane]
     way0, way1 = lanes.now.state.way[lane], lanes.trial.state.way[lane]
     t, way = t0 + u * (t1 - t0), way0 + u * (way1 - way0)
@@ -191,7 +188,6 @@ def record_turn(
 def check_due(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings, attracts: Attracts
 ) -> bool:
-    """Check the motion, once per free period and at the end; return whether the trajectory ends here."""
     t, due = lanes.trial.state.time[lane], lanes.due[lane]
     if recorded(settings):
         record_requested(lanes, lanes.now, memory, lane, t, settings)
@@ -204,7 +200,7 @@ def check_due(
         lanes.watch[lane] = UNWATCHED
         return settings.early
     if t < due:
-        return False  # at the end
+        return False
     lanes.due[lane] = due + memory.tick
     if memory.end != UNDECIDED:
         return False
@@ -235,7 +231,6 @@ def check_due(
 
 @scalar
 def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: DiscSettings) -> bool:
-    """Return whether the motion is in a known trapping region, and store its end state."""
     length, speed = memory.length, memory.length * memory.rate
     for region in settings.regions:
         if region.circle:

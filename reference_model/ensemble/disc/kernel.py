@@ -1,4 +1,4 @@
-"""The kernel of discs on rings or points: loading and storing a lane, and running all trajectories."""
+"""The kernel of discs on rings or points."""
 
 from __future__ import annotations
 
@@ -50,18 +50,16 @@ PARAMETERS = (
     "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
     "shaft_damping", "shaft_speed",
 )  # fmt: skip
-"""Parameters of a disc, in the order of the kernel."""
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units of time."""
+"""Scaled ratio s₀/g."""
 
 WATCHED_STEP = 1e-3
-"""Step below which the points of a disc are checked for one that comes to rest."""
+"""Step below which points of a disc may be about to rest."""
 
 
 @inlined
 def _scaled_law(parameters: FloatArray, around: Tuple, length: float, rate: float) -> DiscLaw:
-    """Return the law in units of ``length`` (m) and 1/``rate`` (s); the parameters are those of PARAMETERS."""
     mass, inertia, stiffness, damping, force, omega, offset, radius, shaft, shaft_speed = parameters
     kappa, speed = math.sqrt(inertia / mass), length * rate
     friction = force / mass / (speed * rate)
@@ -92,7 +90,6 @@ def load_with(
     rest: Slow,
     rates: Rates,
 ) -> bool:
-    """Write the start of a trajectory to the trial of a lane; return whether it ends there."""
     parameters = row_of(task.parameters, number)
     mass, inertia, stiffness, damping, force, omega, offset, _, shaft, _ = parameters
     x, y, angle, vx, vy, spin = row_of(task.starts, number)
@@ -133,7 +130,6 @@ def load_with(
 
 @scalar
 def store(lanes: DiscLanes, memory: DiscMemory, lane: int, results: Results) -> None:
-    """Write the result of a lane in SI units."""
     put_state(results.states[memory.number], lanes, lanes.trial, memory, lane)
     store_end(lanes, memory, lane, results)
 
@@ -187,7 +183,6 @@ _load_points, _advance_points, _advance_points_alone, _handle_points = _function
 
 @called_from_python
 def run_rings(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories ``first`` to ``last`` (excluded) of discs on rings."""
     run(
         _load_ring, _advance_rings, _advance_ring_alone, _handle_ring, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,
@@ -197,13 +192,12 @@ def run_rings(task: Task, settings: DiscSettings, results: Results, first: int, 
 
 @called_from_python
 def run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories ``first`` to ``last`` (excluded) of discs on points."""
     _run_points(task, settings, results, first, last)
 
 
 @inlined
 def _run_points(task: Task, settings: DiscSettings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
+    """Separate for the same reason as ``pin.kernel._run_pins``."""
     run(
         _load_points, _advance_points, _advance_points_alone, _handle_points, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last,

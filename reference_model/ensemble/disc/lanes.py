@@ -1,4 +1,4 @@
-"""The lanes of discs: their data, the step of all lanes, and the end and beginning of slip in a lane."""
+"""The lanes of discs: their data, the step of all lanes, and the end and beginning of slip in one lane."""
 
 from __future__ import annotations
 
@@ -40,8 +40,7 @@ class Moment(Record):
 class DiscLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, and ``due`` an earlier
-    time that needs attention. ``watch``, ``flag`` and ``short`` are those of a pin.
+    ``usual`` is the step before the edge shortened it, ``duration`` the end of the motion, ``due`` the next check.
     """
 
     now: Moment
@@ -64,14 +63,10 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""Degrees of watching: attention when x is largest, when the radius is largest or smallest, or both."""
+"""Degrees of watching: flags where x is largest, where the radius is extreme, or both."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up.
-
-Slip may be about to end; the due time has come; x was largest; the radius was largest or smallest; step size or
-number of steps are out of bounds; an implicit step may be worthwhile.
-"""
+"""Flags, which add up, as for a pin."""
 
 SHORT_STEP, MANY = 0.1, 40.0
 """As for a pin; explicit steps of discs cost more."""
@@ -81,28 +76,25 @@ SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
-"""Share of a step within which the edge must lie for the step to count as ending on it."""
+"""Share of a step within which its start or end counts as lying on the edge."""
 
 AT_END = 1e-13
-"""Time, in units, that is neglected at the end."""
+"""Scaled time that is neglected at the end."""
 
 SLOW, NEAR_REST = 0.01, 1e-4
-"""Slip speeds, in units of g: below the first the tolerance of slip is relative, below the second slip may end."""
+"""Slip speeds, in units of g, below which the tolerance of slip is relative and slip may end, respectively."""
 
 REST_TIME = 1e-12
-"""Largest error, in units of time and length, of the closed form for coming to rest."""
+"""Largest scaled error of the closed form for coming to rest."""
 
 LEAST_SLIP = 1e-13
-"""Slip speed, in units, that counts as zero."""
+"""Scaled slip speed that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest time, in units, of slip that is followed from rest.
-
-Later it is ordinary slip with checkpoints.
-"""
+"""Longest scaled time of slip that is followed from rest."""
 
 SUDDEN = 0.05
-"""Smallest excess of the pull over friction, as a share of friction, for slip that grows like time: not stiff."""
+"""Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
 
 
 @written_out
@@ -111,8 +103,8 @@ def advance_with(
 ) -> None:
     """Make a trial step in the first ``count`` lanes; where it is rejected the trial is the old state.
 
-    If a step crosses the ``edge`` of friction, its error estimate is unreliable, and it is repeated up to the edge;
-    likewise at the end. A lane also needs attention if its step is smaller than ``small_step``.
+    A step across the ``edge`` of friction or the end is repeated up to it, because its error estimate is unreliable.
+    A step smaller than ``small_step`` also raises a flag.
     """
     wide_vectors()
     now, trial = lanes.now, lanes.trial
@@ -160,10 +152,7 @@ def advance_with(
 def error_of_slip(
     state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
 ) -> float:
-    """Return the error of a step as a multiple of the tolerance, see :func:`.core.stepping.runge_kutta.error_of`.
-
-    With friction the error of small slip is relative, because its direction decides when it ends.
-    """
+    """Return the error of a step over the tolerance, relative for small slip, whose direction decides its end."""
     slip = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     small = (slip + law.free) / (SLOW * law.friction + LEAST)
     high = low = 0.0
@@ -177,7 +166,7 @@ def error_of_slip(
 
 @inlined
 def share_to_edge(before: float, after: float, approach: float, h: float) -> float:
-    """Return the share of a step that leads to the edge, by a parabola for the distance from it."""
+    """Return the share of a step up to the edge, by a parabola."""
     slope = approach * h
     bend = after - before - slope
     root = math.sqrt(max(slope * slope - 4.0 * bend * before, 0.0))
@@ -189,7 +178,6 @@ def share_to_edge(before: float, after: float, approach: float, h: float) -> flo
 def flags_of(
     state: DiscState, k: DiscState, new: DiscState, k1: DiscState, nearly: float, due: bool, fine: bool, watch: float
 ) -> float:  # fmt: skip
-    """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
     s2 = new.ux * new.ux + new.uy * new.uy + new.r * new.r
     turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
     flag = REST if (s2 < nearly * nearly) | fine else 0.0
@@ -201,7 +189,6 @@ def flags_of(
 
 @scalar
 def idle(lanes: DiscLanes, lane: int) -> None:
-    """Fill a lane with a motion that continues forever without attention."""
     trial = lanes.trial
     put(lanes.law, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -213,25 +200,21 @@ def idle(lanes: DiscLanes, lane: int) -> None:
 
 @inlined
 def law_of(lanes: DiscLanes, lane: int, around: Tuple) -> DiscLaw:
-    """Return the law of a lane."""
     return DiscLaw(around, *at(lanes.law, lane))
 
 
 @inlined
 def state_at(moment: Moment, lane: int) -> DiscState:
-    """Return the motion in a lane."""
     return DiscState(*at(moment.state, lane))
 
 
 @inlined
 def rates_at(moment: Moment, lane: int) -> DiscState:
-    """Return the rates in a lane."""
     return DiscState(*at(moment.rates, lane))
 
 
 @inlined
 def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> None:
-    """Prepare the lane whose trial contains the position, with a first step."""
     trial = lanes.trial
     put(trial.rates, lane, rates(state_at(trial, lane)[:6], law))
     trial.step[lane] = FIRST_STEP
@@ -240,7 +223,6 @@ def put_slipping(lanes: DiscLanes, lane: int, law: DiscLaw, rates: Rates) -> Non
 
 @scalar
 def last_step(lanes: DiscLanes, lane: int) -> DenseOutput:
-    """Return the motion of the centre in the last step, of fifth order, from the motion at both ends."""
     now, trial = lanes.now, lanes.trial
     h, omega = trial.state.time[lane] - now.state.time[lane], lanes.law.disc_speed[lane]
     z0, v0, a0 = _motion(state_at(now, lane), rates_at(now, lane), omega)
@@ -253,21 +235,18 @@ def last_step(lanes: DiscLanes, lane: int) -> DenseOutput:
 
 @inlined
 def _motion(state: DiscState, k: DiscState, omega: float) -> tuple[complex, complex, complex]:
-    """Return position, velocity and acceleration of the centre."""
     pace, v = 1.0 / k.time, complex(k.x, k.y)
     return complex(state.x, state.y), pace * v, pace * (complex(k.ux, k.uy) + 1j * omega * v)
 
 
 @inlined
 def slowing(state: DiscState, k: DiscState) -> tuple[float, float]:
-    """Return the slip speed and its rate of decrease."""
     s = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     return s, -(state.ux * k.ux + state.uy * k.uy + state.r * k.r) / (s * k.time)
 
 
 @inlined
 def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
-    """Return the slip speed and the time to rest at its present rate of decrease; inf if it does not decrease."""
     s, falling = slowing(state_at(lanes.trial, lane), rates_at(lanes.trial, lane))
     return s, (s / falling if falling > 0.0 else math.inf)
 
@@ -304,7 +283,7 @@ def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
 
 @scalar
 def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, law: DiscLaw) -> bool:
-    """Begin slip of a disc on a ring from rest at ``z``; return whether the motion could be resolved."""
+    """Begin slip of a disc on a ring from rest; return whether the motion could be resolved."""
     trial = lanes.trial
     n, turning, first, taken = direction(z, law)
     way = trial.state.way[lane]

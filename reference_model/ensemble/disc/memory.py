@@ -1,4 +1,4 @@
-"""Data of scalar code for each lane of discs, and its settings."""
+"""Scalar data of each lane of discs, and settings."""
 
 from __future__ import annotations
 
@@ -14,15 +14,14 @@ from reference_model.ensemble.disc.lanes import DiscLanes, Moment, state_at
 from reference_model.systems import FloatArray
 
 OF_TURN, OF_PEAK = 1, 2
-"""Kinds of windows: from one crossing where x is largest to the next, or from one largest radius to the next."""
+"""Kinds of windows: from one largest x, or one largest radius, to the next."""
 
 
 class Region(Record):
     """A neighbourhood of a motion that no motion leaves, in m and s: where a quadratic form is below its level.
 
     ``circle`` is 1 about a whirl, in coordinates that turn with the centre (ρ, v along and across the radius, r, 0),
-    and 0 about an equilibrium, in (x, y, vx, vy, r). ``form`` is the upper half of the form, row by row. The measures
-    are those of the motion at its centre.
+    and 0 about an equilibrium, in (x, y, vx, vy, r). ``form`` is the upper half of the form, row by row.
     """
 
     circle: int
@@ -33,11 +32,7 @@ class Region(Record):
 
 
 class DiscMemory(Record):
-    """Data of a lane that no vector needs.
-
-    ``tick`` is the period of checks, ``checks``, ``turns`` and ``peaks`` the motion at checks, at the largest x and
-    at the largest radius. Other fields are those of a pin.
-    """
+    """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius."""
 
     number: int
     length: float
@@ -55,11 +50,7 @@ class DiscMemory(Record):
 
 
 class DiscSettings(NamedTuple):
-    """Settings for scalar code.
-
-    They contain ``around`` of the law, the trapping ``regions`` (m,), and ``checkpoints`` of a single trajectory,
-    empty if not requested.
-    """
+    """Settings for scalar code; ``checkpoints`` are those of a single trajectory, empty if not requested."""
 
     tolerance: float
     early: bool
@@ -72,7 +63,6 @@ class DiscSettings(NamedTuple):
 def record_requested(
     lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, settings: DiscSettings
 ) -> None:
-    """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
     if mark_requested(lanes, moment, memory, lane, until, settings):
         take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, settings)
 
@@ -81,7 +71,6 @@ def record_requested(
 def take_checkpoint(
     lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, settings: DiscSettings
 ) -> None:
-    """Store a checkpoint of a ``moment``, while there is room."""
     if memory.checkpoints < settings.checkpoints.size:
         checkpoint = settings.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
@@ -91,7 +80,6 @@ def take_checkpoint(
 
 @scalar
 def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int) -> None:
-    """Write x, y, angle, vx, vy and spin of a ``moment`` to ``state`` (6,), in SI units."""
     length, rate = memory.length, memory.rate
     there = state_at(moment, lane)
     omega, curling = lanes.law.disc_speed[lane], lanes.law.curling[lane]

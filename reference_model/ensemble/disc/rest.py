@@ -1,7 +1,6 @@
 """End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
-A disc on a ring sticks as a whole, and its centre like a pin with the friction that the shaft's moment leaves. Stick
-is permanent if the pull never exceeds this friction (eq. 7), which is exact.
+A disc on a ring sticks like a pin with the friction that the shaft's moment leaves (eq. 7).
 """
 
 from __future__ import annotations
@@ -38,13 +37,13 @@ from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_ra
 from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, UNDECIDED
 
 LINGERS = 0.01
-"""Shortest time to rest, in units, of slow slip of a disc or of a point that creeps."""
+"""Shortest scaled time to rest of slow slip of a creeping disc or point."""
 
 SPENT_SHARE = 0.1
-"""Share of the tolerance for the remaining slip that decays forever."""
+"""Share of the tolerance for the slip that remains when creep counts as over."""
 
 SOON = 3e-4
-"""Longest time to rest, in units, of a point whose stop can be foreseen."""
+"""Longest scaled time to rest of a point whose stop can be predicted."""
 
 
 @scalar
@@ -61,9 +60,9 @@ def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, set
 def _creeps_out(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Return whether a disc almost at rest slips ever more slowly forever, and if so end its trajectory.
+    """End the trajectory if the disc slips ever more slowly forever; return whether it does.
 
-    This is possible only if its pull just rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
+    This requires a pull that only rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
     """
     s, left = slip_left(lanes, lane)
     steady = (law.offset == 0.0 or law.disc_speed == 0.0) and law.stiffness > law.disc_speed**2
@@ -88,7 +87,7 @@ def _creeps_out(
 
 @scalar
 def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Follow a disc on a ring from rest until it slips; return whether its trajectory ends before."""
+    """Follow a disc on a ring from rest until it slips; return whether the trajectory ends."""
     ended = _held(lanes, memory, lane, law, settings)
     if not ended:
         put_slipping(lanes, lane, law, ring_rates)
@@ -99,7 +98,6 @@ def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, se
 def points_slow(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Hand over a disc on points if it or one of its points is about to rest."""
     s, left = slip_left(lanes, lane)
     slow = s < NEAR_REST * law.friction
     if slow and _creeps_out(lanes, memory, lane, law, settings):
@@ -114,19 +112,17 @@ def points_slow(
 def points_rest(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """Hand over a disc on points that rests."""
     memory.end = HANDED_OVER
     return True
 
 
 @scalar
 def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Keep a disc on a ring at rest while friction holds it, then begin slip; return whether its trajectory ends."""
     x, y, _, _, _, angle, t, way = state_at(lanes.trial, lane)
     z, end = complex(x, y), lanes.duration[lane]
     if t >= end - AT_END:
         return True
-    memory.checks.count = memory.turns.count = 0  # discard earlier values
+    memory.checks.count = memory.turns.count = 0
     friction = held_friction(law)
     held = stuck_for(z, friction, law)
     if held == math.inf:
@@ -146,7 +142,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
     if held > 0.0:
         take_checkpoint(lanes, lanes.trial, memory, lane, SLIPS, settings)
     if held > 0.0 and memory.end == UNDECIDED and lanes.watch[lane] != UNWATCHED:
-        # Its centre slips no farther than an equally held pin, and creeps inward where such a pin does.
+        # The centre slips no farther than an equally held pin, and creeps inward where such a pin does.
         centre, last = centre_of(law, friction), memory.peaks.values[0]
         if memory.peaks.count > 0 and creeps_by_turns(abs(z), last, centre):
             memory.end, radius = STUCK, sticking_radius(centre)
@@ -162,7 +158,7 @@ def _held(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, setting
 
 @scalar
 def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Return whether a point of contact slips slowly, decelerates, and could be held at rest."""
+    """Return whether a contact point slips slowly, decelerates, and could be held at rest."""
     _, _, ux, uy, r, angle, _, _ = state_at(lanes.trial, lane)
     k = rates_at(lanes.trial, lane)
     most = law.friction / (len(law.around) // 2)
@@ -172,7 +168,7 @@ def _point_rests(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
         v = complex(ux, uy) + 1j * eta * r * arm
         if 0.0 < abs(v) < SOON * most:
             rate = (1.0 / k.time) * complex(k.ux, k.uy) + 1j * eta * arm * (k.r / k.time + 1j * r * spin)
-            # Acceleration without its own friction, and the friction that would hold it: see
+            # Acceleration without its own friction, and the friction that would hold it, as in
             # reference_model.motion.pivot.
             free = rate + (most / abs(v)) * (v + 1j * eta * arm * (eta * (arm.conjugate() * v).imag))
             holding = 1j * arm * ((arm.conjugate() * free).imag * eta**2 / (1.0 + eta**2)) - free

@@ -1,9 +1,7 @@
 """Slip of a disc in lanes: eq. 19 to 21 in stretched time, and its end, rest and beginning.
 
-The unknowns are x, y, the slip velocity u of the centre, r = κ(φ̇ − ω) with κ = √(J/m), and the angle φ. In (u, r)
-friction is the gradient of −g·P with the mean slip speed P(u, ηr), η = R/κ, see
-:mod:`reference_model.motion.disc_equations`. In the stretched time dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations
-are smooth and not stiff down to s = 0.
+The unknowns are x, y, u, r and φ of :mod:`reference_model.motion.disc_equations`, and η = R/κ. In the stretched time
+dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations are smooth and not stiff down to s = 0.
 """
 
 from __future__ import annotations
@@ -26,7 +24,7 @@ HALVINGS = 60
 """Number of bisections of an interval of order one, down to rounding."""
 
 ANGLES = 64
-"""Number of parts of a half turn in the search for the direction of slip."""
+"""Number of angles in the search for the direction of slip."""
 
 
 @inlined
@@ -45,13 +43,12 @@ def _rates(y: Tuple, law: DiscLaw, friction: tuple[float, float, float, float]) 
 
 @inlined
 def ring_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Return the rates of the unknowns of a disc on a ring by stretched time, then dt/dτ and P·dt/dτ."""
+    """Return the rates of the unknowns by stretched time, then dt/dτ and P·dt/dτ."""
     return _rates(y, law, ring_friction(y[2], y[3], y[4], y[5], law))
 
 
 @inlined
 def points_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Return the rates of a disc on points, like :func:`ring_rates`."""
     return _rates(y, law, points_friction(y[2], y[3], y[4], y[5], law))
 
 
@@ -66,13 +63,13 @@ def ring_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
 
 @inlined
 def no_edge(y: Tuple, rates: Tuple, law: DiscLaw) -> tuple[float, float]:
-    """Return a constant edge, for friction that is smooth except at rest; see :func:`ring_edge`."""
+    """Return a constant edge, for friction that is smooth except at rest."""
     return 1.0, 0.0
 
 
 @scalar
 def held_friction(law: DiscLaw) -> float:
-    """Return the force that friction of a ring can hold with the shaft's moment, as ``stick.stuck_centre``, or -1."""
+    """Return the force that friction of a ring can hold with the shaft's moment, or -1."""
     needed = law.shaft_rate * abs(law.lag)
     most = law.friction * law.leverage
     if needed > most:
@@ -90,7 +87,7 @@ def held_friction(law: DiscLaw) -> float:
 
 @scalar
 def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
-    """Return how long a disc on a ring rests at ``z`` if friction can hold its centre with the force ``held``."""
+    """Return how long a disc on a ring rests at ``z`` if friction can hold the force ``held``."""
     if held < 0.0 or abs(pull(z, 0j, law)) > held:
         return 0.0
     return release_delay(z, centre_of(law, held))
@@ -98,13 +95,13 @@ def stuck_for(z: complex, held: float, law: DiscLaw) -> float:
 
 @inlined
 def centre_of(law: DiscLaw, held: float) -> PinLaw:
-    """Return the pin that sticks exactly where the disc on a ring does; ``held`` is its friction."""
+    """Return the pin with the friction ``held`` that sticks where the disc on a ring does."""
     return PinLaw(law.stiffness, law.damping, held, law.disc_speed, law.offset, 0.0, 0.0)
 
 
 @scalar
 def direction(z: complex, law: DiscLaw) -> tuple[complex, float, float, float]:
-    """Return the direction (n_u, n_r) of beginning slip, its growth rate, and the share lost to friction."""
+    """Return the direction (n_u, n_r) of incipient slip, its growth rate, and the share lost to friction."""
     towards = pull(z, 0j, law)
     strength = abs(towards)
     best, fastest = 0.0, -math.inf

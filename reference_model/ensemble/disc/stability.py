@@ -1,7 +1,7 @@
-"""Stability of a steady motion of a disc and its distance, in compiled code without eigenvalues.
+"""Stability of a steady motion of a disc and its distance, without eigenvalues.
 
 With the derivative A of the rates f at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane of decaying eigenvalues to
-the inside of the unit circle. So its powers vanish exactly if all eigenvalues decay. A⁻¹f is the correction by
+the inside of the unit circle, so its powers vanish exactly if all eigenvalues decay. A⁻¹f is the correction by
 Newton's method, which gives the distance.
 """
 
@@ -16,7 +16,7 @@ from reference_model.ensemble.core.stepping.linear import length_of, powers_vani
 from reference_model.systems import FloatArray
 
 APART = 1e-5
-"""Differences for the derivative of the rates, in units of the motion."""
+"""Scaled differences for the derivative of the rates."""
 
 DIMENSION = 5
 

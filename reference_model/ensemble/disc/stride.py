@@ -39,7 +39,6 @@ def disc_stride_with(
     edge: Edge,
     collocate: Collocation,
 ) -> None:
-    """Try an implicit step in place of the trial step and its flags; it must not cross the ``edge`` of friction."""
     now, trial = lanes.now, lanes.trial
     state, k = state_at(now, lane), rates_at(now, lane)
     short = now.step[lane] * k.time

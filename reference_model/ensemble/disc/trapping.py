@@ -2,10 +2,8 @@
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
 fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller sphere inwards, it goes to the centre. Because the fan has gaps, half of V is used.
-
-A disc on points oscillates about the motion on a ring. There the spheres must be crossed inwards at all angles from
-INNER of the size on, and the motion ends inside of that.
+smaller sphere inwards, it goes to the centre. A disc on points oscillates about the motion on a ring, so only spheres
+down to INNER of the size must be crossed.
 """
 
 from __future__ import annotations
@@ -34,18 +32,18 @@ APART = 1e-6
 """Differences for the linearisation, in these units."""
 
 INNER = 0.3
-"""Size of the part of a region where a disc on points finally remains, as a share of the region's size."""
+"""Share of a region's size where a disc on points finally remains."""
 
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 """Golden ratio, whose multiples are spread evenly over [0, 1]."""
 
 SAFE = 0.5
-"""Share of the V given by the fan that is used."""
+"""Share of the fan's V that is used, because the fan has gaps."""
 
 
 @lru_cache(maxsize=64)
 def trapping_regions(disc: DiscOnDisc) -> NDArray[Any]:
-    """Return the known trapping regions of the stable motions of ``disc``, ``Region`` of shape (m,)."""
+    """Return the known trapping regions of ``disc``, ``Region`` of shape (m,)."""
     ring = replace(disc, contact_points=None)
     regions = []
     try:
@@ -62,13 +60,12 @@ def trapping_regions(disc: DiscOnDisc) -> NDArray[Any]:
                 centre = np.array([whirl.radius, 0.0, whirl.frequency * whirl.radius, turning])
                 regions.append(_region(disc, True, centre, whirl.radius, _turning))
     except ValueError:
-        return no_regions()  # a point of the ring rests there, and no linearisation exists
+        return no_regions()  # friction has no derivative there
     known = [region for region in regions if region["level"] > 0.0]
     return np.array(known, dtype=layout(Region))
 
 
 def no_regions() -> NDArray[Any]:
-    """Return an empty array of regions."""
     return np.zeros(0, layout(Region))
 
 
@@ -79,7 +76,7 @@ def _gyration(disc: DiscOnDisc) -> float:
 def _accelerations(
     disc: DiscOnDisc, z: ComplexArray, v: ComplexArray, r: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return v̇, ṙ and the mean slip speed, by eq. 19 and 20, with contact points at angles that differ by row."""
+    """Return v̇, ṙ and the mean slip speed by eq. 19 and 20, with contact points at angles that differ by row."""
     kappa, g = _gyration(disc), disc.friction_force / disc.mass
     u, w = v - 1j * disc.disc_speed * z, disc.contact_radius / kappa * r
     if disc.contact_points is None:
@@ -102,14 +99,12 @@ def _accelerations(
 
 
 def _at_rest(disc: DiscOnDisc, states: FloatArray) -> FloatArray:
-    """Return the rates of (x, y, vx, vy, r), shape (n, 5)."""
     v = states[:, 2] + 1j * states[:, 3]
     a, spin_up, _ = _accelerations(disc, states[:, 0] + 1j * states[:, 1], v, states[:, 4])
     return np.column_stack((v.real, v.imag, a.real, a.imag, spin_up))
 
 
 def _turning(disc: DiscOnDisc, states: FloatArray) -> FloatArray:
-    """Return the rates of (ρ, v along, v across, r), shape (n, 4)."""
     radius, along, across, r = states.T
     a, spin_up, _ = _accelerations(disc, radius + 0j, along + 1j * across, r)
     return np.column_stack((along, a.real + across**2 / radius, a.imag - along * across / radius, spin_up))
@@ -134,7 +129,7 @@ def _region(
     form = (modes.conj().T @ modes).real
 
     directions = np.random.default_rng(0).standard_normal((DIRECTIONS, d))
-    directions /= np.sqrt(_values(form, directions, directions))[:, np.newaxis]  # to V = 1
+    directions /= np.sqrt(_values(form, directions, directions))[:, np.newaxis]
     largest = math.sqrt(float(np.max(np.linalg.eigvalsh(form))))
     size = inner = 0.0
     for trial in np.geomspace(SMALLEST, LARGEST, LEVELS):
@@ -164,5 +159,4 @@ def _region(
 
 
 def _values(form: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
-    """Return the bilinear form for all pairs of rows, shape (n,)."""
     return np.asarray(np.einsum("ni,ij,nj->n", left, form, right))

@@ -1,4 +1,4 @@
-"""Ensembles of pins and single pins: from parameters to results."""
+"""Ensembles of pins and single pins."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ def simulate_pins(
     n: int,
     threads: int,
 ) -> Results:
-    """Simulate ``n`` pins like :func:`reference_model.ensemble.simulate_ensemble`, with checked arguments."""
     regions = None if varied else trapping_regions(pin)
     task = Task(parameter_table(pin, PARAMETERS, varied), starts, np.full(1, duration))
     results, local = Results.empty(n, pin.state_size), tolerance_of_steps(tolerance)
@@ -40,7 +39,6 @@ def simulate_pins(
 
 
 def follow_pin(pin: PinOnDisc, state: FloatArray, tolerance: float, recording: Recording) -> None:
-    """Record the motion of a pin from ``state`` on."""
     local = tolerance_of_steps(tolerance)
 
     def run(task: Task, checkpoints: Checkpoints) -> Results:

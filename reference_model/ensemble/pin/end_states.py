@@ -1,40 +1,33 @@
-"""Criteria for a pin's end state during its motion, and their justification.
+"""Criteria for a pin's end state during its motion.
 
 Permanent stick
-    In the frame of the disc, the pull that friction must balance has the constant part k²X₀ and a turning part of
-    size q. It never exceeds g = μN/m if k²|X₀| + q <= g (eq. 7), which is exact. A pin slightly outside slips once
-    per turn. If k > |ω| and it moves inward in a turn by less than the remaining distance, it creeps forever and
-    counts as stuck (``laws.creeps_by_turns``). Without offset it slips ever more slowly without rest, if damping
-    prevents it from overshooting (``slip.creeps_steadily``). The same holds if the simulation ends earlier, while
-    slip is along the pull (``slip.creeps_slaved``).
+    In the frame of the disc the pull is the sum of a constant k²X₀ and a turning part of size q. Friction holds it
+    permanently if k²|X₀| + q <= g = μN/m (eq. 7). A pin slightly outside creeps forever, and counts as stuck, if k >
+    |ω| and it moves inward per turn by less than the remaining distance (``laws.creeps_by_turns``), or without offset
+    if damping prevents overshoot (``slip.creeps_steadily``, ``slip.creeps_slaved``).
 
 Self-centred
-    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. If all
-    trajectories have the same parameters, ``trapping`` finds it. Otherwise it follows from an estimate. With the
-    deviations ξ along the radius of the equilibrium and η across, eq. 1 is a cascade::
+    The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. For equal
+    parameters of all trajectories ``trapping`` finds it. Otherwise, with the deviations ξ along the radius of the
+    equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
 
     where c = β/m, s* = |ω|ρ*, and R is the nonlinear part of the direction of slip, |R| <= g·(|δw|/s*)² for |δw| <=
     s*/2. V = V_D(ξ) + κ·V_c(η) with V_d(x) = (x' + dx/2)² + (k² + d²/4)x² falls by d·(x'² + k²x²) for each
-    oscillator, except for coupling and R, which :func:`equilibrium_region` bounds. It is small and reached late.
+    oscillator, except for coupling and R, which :func:`equilibrium_region` bounds.
 
 Whirl
-    Every closed orbit crosses the section where x is largest once per turn. If all trajectories have the same
-    parameters, the orbit and a neighbourhood that its return map contracts are known beforehand (``trapping``).
-    Otherwise the crossings must converge: if d is the distance between the last two and q the larger of its last
-    two ratios, d·q/(1 − q) remains, and must be below ACCURACY times the speed at the crossing, which would vanish
-    at an equilibrium. Distances that are only noise also count, as long as they do not grow. Because a motion may
-    come close to an unstable orbit and leave it later, the orbit must also attract, and be as close by the
-    derivative of the return map (``stability``).
+    For equal parameters ``trapping`` finds the orbit and a neighbourhood that its return map to the section where x
+    is largest contracts. Otherwise the crossings must converge: with the distance d of the last two and the larger q
+    of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY times the speed there. Distances that are
+    only noise also count. A motion may pass close to an unstable orbit, so the orbit must also attract, and be as
+    close by the derivative of the return map (``stability``).
 
 Stick-slip
-    The distance from the axis at a release determines the state of a pin. So the change of that distance is judged
-    like the crossings above. Convergence shows that the cycle attracts, because a motion cannot leave it in another
-    direction.
+    The distance from the axis at a release determines the state, so its change is judged like the crossings above.
 
-A motion that meets none of these criteria by the end stays undecided, for example without damping or friction, or
-close to a basin boundary.
+A motion that meets none of these criteria stays undecided.
 """
 
 from __future__ import annotations
@@ -53,7 +46,7 @@ FORM_SIZE = 10
 
 
 class EquilibriumRegion(NamedTuple):
-    """The self-centred equilibrium z* (3), the upper half of V, and the level of its trapping region, or -1."""
+    """The self-centred equilibrium z* (3), the upper half of V, and the level of its trapping region, else -1."""
 
     place: complex
     form: Tuple
@@ -65,7 +58,7 @@ NOTHING = (0.0,) * FORM_SIZE
 
 @scalar
 def equilibrium_region(law: PinLaw) -> EquilibriumRegion:
-    """Return the self-centred equilibrium, with V of the module's estimate."""
+    """Return the self-centred equilibrium with the estimated V."""
     k2, c, g = law.stiffness, law.damping, law.friction
     reach = k2 * abs(law.offset)
     if k2 == 0.0 or c == 0.0 or (g > 0.0 and (g >= reach or law.disc_speed == 0.0)):
@@ -102,7 +95,6 @@ def _least_share(a: float) -> float:
 
 @scalar
 def depth(z: complex, w: complex, law: PinLaw, equilibrium: complex, form: FloatArray | Tuple) -> float:
-    """Return V of a motion about an ``equilibrium``."""
     size = abs(equilibrium)
     along = equilibrium.conjugate() / size if size > 0.0 else 1.0 + 0j
     place = (z - equilibrium) * along

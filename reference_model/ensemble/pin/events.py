@@ -1,4 +1,7 @@
-"""Rare events in a lane of pins: rest and release, crossings of the section, the end, and end states."""
+"""Rare events of a pin: rest and release, crossings of the section, and end states.
+
+Functions that return a bool return whether the trajectory ends, if not stated otherwise.
+"""
 
 from __future__ import annotations
 
@@ -72,21 +75,20 @@ from reference_model.ensemble.pin.stability import orbit_attracts
 from reference_model.ensemble.pin.stride import stride
 
 SERIES_SHARE = 0.1
-"""Share of the tolerance for the last terms of the series of beginning slip."""
+"""Share of the tolerance for the last terms of the series of slip."""
 
 SPENT_SHARE = 0.1
-"""Share of the tolerance for the remaining slip and distance of a pin that creeps forever."""
+"""Share of the tolerance for the slip that remains when creep counts as over."""
 
 REVERSAL_SLIP = 1e-13
-"""Slip, in units, below which slip that friction cannot hold counts as reversed."""
+"""Scaled slip below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Earliest time of a crossing, in units; an earlier one is the start itself, on the section within rounding."""
+"""Earliest scaled time of a crossing; an earlier one is the start itself."""
 
 
 @written_out
 def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> bool:
-    """Handle the flag of a lane; return whether its trajectory ends here."""
     law = law_of(lanes, lane)
     if int(lanes.flag[lane]) & STIFF:
         stride(lanes, memory, lane, law)
@@ -120,7 +122,7 @@ def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Setting
             if check_region(lanes, memory, lane, later, law, settings):
                 return True
         if u < turns <= 1.0:
-            see_radius(memory.window, abs(position_on(step, turns)))  # of a window that opened at u
+            see_radius(memory.window, abs(position_on(step, turns)))
     if flag & REST:
         return maybe_rest(lanes, memory, lane, law, settings)
     return False
@@ -130,7 +132,6 @@ def handle_flag(lanes: PinLanes, memory: PinMemory, lane: int, settings: Setting
 def check_region(
     lanes: PinLanes, memory: PinMemory, lane: int, later: float, law: PinLaw, settings: Settings
 ) -> bool:
-    """Check whether the motion is in the trapping region of the equilibrium, and set the next check."""
     if lanes.watch[lane] == UNWATCHED and law.friction > 0.0 and memory.end == UNDECIDED:
         lanes.watch[lane] = TURNS
     due = next_requested(memory, settings) if recorded(settings) else later + memory.tick
@@ -146,7 +147,6 @@ def check_region(
 
 @scalar
 def in_region(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> bool:
-    """Return whether the motion is in the trapping region of the equilibrium."""
     level, z, w = memory.level, position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     return level > 0.0 and depth(z, w, law, memory.equilibrium, memory.form) <= level
 
@@ -161,7 +161,6 @@ def record_crossing(
     law: PinLaw,
     settings: Settings,
 ) -> bool:
-    """Record a crossing of the section at u in a step; return whether the trajectory ends."""
     if memory.end != UNDECIDED:
         return False
     z, speed = position_on(step, u), velocity_on(step, u).imag
@@ -182,7 +181,7 @@ def record_crossing(
         return False
     way = lanes.now.state.way[lane] + way_along(step, u, law.disc_speed)
     if memory.window.kind == OF_TURN:
-        # Near convergence the last distance may be small by chance, like noise.
+        # Near convergence the last distance may be small by chance.
         share = turns.last / max(turns.last, turns.before, first, 1e-300)
         period, near = t - memory.window.since, ACCURACY * abs(speed) * share
         if not orbit_attracts(z, velocity_on(step, u), period, law, came, near):
@@ -198,7 +197,7 @@ def record_crossing(
 
 @scalar
 def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings: Settings) -> bool:
-    """Return whether the motion crosses the section in the trapping region of the known whirl."""
+    """Return whether the motion crosses the section in the trapping region of the whirl."""
     regions, turn, length = settings.regions, settings.regions.turn, memory.length
     if regions.reach <= 0.0:
         return False
@@ -213,7 +212,7 @@ def in_reach(memory: PinMemory, z: complex, speed: float, law: PinLaw, settings:
 
 @written_out
 def maybe_rest(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw, settings: Settings) -> bool:
-    """Bring the pin to rest if the end of slip is known; return whether the trajectory ends."""
+    """Bring the pin to rest if the end of slip is known."""
     z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     t, s = lanes.trial.state.time[lane], abs(w)
     creeps = creeps_steadily(z, w, law)
@@ -252,7 +251,7 @@ def rest(
     settings: Settings,
     creeps: bool,
 ) -> bool:
-    """Follow a pin from rest at ``z`` until it slips, or forever if it ``creeps``; return whether that ends it."""
+    """Follow a pin from rest at ``z`` until it slips, or forever if it ``creeps``."""
     end = memory.duration
     w = 0j
     forget_turns(lanes, memory, lane)
@@ -262,7 +261,7 @@ def rest(
     while w == 0j and t < end:
         lanes.steps[lane] += 1.0
         if lanes.steps[lane] > lanes.most_steps[lane]:
-            memory.end, end = UNDECIDED, t  # given up
+            memory.end, end = UNDECIDED, t
         if creeps or abs(pull(z, 0j, law)) <= law.friction:
             held = math.inf if creeps else release_delay(z, law)
             if held > 0.0 and not creeps:
@@ -289,12 +288,11 @@ def rest(
         put_position(lanes.trial, lane, z, w)
     else:
         put_slipping(lanes, lane, z, w, law)
-    return t >= end  # a pin that begins to slip at the very end has ended too
+    return t >= end  # also a pin that begins to slip at the very end
 
 
 @inlined
 def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
-    """Discard the crossings of the section so far."""
     memory.turns.count = 0
     if lanes.watch[lane] == RADII and memory.window.kind == OF_TURN:
         memory.window.kind = NO_WINDOW
@@ -305,14 +303,13 @@ def forget_turns(lanes: PinLanes, memory: PinMemory, lane: int) -> None:
 def released(
     lanes: PinLanes, memory: PinMemory, lane: int, z: complex, t: float, law: PinLaw, settings: Settings
 ) -> bool:
-    """Record a release at ``z``; return whether the trajectory ends."""
     if memory.end == STUCK:
         return False
     unwatched = lanes.watch[lane] == UNWATCHED
     if memory.end == UNDECIDED and unwatched and t < lanes.due[lane]:
         return False
     if unwatched and memory.end != STICK_SLIP:
-        memory.end = UNDECIDED  # the previous end state was not the end
+        memory.end = UNDECIDED
         lanes.watch[lane] = TURNS
     radius, largest = abs(z), sticking_radius(law)
     releases = memory.releases
@@ -334,7 +331,7 @@ def released(
 
 @scalar
 def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Decide the end state at the very end, also of a pin whose slip is not yet slow enough for a closed form."""
+    """Decide the end state at the very end, also while slip is too fast for a closed form."""
     z = position_at(lanes.trial, lane)
     if memory.end == UNDECIDED and law.offset == 0.0 and creeps_slaved(z, slip_at(lanes.trial, lane), law):
         radius = sticking_radius(law)

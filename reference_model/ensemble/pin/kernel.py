@@ -1,4 +1,4 @@
-"""The kernel of pins: loading and storing a lane, and running all trajectories."""
+"""The kernel of pins."""
 
 from __future__ import annotations
 
@@ -43,25 +43,23 @@ from reference_model.systems import PinOnDisc
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
 
 STRETCHING_TIME = 0.5
-"""s₀ over g, in units of time. More makes steps shorter, less makes rest and release stiffer."""
+"""Scaled ratio s₀/g. A larger one shortens steps, a smaller one makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""
 
 TICK_TURNS = 4.0
-"""Number of free periods without a crossing that lead to a check anyway."""
+"""Number of free periods without a crossing before a check."""
 
 LAST_TICKS = 4.0
-"""Number of final ticks when a motion without early end is watched."""
+"""Number of final ticks that are watched in a motion without early end."""
 
 
 PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")
-"""Parameters of a pin, in the order of the kernel."""
 
 
 @written_out
 def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task, settings: Settings) -> bool:
-    """Write the start of a trajectory to the trial of a lane; return whether it has ended."""
     mass, stiffness, damping, force, omega, offset = row_of(task.parameters, number)
     x, y, vx, vy = row_of(task.starts, number)
     duration = float(row_of(task.durations, number))
@@ -115,7 +113,6 @@ def load(lanes: PinLanes, memory: PinMemory, lane: int, number: int, task: Task,
 
 @inlined
 def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Settings) -> None:
-    """Watch the motion from the start on, or only at the end if all of it is simulated."""
     begin_watching = (
         recorded(settings) or settings.early or settings.once or memory.duration <= LAST_TICKS * memory.tick
     )
@@ -130,7 +127,6 @@ def _start_watching(lanes: PinLanes, memory: PinMemory, lane: int, settings: Set
 
 @inlined
 def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
-    """Store the trapping region of the equilibrium, if known, and the time of the first check."""
     well, regions = equilibrium_region(law), settings.regions
     memory.equilibrium, memory.level = well.place, well.level
     if regions.level > 0.0:
@@ -142,7 +138,6 @@ def expect_ends(memory: PinMemory, law: PinLaw, settings: Settings) -> None:
 
 @scalar
 def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> None:
-    """Write the result of a lane in SI units."""
     z, w = position_at(lanes.trial, lane), slip_at(lanes.trial, lane)
     put_state(results.states[memory.number], memory, z, w, law_of(lanes, lane))
     store_end(lanes, memory, lane, results)
@@ -150,13 +145,12 @@ def store(lanes: PinLanes, memory: PinMemory, lane: int, results: Results) -> No
 
 @called_from_python
 def run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories ``first`` to ``last`` (excluded)."""
     _run_pins(task, settings, results, first, last)
 
 
 @inlined
 def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories, in a separate function that takes a fifth longer to compile and runs a sixth faster."""
+    """Run the trajectories in a function of its own, which compiles a fifth longer and runs a sixth faster."""
     run(
         load, advance, advance_alone, handle_flag, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,
@@ -164,7 +158,6 @@ def _run_pins(task: Task, settings: Settings, results: Results, first: int, last
 
 
 def results_of(task: Task, settings: Settings) -> Results:
-    """Run all trajectories of a task with a start each, in one thread."""
     results = Results.empty(len(task.starts), PinOnDisc.state_size)
     run_pins(task, settings, results, 0, len(task.starts))
     return results

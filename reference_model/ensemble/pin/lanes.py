@@ -1,4 +1,4 @@
-"""The lanes of pins: their data, the step of all lanes, and operations on a single lane."""
+"""The lanes of pins: their data, the step of all lanes, and operations on one lane."""
 
 from __future__ import annotations
 
@@ -34,9 +34,8 @@ class Moment(Record):
 class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next attention, ``watch`` how
-    closely the lane is watched, ``flag`` the reasons for attention, and ``short`` the number of successive short
-    steps.
+    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, and ``short`` the
+    number of successive short steps.
     """
 
     now: Moment
@@ -53,36 +52,34 @@ class PinLanes(Record):
 
 
 UNWATCHED, TURNS, RADII = 0.0, 1.0, 2.0
-"""Degrees of watching: attention also when x is largest, and when the radius is largest or smallest too."""
+"""Degrees of watching: no flags, flags where x is largest, and flags where the radius is extreme too."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up.
-
-Slip is about to end; the due time has come; x was largest; the radius was largest or smallest; step size or number of
-steps are out of bounds; an implicit step may be worthwhile.
+"""Flags, which add up: slip is about to end; the due time has come; x or the radius had an extreme; the step size or
+the number of steps is out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
 """Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
-"""Duration of a short step in units of time, and the number of successive short steps that indicates stiffness.
+"""Scaled duration of a short step, and the number of successive short steps that indicates stiffness.
 
-One implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
+An implicit step costs as much as about 50 explicit steps of a single trajectory, or a thousand in shared lanes.
 """
 
 SMALLEST_STEP = 1e-13
 
 LANDING = 1e-9
-"""Distance from the end, in units of time, that is bridged by the rates, with an error of its square."""
+"""Scaled time beyond the end that one Euler step takes back, with an error of its square."""
 
 FIRST_STEP = 0.3
-"""First step of a trajectory and after a rest, in units of time, if slip is fast."""
+"""Scaled first step of fast slip."""
 
 
 @written_out
 def _advance_in(lanes: PinLanes, count: int) -> None:
-    """Make a trial step in the first ``count`` lanes; where its error is too large the trial is the old state."""
+    """Make a trial step in the first ``count`` lanes; if its error is too large, the trial is the old state."""
     wide_vectors()
     now, trial = lanes.now, lanes.trial
     for lane in range(count):
@@ -114,13 +111,11 @@ def _advance_in(lanes: PinLanes, count: int) -> None:
 
 @scalar
 def advance(lanes: PinLanes, _: None) -> None:
-    """Make a trial step in every lane."""
     _advance_in(lanes, LANES)
 
 
 @scalar
 def advance_alone(lanes: PinLanes, _: None) -> None:
-    """Make a trial step in the first lane."""
     _advance_in(lanes, 1)
 
 
@@ -128,7 +123,6 @@ def advance_alone(lanes: PinLanes, _: None) -> None:
 def flags_of(
     state: PinState, k: PinState, new: PinState, k1: PinState, due: float, slow: float, watch: float
 ) -> float:
-    """Return the flags of a step from ``state`` with the rates ``k`` to ``new`` with the rates ``k1``."""
     resting = (new.wx * new.wx + new.wy * new.wy < slow * slow) & (new.wx * k1.wx + new.wy * k1.wy < 0.0)
     rightmost = (k.x > 0.0) & (k1.x <= 0.0) & (watch >= TURNS)
     turns = (state.x * k.x + state.y * k.y > 0.0) != (new.x * k1.x + new.y * k1.y > 0.0)
@@ -141,7 +135,6 @@ def flags_of(
 
 @scalar
 def idle(lanes: PinLanes, lane: int) -> None:
-    """Fill a lane with a motion that continues forever without attention."""
     trial = lanes.trial
     put(lanes.law, lane, PinLaw(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
     put(trial.state, lane, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -153,37 +146,31 @@ def idle(lanes: PinLanes, lane: int) -> None:
 
 @scalar
 def law_of(lanes: PinLanes, lane: int) -> PinLaw:
-    """Return the law of a lane."""
     return PinLaw(*at(lanes.law, lane))
 
 
 @inlined
 def state_at(moment: Moment, lane: int) -> PinState:
-    """Return the motion in a lane."""
     return PinState(*at(moment.state, lane))
 
 
 @inlined
 def rates_at(moment: Moment, lane: int) -> PinState:
-    """Return the rates in a lane."""
     return PinState(*at(moment.rates, lane))
 
 
 @inlined
 def position_at(moment: Moment, lane: int) -> complex:
-    """Return z."""
     return complex(moment.state.x[lane], moment.state.y[lane])
 
 
 @inlined
 def slip_at(moment: Moment, lane: int) -> complex:
-    """Return w."""
     return complex(moment.state.wx[lane], moment.state.wy[lane])
 
 
 @scalar
 def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Write a slipping pin to the trial of a lane, with a first step."""
     put_motion(lanes.trial, lane, z, w, law)
     lanes.short[lane] = 0.0
     h = FIRST_STEP
@@ -194,21 +181,19 @@ def put_slipping(lanes: PinLanes, lane: int, z: complex, w: complex, law: PinLaw
 
 @inlined
 def put_motion(moment: Moment, lane: int, z: complex, w: complex, law: PinLaw) -> None:
-    """Write a slipping pin and its rates to a lane."""
     put_position(moment, lane, z, w)
     put(moment.rates, lane, pin_rates((z.real, z.imag, w.real, w.imag), law))
 
 
 @inlined
 def put_position(moment: Moment, lane: int, z: complex, w: complex) -> None:
-    """Write position and slip velocity to a lane."""
     state = moment.state
     state.x[lane], state.y[lane], state.wx[lane], state.wy[lane] = z.real, z.imag, w.real, w.imag
 
 
 @scalar
 def landed(lanes: PinLanes, lane: int, end: float) -> bool:
-    """Move the trial to the time ``end`` if it is close; otherwise reject it for a shorter step. Return which."""
+    """Move the trial to the time ``end`` if it is close, otherwise reject it; return whether it moved."""
     now, trial = lanes.now, lanes.trial
     state, rates = trial.state, trial.rates
     beyond, share = state.time[lane] - end, rates.time[lane]
@@ -229,20 +214,18 @@ def landed(lanes: PinLanes, lane: int, end: float) -> bool:
 
 @inlined
 def motion(z: complex, w: complex, law: PinLaw) -> Motion:
-    """Return position, velocity, acceleration and jerk of a slipping pin."""
     s = size_of(w)
     n = w / s
     turn = complex(0.0, law.disc_speed)
     v = w + turn * z
     a = -law.stiffness * (z - law.offset) - law.damping * v - law.friction * n
-    growth = a - turn * v  # ẇ
+    growth = a - turn * v
     turning = (growth - n * (n.conjugate() * growth).real) / s
     return Motion(z, v, a, -law.stiffness * v - law.damping * a - law.friction * turning)
 
 
 @scalar
 def last_step(lanes: PinLanes, lane: int, law: PinLaw) -> DenseOutput:
-    """Return the motion in the last step."""
     now, trial = lanes.now, lanes.trial
     first = motion(position_at(now, lane), slip_at(now, lane), law)
     last = motion(position_at(trial, lane), slip_at(trial, lane), law)

@@ -1,4 +1,4 @@
-"""Data of scalar code for each lane of pins, and the window that measures an end state."""
+"""Scalar data of each lane of pins, and the window that measures an end state."""
 
 from __future__ import annotations
 
@@ -31,15 +31,14 @@ from reference_model.ensemble.pin.slip import MOST_TERMS
 from reference_model.systems import FloatArray, PinOnDisc
 
 OF_TURN, OF_RELEASE = 1, 2
-"""Kinds of windows: a turn from crossing to crossing, or a cycle from release to release."""
+"""Kinds of windows: from crossing to crossing, or from release to release."""
 
 
 class TrappingRegions(Record):
-    """Trapping regions, if all trajectories have the same parameters; in m and s.
+    """Trapping regions in m and s, if all trajectories have the same parameters.
 
-    ``level`` and ``form`` describe the region of the equilibrium. ``reach`` is the level of that of the whirl,
-    ``turn`` its crossing of the section in x, y and ẏ/k, ``metric`` the upper half of the form there, and
-    ``measures`` its measures. Level or reach are 0 if unknown.
+    ``level`` and ``form`` belong to the equilibrium. ``reach`` is the level and ``metric`` the form of the whirl,
+    with its crossing ``turn`` (x, y, ẏ/k) and ``measures``. A level of 0 means unknown.
     """
 
     level: float
@@ -51,11 +50,10 @@ class TrappingRegions(Record):
 
 
 class PinMemory(Record):
-    """Data of a lane that no vector needs.
+    """Scalar data of a lane.
 
     ``tick`` is the time between checks, ``turns`` x, y and ẏ at crossings of the section, ``releases`` the radii of
-    releases, ``span`` the proposed implicit step; ``checkpoints`` and ``passed`` count checkpoints and requested
-    times.
+    releases, ``span`` the proposed implicit step.
     """
 
     number: int
@@ -80,8 +78,6 @@ class Settings(NamedTuple):
     """Settings for scalar code; few arrays, because each costs time in every call.
 
     ``early`` ends a trajectory as soon as its end state is certain, ``once`` at its first crossing of the section.
-    ``series`` is work space for the start of slip. ``checkpoints`` are those of a single trajectory, empty if not
-    requested.
     """
 
     tolerance: float
@@ -93,7 +89,6 @@ class Settings(NamedTuple):
 
 
 def no_regions() -> NDArray[Any]:
-    """Return ``TrappingRegions`` without any region, shape (1,)."""
     return np.zeros(1, layout(TrappingRegions))
 
 
@@ -104,8 +99,7 @@ def settings_of(
     regions: NDArray[Any] | None = None,
     checkpoints: Checkpoints | None = None,
 ) -> Settings:
-    """Return the settings of one call of the kernel, with work space; ``regions`` has the shape (1,)."""
-    # A writable copy, because the kernel is compiled for one kind only.
+    # The kernel is compiled for writable arrays only.
     known = no_regions() if regions is None else regions.copy()
     series = np.zeros((6, MOST_TERMS + 2), dtype=complex)
     room = empty_checkpoints(0, PinOnDisc.state_size) if checkpoints is None else checkpoints
@@ -114,13 +108,11 @@ def settings_of(
 
 @inlined
 def keep(memory: PinMemory, least: float, largest: float, slip: float) -> None:
-    """Store the measures of the end state: radii and mean slip speed."""
     fill(memory.found, Measures(least, largest, slip))
 
 
 @scalar
 def close_window(memory: PinMemory, end: int, t: float, way: float, radius: float) -> None:
-    """Store the end state and its measures."""
     see_radius(memory.window, radius)
     fill(memory.found, measured(memory.window, t, way))
     memory.end, memory.window.kind = end, NO_WINDOW
@@ -130,7 +122,6 @@ def close_window(memory: PinMemory, end: int, t: float, way: float, radius: floa
 def take_checkpoint(
     memory: PinMemory, kind: float, t: float, z: complex, w: complex, law: PinLaw, settings: Settings
 ) -> None:
-    """Store a checkpoint of a trajectory, while there is room."""
     if memory.checkpoints < settings.checkpoints.size:
         checkpoint = settings.checkpoints[memory.checkpoints]
         memory.checkpoints += 1
@@ -148,7 +139,6 @@ def record_requested(
     law: PinLaw,
     settings: Settings,
 ) -> None:
-    """Store a checkpoint of a ``moment`` if times between it and ``until`` are requested."""
     if mark_requested(lanes, moment, memory, lane, until, settings):
         t, z, w = moment.state.time[lane], position_at(moment, lane), slip_at(moment, lane)
         take_checkpoint(memory, ON_THE_WAY, t, z, w, law, settings)
@@ -156,7 +146,6 @@ def record_requested(
 
 @scalar
 def put_state(state: FloatArray, memory: PinMemory, z: complex, w: complex, law: PinLaw) -> None:
-    """Write x, y, vx, vy to ``state`` (4,), in SI units."""
     length, rate = memory.length, memory.rate
     state[0], state[1] = z.real * length, z.imag * length
     state[2] = (w.real - law.disc_speed * z.imag) * length * rate

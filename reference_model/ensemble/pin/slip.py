@@ -1,7 +1,7 @@
-"""Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, the duration of rest, and the start of slip.
+"""Slip of a pin in lanes: eq. 1 in stretched time, the time to rest, and the start of slip.
 
-As elsewhere z = x + iy and w is the slip velocity: ż = w + iωz, ẇ = a(z, w) − g·w/|w|. In the stretched time dτ =
-dt·(s + s₀)/s with s = |w| these equations are smooth and not stiff down to s = 0, and almost unchanged far from rest.
+The position z = x + iy and the slip velocity w satisfy ż = w + iωz and ẇ = a(z, w) − g·w/|w|. In the stretched time
+dτ = dt·(s + s₀)/s, s = |w|, these equations are smooth and not stiff down to s = 0.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ from reference_model.systems import FloatArray
 Number = TypeVar("Number", np.float64, np.complex128)
 
 TERMS, MOST_TERMS = 8, 20
-"""Number of terms of the series of beginning slip, usually and where it stays slow, see STIFF."""
+"""Number of terms of the series of incipient slip, usually and where slip stays slow."""
 
 STIFF = 100.0
 """Time, in units of slip speed over g, that slip normally needs to become fast.
 
-Otherwise a longer series replaces many stiff steps of a short excursion.
+Otherwise a longer series replaces many stiff steps.
 """
 
 SLAVED = 0.02
-"""Largest slow rotation, as a share of the rate g/s of friction that aligns slip with the pull."""
+"""Largest rate of other changes over the rate g/s of friction, which aligns slip with the pull."""
 
 PLACES = 8
 """Smallest number of points for checking whether the series reaches the end of slip."""
@@ -55,8 +55,8 @@ def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
 def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float:
     """Return the time to the end of slip, or inf if it is not yet known to ``tolerance``.
 
-    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g², whatever the direction of slip. So slip ends after (g·s +
-    Re(ā·w))/(g² − |a|²). The change of a meanwhile adds ȧ·t²/2 to w.
+    While a is constant, d(g·s + Re(ā·w))/dt = |a|² − g². So slip ends after (g·s + Re(ā·w))/(g² − |a|²). The change
+    of a meanwhile adds ȧ·t²/2 to w.
     """
     g, s = law.friction, abs(w)
     a = pull(z, w, law)
@@ -67,23 +67,22 @@ def time_to_rest(z: complex, w: complex, law: PinLaw, tolerance: float) -> float
     v = w + 1j * law.disc_speed * z
     acceleration = a - g * w / s + 1j * law.disc_speed * v
     change = abs((law.damping + 1j * law.disc_speed) * acceleration + law.stiffness * v)
-    turn = abs(a) * s  # rotation of the position if the direction of slip changes completely
+    turn = abs(a) * s  # rotation of the position if the direction of slip reverses
     return left if left * left * (change + turn / s) < tolerance else math.inf
 
 
 @scalar
 def turns_steadily(law: PinLaw) -> bool:
-    """Return whether the pull of a pin at rest only rotates with the disc, so friction may hold it permanently."""
+    """Return whether the pull of a pin at rest only rotates with the disc."""
     return law.offset == 0.0 or law.disc_speed == 0.0
 
 
 @scalar
 def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
-    """Return whether the slow slip of a pin decays forever without rest: see :func:`turns_steadily`.
+    """Return whether the slow slip of a pin decays forever without rest; requires :func:`turns_steadily`.
 
-    Its speed s is along the pull, which turns with it; e is the excess of the pull at rest over g. They satisfy s' =
-    e − c·s and e' = −K·s, K = k² − ω²: a damped oscillator, also on a disc at rest with an offset. If it is
-    overdamped and e >= c·s/2 the speed never reaches zero.
+    Its speed s is along the turning pull, whose excess over g at rest is e. They satisfy s' = e − c·s and e' = −K·s,
+    K = k² − ω²: a damped oscillator. If it is overdamped and e >= c·s/2 the speed never reaches zero.
     """
     inward = law.stiffness - law.disc_speed**2
     excess = abs(pull(z, 0j, law)) - law.friction
@@ -95,9 +94,8 @@ def creeps_steadily(z: complex, w: complex, law: PinLaw) -> bool:
 def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
     """Return whether slip follows the pull closely enough to decay like slow slip.
 
-    Friction draws the direction of slip to the pull at the rate g/s, which exceeds all other rates by SLAVED. s' =
-    e − c·s and e' = −K·s of :func:`creeps_steadily` keep s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, and
-    e >= c·s/2 implies that.
+    Friction draws the direction of slip to the pull at the rate g/s, far above all other rates. The oscillator of
+    :func:`creeps_steadily` keeps s > 0 forever if e >= μ·s with μ = (c − √(c² − 4K))/2, which e >= c·s/2 implies.
     """
     a, s, turning = pull(z, 0j, law), abs(w), law.damping + 2.0 * abs(law.disc_speed)
     across = abs((a.conjugate() * w).imag) / (abs(a) * s) if s > 0.0 else 1.0
@@ -107,7 +105,7 @@ def creeps_slaved(z: complex, w: complex, law: PinLaw) -> bool:
 
 @scalar
 def creeping_ends(z: complex, law: PinLaw) -> complex:
-    """Return where on the disc friction holds a pin that :func:`creeps_steadily` from ``z``."""
+    """Return where on the disc a pin that :func:`creeps_steadily` from ``z`` ends."""
     a = pull(z, 0j, law)
     return z + (abs(a) - law.friction) / (law.stiffness - law.disc_speed**2) * a / abs(a)
 
@@ -118,8 +116,8 @@ def begin_slip(
 ) -> tuple[complex, complex, float, float]:
     """Return position, slip velocity, duration and distance of slip from rest at ``z``; the slip is 0 if it ends.
 
-    It follows the series of ``stick.slip_from_rest`` as long as its last terms stay below ``tolerance``, and up to
-    ``longest``. ``work`` is complex, of shape (6, MOST_TERMS + 2).
+    It follows the series of ``stick.slip_from_rest`` while its last terms stay below ``tolerance``. ``work`` is
+    complex, of shape (6, MOST_TERMS + 2).
     """
     terms = TERMS
     duration = _series(z, law, 1, terms, tolerance, longest, work)
@@ -133,7 +131,7 @@ def begin_slip(
 def _series(
     z: complex, law: PinLaw, first: int, terms: int, tolerance: float, longest: float, work: ComplexArray
 ) -> float:
-    """Write the terms from ``first`` on to ``work``, which contains the earlier ones; return the valid duration."""
+    """Write the terms from ``first`` on to ``work``; return the valid duration."""
     position, velocity, acceleration, slip, direction = work[0], work[1], work[2], work[3], work[4]
     theta, speed = work[5].real, work[5].imag
     omega = 1j * law.disc_speed
@@ -171,11 +169,11 @@ def _series(
 def _along(
     position: ComplexArray, slip: ComplexArray, speed: FloatArray, terms: int, duration: float
 ) -> tuple[complex, complex, float, float]:
-    """Return position, slip velocity, duration and distance at the end of the series, or where slip ends earlier."""
+    """Return position, slip velocity, duration and distance at the end of the series or of slip."""
     rest, ends, risen = duration, False, False
     spacing, before, last = duration / PLACES, 0.0, False
     a, b, c = speed[1], speed[2], speed[3]
-    if c < 0.0 < b * b - 4.0 * a * c:  # the end of slip by these terms, which is accurate if it comes soon
+    if c < 0.0 < b * b - 4.0 * a * c:
         soon = (b + math.sqrt(b * b - 4.0 * a * c)) / (-2.0 * c)
         spacing = min(spacing, 0.5 * soon) if soon > 0.0 else spacing
     while not last and not ends:
@@ -202,7 +200,6 @@ def _along(
 
 @inlined
 def _sum(coefficients: NDArray[Number], first: int, terms: int, t: float) -> Number:
-    """Return the sum of coefficients·t^(k − first), for k from ``first`` on."""
     total: Number = coefficients[terms]
     for k in range(terms - 1, first - 1, -1):
         total = total * t + coefficients[k]

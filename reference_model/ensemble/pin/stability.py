@@ -1,12 +1,11 @@
-"""Stability of a closed orbit of a slipping pin in compiled code, by the derivative of its return map.
+"""Stability of a closed orbit of a slipping pin, by the derivative of its return map.
 
-Small deviations (δz, δv) of a motion satisfy the linear equations::
+Small deviations (δz, δv) of a motion satisfy::
 
     δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
-where w = s·n is the slip velocity, whose direction n changes with the component of δw across it. Three deviations on
-the section where x is largest are followed for one turn together with the motion, by the classical Runge-Kutta method
-of fourth order.
+where w = s·n is the slip velocity. Three deviations on the section where x is largest are followed for one turn with
+the motion, by the classical Runge-Kutta method.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ MOST_STRIDES = 20_000
 """Largest number of steps in a turn; more are needed only if slip almost ends."""
 
 COEFFICIENTS = ((0.5, 1.0 / 6.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 3.0), (0.0, 1.0 / 6.0))
-"""Per stage, how far its rates carry the next stage, and their weight in the step."""
+"""How far the rates of each stage carry the next one, and their weight in the step."""
 
 
 @written_out
@@ -43,9 +42,8 @@ def orbit_attracts(
 ) -> bool:
     """Return whether an orbit attracts and is near, given position z and velocity v of a pin where x is largest.
 
-    ``came`` is the difference of x, y and ẏ from the previous crossing. With the derivative M of the return map,
-    the crossing of the orbit differs from the previous one by (1 − M)⁻¹ times ``came``, and from this one by at
-    most ``near``.
+    ``came`` is the change of x, y and ẏ since the previous crossing. With the derivative M of the return map the
+    orbit is (1 − M)⁻¹ times ``came`` away from the previous crossing, and must be within ``near`` of this one.
     """
     derivative, matrix, left = zeros(9).reshape(3, 3), zeros(9).reshape(3, 3), zeros(3)
     if not return_derivative(z, v, period, law, derivative) or not powers_vanish(derivative):
@@ -90,7 +88,6 @@ def return_derivative(z: complex, v: complex, period: float, law: PinLaw, deriva
     if left > 0.0:
         return False
     for j in range(3):
-        # Along the motion back to the section.
         late = y[j + 1, 1].real / rates[0, 1].real
         dz, dv = y[j + 1, 0] - late * rates[0, 0], y[j + 1, 1] - late * rates[0, 1]
         derivative[0, j], derivative[1, j], derivative[2, j] = dz.real, dz.imag, dv.imag
@@ -99,7 +96,6 @@ def return_derivative(z: complex, v: complex, period: float, law: PinLaw, deriva
 
 @scalar
 def _put_rates(y: ComplexArray, law: PinLaw, rates: ComplexArray) -> None:
-    """Write the rates of the motion (first row of ``y``) and of its deviations (other rows) to ``rates``."""
     turn = complex(0.0, law.disc_speed)
     z, v = y[0, 0], y[0, 1]
     w = v - turn * z

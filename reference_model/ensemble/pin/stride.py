@@ -28,7 +28,7 @@ from reference_model.ensemble.pin.memory import PinMemory
 
 @written_out
 def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
-    """Replace the trial step and its flags by an implicit step, if that brings the pin much further."""
+    """Replace the trial step by an implicit step if that goes much further."""
     now, trial = lanes.now, lanes.trial
     t, share = now.state.time[lane], now.rates.time[lane]
     short = now.step[lane] * share
@@ -54,7 +54,7 @@ def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
         return
     put_motion(trial, lane, z, complex(wx, wy), law)
     trial.state.time[lane] = t + took if took < left else memory.duration
-    trial.step[lane] = now.step[lane]  # the trial step gives no estimate for it
+    trial.step[lane] = now.step[lane]  # the trial step gives no estimate
     trial.state.way[lane] = now.state.way[lane] + way
     lanes.flag[lane] = flags_of(
         state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),

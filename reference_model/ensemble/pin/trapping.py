@@ -1,9 +1,8 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
-Both are fixed points of a map: the flow over a given time, and the return to the section where x is largest. Near a
-stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. It is applied to
-points on ever larger ellipsoids, as long as each image lies in a clearly smaller ellipsoid, on a whirl without
-stick. All motions inside these ellipsoids are attracted.
+Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
+stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The region is the
+largest ellipsoid whose points, like those of all smaller ones, the map moves into a clearly smaller ellipsoid.
 """
 
 from __future__ import annotations
@@ -32,10 +31,10 @@ TOLERANCE = 1e-10
 """Tolerance of the maps, which are differentiated."""
 
 DIRECTIONS = 128
-"""Number of points on the surface of an ellipsoid."""
+"""Number of points on an ellipsoid."""
 
 GROWTH = 1.25
-"""Linear growth from one ellipsoid to the next; the first is FIRST of the size of the motion."""
+"""Ratio of successive ellipsoids; the first one is FIRST times the size of the motion."""
 
 FIRST = 1e-2
 
@@ -45,7 +44,7 @@ REQUIRED_SHARE = 0.25
 MOST_ELLIPSOIDS = 40
 
 TURNS = 2
-"""Free periods of the map about the equilibrium; with more, larger deviations have time to return."""
+"""Free periods of the map about the equilibrium; more would let larger deviations return."""
 
 LONGEST = 100.0
 """Longest time from the circle without offset to the whirl, in units of m/β."""
@@ -58,7 +57,7 @@ DIFFERENCE = 1e-4
 
 @lru_cache(maxsize=64)
 def trapping_regions(pin: PinOnDisc) -> NDArray[Any]:
-    """Return the trapping regions of ``pin``, shape (1,), with zeros where none is known."""
+    """Return the trapping regions of ``pin``, shape (1,), zero where unknown."""
     regions = no_regions()
     if pin.damping > 0.0 and pin.friction_force > 0.0:
         _find_equilibrium_region(pin, regions)
@@ -117,7 +116,7 @@ def _find_whirl_region(pin: PinOnDisc, regions: NDArray[Any]) -> None:
         for _ in range(NEWTON_STEPS):
             matrix = _derivative(partial(crossing_near, turn), 3, radius)
             turn = turn - np.linalg.solve(matrix - np.eye(3), crossing_from(turn[np.newaxis])[0] - turn)
-        start = _on_section(turn[np.newaxis], k)  # so that the measures are those of the orbit itself
+        start = _on_section(turn[np.newaxis], k)  # for the measures of the orbit itself
     regions["turn"], regions["measures"] = turn, tuple(found.measures[0])
     regions["reach"], regions["metric"] = _contracting_region(
         lambda points: crossing_from(turn + points) - turn, 3, radius
@@ -152,7 +151,7 @@ def _contracting_region(flow: Map, dimension: int, size: float) -> tuple[float, 
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, dimension))
     directions /= np.linalg.norm(directions, axis=1)[:, np.newaxis]
     surface = np.linalg.solve(np.linalg.cholesky(metric).T, directions.T).T
-    # Under the linear map xᵀPx falls by |x|². Requiring only a share of this leaves room between the points.
+    # The linear map reduces xᵀPx by |x|². Requiring only a share leaves a margin between the points.
     allowed = 1.0 - REQUIRED_SHARE * (1.0 - math.sqrt(1.0 - 1.0 / np.linalg.eigvalsh(metric)[-1]))
     level, radius = 0.0, FIRST * size
     for _ in range(MOST_ELLIPSOIDS):

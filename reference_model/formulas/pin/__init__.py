@@ -1,17 +1,14 @@
 """The closed forms of sections 2 and 3 of the paper, one function per equation.
 
-Signs
------
 The paper assumes ω > 0 and X0 > 0. Here both may have either sign:
 
-- If the disc turns the other way the motion is mirrored in the x axis. So a formula is evaluated for |ω|, and y,
-  angles and senses of rotation change sign if ω < 0: the whirl for ω < −k has the frequency −k.
-- If the offset is on the other side, x and y change sign. So conditions such as (5) and (8) hold with |X0|.
+- If ω < 0 a formula is evaluated for |ω|, and y, angles and senses of rotation change sign.
+- If X0 < 0, x and y change sign, and conditions such as (5) and (8) hold with |X0|.
 
 The balances (3) and (11) also hold for a support that hardens or has a stop. All other formulas refuse it.
 
-A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16),
-which the paper also uses for ω < k, are defined without a whirl: they refuse |ω| = k, where ω/(ω − k) is undefined.
+A formula raises ``ValueError`` if its subject does not exist, and names the condition that fails. Only (12)–(16) are
+defined without a whirl, for ω < k too: they refuse |ω| = k, where ω/(ω − k) is undefined.
 """
 
 from reference_model.formulas.pin.rest import (

@@ -20,25 +20,21 @@ def equilibrium_radius(pin: PinOnDisc) -> float:
     """Return ρ* of (3), the distance of the pin at rest from the axis, in m.
 
     Friction acts along the circle about the axis, so the springs must pull by μN at a right angle to ρ*. Their
-    deflection d* = √(X0² − ρ*²) is that of the force μN, which is μN/C on a linear support.
+    deflection is √(X0² − ρ*²), which is μN/C on a linear support.
 
     Raises ``ValueError`` if (5) fails, if there are no springs, or if the disc is at rest and there is friction.
     """
     _require_equilibrium(pin)
     if pin.linear_support:
         largest, load = largest_load_with_equilibrium(pin), pin.friction_force
-        # A product, because the difference of two nearly equal squares would lose digits near the limit (5).
+        # The difference of two nearly equal squares would lose digits near the limit (5).
         return math.sqrt((largest - load) * (largest + load)) / pin.stiffness
     offset, deflection = abs(pin.offset), _equilibrium_deflection(pin)
     return math.sqrt(max((offset - deflection) * (offset + deflection), 0.0))
 
 
 def equilibrium_angle(pin: PinOnDisc) -> float:
-    """Return ψ* of (3), the angle of the pin at rest, in rad between −π and π.
-
-    Raises ``ValueError`` as :func:`equilibrium_radius`, and if the offset is zero, where no direction is
-    distinguished.
-    """
+    """Return ψ* of (3), the angle of the pin at rest, in rad from −π to π; ``ValueError`` also without offset."""
     _require_equilibrium(pin)
     if pin.offset == 0.0:
         raise ValueError("offset = 0 m: the equilibrium is the axis itself and has no angle")
@@ -49,10 +45,7 @@ def equilibrium_angle(pin: PinOnDisc) -> float:
 
 
 def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
-    """Return x* and y* of (3), the position of the pin at rest, in m.
-
-    Raises ``ValueError`` as :func:`equilibrium_radius`.
-    """
+    """Return x* and y* of (3), the position of the pin at rest, in m."""
     radius = equilibrium_radius(pin)
     if pin.offset == 0.0:
         return 0.0, 0.0
@@ -64,7 +57,7 @@ def equilibrium_position(pin: PinOnDisc) -> tuple[float, float]:
 def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArray:
     """Return left side minus right side of (4), in m²: zero on the circle through the axis and (X0, 0).
 
-    ``x`` and ``y`` in m may be numbers or arrays of one shape; the result has that shape.
+    ``x`` and ``y`` in m may be numbers or arrays of one shape.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     residual: FloatArray = (x - pin.offset / 2.0) ** 2 + y**2 - pin.offset**2 / 4.0
@@ -72,7 +65,7 @@ def semicircle_residual(pin: PinOnDisc, x: ArrayLike, y: ArrayLike) -> FloatArra
 
 
 def largest_load_with_equilibrium(pin: PinOnDisc) -> float:
-    """Return C·|X0| of (5) in N, the spring force on the axis: the equilibrium exists up to this μN."""
+    """Return C·|X0| of (5) in N, the spring force on the axis: the largest μN with equilibrium."""
     return Support.of(pin).pull(abs(pin.offset))
 
 
@@ -101,8 +94,7 @@ def _equilibrium_deflection(pin: PinOnDisc) -> float:
 def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLike) -> FloatArray:
     """Return the right side of (7) in N²: the square of the friction force that holds a pin on the disc.
 
-    ``radius`` is the distance A of the stuck pin from the axis in m, ``disc_angle`` its angle ωt in rad; both may
-    be arrays. Raises ``ValueError`` if the support is not linear.
+    ``radius`` is the distance A from the axis in m, ``disc_angle`` the angle ωt in rad; both may be arrays.
     """
     require_linear_support(pin)
     A, angle = np.asarray(radius, dtype=float), np.asarray(disc_angle, dtype=float)
@@ -121,13 +113,13 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
     """Return the rotation of the disc until release in rad, the first root of (7) with equality.
 
-    The holding force is the third side of a triangle. The first two sides are the force that carries the pin round
-    on springs relaxed at the axis, of magnitude √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the
-    angle between these two changes in time, and it grows as the disc turns.
+    The holding force is the third side of a triangle. The other two are the force that carries the pin round on
+    springs relaxed at the axis, √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle between
+    these two changes, and it grows as the disc turns.
 
-    ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is >= 0 for
-    either sense of rotation; ``inf`` for permanent stick, 0 if friction cannot hold the pin at the start. Raises
-    ``ValueError`` if ``radius`` is negative or the support not linear.
+    ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is ``inf`` for
+    permanent stick, 0 if friction cannot hold the pin at the start. Raises ``ValueError`` if ``radius`` is negative
+    or the support not linear.
     """
     require_linear_support(pin)
     if radius < 0.0:
@@ -144,7 +136,7 @@ def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> flo
     lead = math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
     half_turn = math.pi if pin.offset < 0.0 else 0.0
     start = math.remainder(direction * (start_angle + lead) + half_turn, 2.0 * math.pi)
-    # The law of cosines for half the angle is accurate for a flat triangle, where an arccos loses digits.
+    # For half the angle the law of cosines is accurate where an arccos loses digits.
     opening = 2.0 * math.atan2(
         math.sqrt((friction - excess) * (friction + excess)),
         math.sqrt((carry + pull - friction) * (carry + pull + friction)),
@@ -161,20 +153,15 @@ def release_time(pin: PinOnDisc, radius: float, start_angle: float) -> float:
 
 
 def sticking_margin(pin: PinOnDisc, radius: float) -> float:
-    """Return right side minus left side of (8) in N: >= 0 if a pin at ``radius`` (m) sticks in every position.
-
-    Raises ``ValueError`` if the support is not linear.
-    """
+    """Return right side minus left side of (8) in N: >= 0 if a pin at ``radius`` (m) sticks in every position."""
     return pin.friction_force - largest_load_with_equilibrium(pin) - _dynamic_stiffness(pin) * radius
 
 
 def sticking_radius(pin: PinOnDisc) -> float:
     """Return the right side of (9) in m: the largest distance from the axis with permanent stick.
 
-    It is ``inf`` if an undamped pin is carried round at its natural frequency, which takes no force.
-
-    Raises ``ValueError`` if μN <= C·|X0|, where friction cannot hold the pin even on the axis, or if the support is
-    not linear.
+    It is ``inf`` if an undamped pin is carried round at its natural frequency. Raises ``ValueError`` if μN <= C·|X0|,
+    where friction cannot hold the pin even on the axis, or if the support is not linear.
     """
     spare = sticking_margin(pin, 0.0)
     if spare <= 0.0:

@@ -1,6 +1,7 @@
 """Section 3 of the paper: the whirl (11), its stability, (12) to (16), and the whirl with an offset.
 
-The latter is (18), with the exact first and third orders in X0.
+The latter is (18), with the exact first and third orders in X0. Its functions raise ``ValueError`` as
+:func:`whirl_radius`.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ def speed_ratio(pin: PinOnDisc) -> float:
 
 
 def require_positive(pin: PinOnDisc, *names: str) -> None:
-    """Raise ``ValueError`` unless these parameters are > 0, which every whirl requires."""
+    """Raise ``ValueError`` unless these parameters are > 0."""
     for name in names:
         if getattr(pin, name) == 0.0:
             raise ValueError(f"{name} = 0: it must be > 0 for a whirl to exist")
@@ -36,8 +37,8 @@ def require_positive(pin: PinOnDisc, *names: str) -> None:
 def whirl_radius(pin: PinOnDisc) -> float:
     """Return ρ_c of (11) in m, the radius of the whirl without offset.
 
-    The balance along the circle gives the speed v = μN/β, whatever the support. The circle follows from m·v² = C·ρ² +
-    C₃·ρ⁴ + C_s·ρ·max(0, ρ − gap). It is unique because the right side grows with ρ.
+    The balance along the circle gives the speed v = μN/β. The circle follows from m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0,
+    ρ − gap), whose right side grows with ρ.
 
     Raises ``ValueError`` if there is no whirl. The paper says it "always exists", but by the sense of the friction
     force in (10) it requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
@@ -47,10 +48,7 @@ def whirl_radius(pin: PinOnDisc) -> float:
 
 
 def whirl_frequency(pin: PinOnDisc) -> float:
-    """Return ψ̇ of (11) in rad/s: k if ω > k, −k if ω < −k, and (μN/β)/ρ_c in general.
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
-    """
+    """Return ψ̇ of (11) in rad/s: k if ω > k, −k if ω < −k, and (μN/β)/ρ_c in general."""
     require_whirl(pin)
     return turning_direction(pin) * circling_speed(pin, driven_radius(pin, pin.friction_force))
 
@@ -80,7 +78,7 @@ def require_drive(pin: PinOnDisc) -> None:
 
 
 def require_whirl(pin: PinOnDisc) -> None:
-    """Raise ``ValueError`` unless a whirl exists, see :func:`whirl_radius`."""
+    """Raise ``ValueError`` unless a whirl exists."""
     require_drive(pin)
     if not pin.linear_support:
         radius = driven_radius(pin, pin.friction_force)
@@ -102,9 +100,8 @@ def require_whirl(pin: PinOnDisc) -> None:
 def variational_matrix(pin: PinOnDisc) -> FloatArray:
     """Return the matrix of (12), shape (3, 3): its product with (ξ, ξ̇, η) is the time derivative of (ξ, ξ̇, η).
 
-    ξ is the deviation of the radius in m, and η the deviation of the angular velocity in the sense of ω, in rad/s.
-
-    Raises ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
+    ξ is the deviation of the radius in m, and η that of the angular velocity in the sense of ω, in rad/s. Raises
+    ``ValueError`` if |ω| = k, if damping or friction force is zero, or if the support is not linear.
     """
     require_positive(pin, "damping", "friction_force")
     rate, k = pin.damping / pin.mass, pin.natural_frequency
@@ -121,7 +118,7 @@ def variational_matrix(pin: PinOnDisc) -> FloatArray:
 def characteristic_coefficients(pin: PinOnDisc) -> tuple[float, float, float, float]:
     """Return the coefficients of λ³, λ², λ and 1 of the characteristic equation of (12): (13) corrected.
 
-    Their units are 1, 1/s, 1/s² and 1/s³. Raises ``ValueError`` if |ω| = k.
+    Their units are 1, 1/s, 1/s² and 1/s³.
     """
     rate, k, ratio = pin.damping / pin.mass, pin.natural_frequency, speed_ratio(pin)
     return 1.0, rate * (1.0 + ratio), rate**2 * ratio + 4.0 * k**2, 2.0 * k**2 * rate
@@ -130,36 +127,27 @@ def characteristic_coefficients(pin: PinOnDisc) -> tuple[float, float, float, fl
 def characteristic_coefficients_as_printed(pin: PinOnDisc) -> tuple[float, float, float, float]:
     """Return the coefficients of (13) as printed, which are wrong, for comparison.
 
-    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate. The determinant of (12)
-    gives (β/m)·(1 + ω/(ω − k)), see :func:`characteristic_coefficients`. Raises ``ValueError`` if |ω| = k.
+    The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate; the determinant of (12)
+    gives (β/m)·(1 + ω/(ω − k)).
     """
     _, _, linear, constant = characteristic_coefficients(pin)
     return 1.0, 1.0 + pin.damping / pin.mass * speed_ratio(pin), linear, constant
 
 
 def coefficient_margins(pin: PinOnDisc) -> tuple[float, float]:
-    """Return left side minus right side of the two conditions (14): both > 0 if the coefficients of (13) are.
-
-    Raises ``ValueError`` if |ω| = k or if the damping is zero.
-    """
+    """Return left side minus right side of the conditions (14): both > 0 if the coefficients of (13) are."""
     ratio = speed_ratio(pin)
     return ratio + 1.0, ratio + _stiffness_to_damping(pin)
 
 
 def lower_branch_margin(pin: PinOnDisc) -> float:
-    """Return right side minus left side of (15): > 0 if it holds, which excludes (14).
-
-    Raises ``ValueError`` if |ω| = k or if the damping is zero.
-    """
+    """Return right side minus left side of (15): > 0 if it holds, which excludes (14)."""
     q = _stiffness_to_damping(pin)
     return -0.5 * (1.0 + q + math.hypot(1.0, q)) - speed_ratio(pin)
 
 
 def upper_branch_margin(pin: PinOnDisc) -> float:
-    """Return left side minus right side of (16): > 0 exactly if all roots of (13) have negative real parts.
-
-    Raises ``ValueError`` if |ω| = k or if the damping is zero.
-    """
+    """Return left side minus right side of (16): > 0 exactly if all roots of (13) have negative real parts."""
     q = _stiffness_to_damping(pin)
     # q − √(1 + q²) without cancellation for weak damping
     return speed_ratio(pin) + 0.5 * (1.0 - 1.0 / (q + math.hypot(1.0, q)))
@@ -184,13 +172,10 @@ class WhirlResponse(NamedTuple):
 def whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
     """Return x_s and y_s of (18) in m, the paper's approximation of the time mean of the whirl with an offset.
 
-    It balances only the first harmonic. The second harmonic that the offset excites is of the same order in X0 and
-    changes the mean, see :func:`first_order_whirl_shift`.
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
+    It omits the second harmonic, which changes the mean to the same order in X0, see :func:`first_order_whirl_shift`.
     """
     require_whirl(pin)
-    half = _relative_damping(pin) * speed_ratio(pin) / 2.0  # βω/(2mk(ω − k))
+    half = _relative_damping(pin) * speed_ratio(pin) / 2.0
     x = pin.offset / (1.0 + half**2)
     return x, turning_direction(pin) * half * x
 
@@ -203,13 +188,11 @@ def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
         (−k² + ik(β/m)ω/(ω−k))·Ξ −          2ik²·U =  k²X0
                 (2ik² + kβ/m)·Ξ + (−k² + ikβ/m)·U = ik²X0
 
-    In x + iy = ρ·exp(iψ) these amplitudes give the mean (conj Ξ + i·conj U)/2 and, at 2k, (Ξ + iU)/2. Solved for
-    these two, with d = β/(mk) and w = ω/(ω − k)::
+    In x + iy = ρ·exp(iψ) they give the mean (conj Ξ + i·conj U)/2 and, at 2k, (Ξ + iU)/2. With d = β/(mk) and w =
+    ω/(ω − k)::
 
         mean            = X0·conj((6 − id(w + 2))/(2(3 + d²w + id(w − 1))))
         second harmonic = X0·idw/(2(3 + d²w + id(w − 1)))
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)
@@ -222,10 +205,7 @@ def first_order_whirl_response(pin: PinOnDisc) -> WhirlResponse:
 
 
 def first_order_whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
-    """Return the time mean of x and y in m of the whirl with a small offset, exact to first order in X0.
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
-    """
+    """Return the time mean of x and y in m of the whirl with a small offset, exact to first order in X0."""
     mean = first_order_whirl_response(pin).mean
     return mean.real, mean.imag
 
@@ -234,10 +214,7 @@ def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
     """Return the limit of the relative error of (18) for X0 → 0: z of (18) over the exact z, minus 1, z = x + iy.
 
     It is the complex conjugate of d²w(2 − w)/((2 + idw)(6 − id(w + 2))), d and w of
-    :func:`first_order_whirl_response`: zero at |ω| = 2k, and −1 as |ω| → k. It does not depend on the offset, which
-    may be zero.
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
+    :func:`first_order_whirl_response`: zero at |ω| = 2k, and −1 as |ω| → k.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)
@@ -249,19 +226,17 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
     """Return the imaginary part of the whirl's mean at third order in X0 over first order, to leading order in d.
 
     Let d = β/(mk) and τ = kt. In units of ρ_c, (1) without damping has the motions X0 + ρ·exp(iτ) + σ·exp(−iτ).
-    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean.
-    Slip has the direction of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b =
-    (2w − 1)σ/ρ. Its harmonics to third order give::
+    Damping and friction, both of order d, select ρ and σ, and add −d times the mean direction of slip to the mean:
+    that of −i·exp(iτ)·(1 + u), u = a·exp(−iτ) + b·exp(−2iτ), with w = ω/(ω − k), a = wX0/ρ and b = (2w − 1)σ/ρ. Its
+    harmonics to third order give::
 
         exp(iτ)   1 − a²/4           = ρ
         exp(−iτ)  b/2 − a²/8         = −σ
         mean      a/2 + a³/16 − ab/4
 
-    So σ = a²/(4(2w + 1)). The mean is X0·(1 + ½idw) to first order, and the third order relative to it is::
+    So σ = a²/(4(2w + 1)). Relative to the first order X0·(1 + ½idw) the third order of the mean is::
 
         i·d·w(w + 1)/(4(2w + 1))·(wX0/ρ_c)²
-
-    Raises ``ValueError`` as :func:`whirl_radius`.
     """
     require_whirl(pin)
     d, w = _relative_damping(pin), speed_ratio(pin)
@@ -270,7 +245,6 @@ def third_order_of_whirl_shift(pin: PinOnDisc) -> float:
 
 
 def _mirrored(pin: PinOnDisc, amplitude: complex) -> complex:
-    """Return an amplitude of x + iy for ω, given its value for |ω|."""
     return amplitude.conjugate() if pin.disc_speed < 0.0 else amplitude
 
 

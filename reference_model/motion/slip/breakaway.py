@@ -1,9 +1,8 @@
 """The beginning of slip from rest, for any law.
 
-Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. Yet the
-motion is a smooth function of time, and implicit collocation (Radau IIA; Hairer and Wanner, Solving Ordinary
-Differential Equations II, IV.5) needs only a few steps until slip is fast enough for an explicit method. Under a pull
-well above friction slip grows like time, and the first step ends the stiffness.
+Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. As the
+motion is smooth, implicit collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until slip
+is fast enough for an explicit method.
 """
 
 from __future__ import annotations
@@ -31,19 +30,18 @@ from reference_model.systems import FloatArray
 from reference_model.trajectory import SimulationError
 
 FIRST_STEP = 0.01
-"""First step in units of time; it shrinks until the motion is resolved."""
+"""Scaled first step, which shrinks until the motion is resolved."""
 
 LEAST_STEP = 1e-12
-"""Smallest step in units of time."""
 
 MOMENT = 1e-6
-"""Time, in units, for the difference quotient of the pull."""
+"""Scaled time for the difference quotient of the pull."""
 
 TURN = 1e-7
 """Change of direction for the difference quotient of friction."""
 
 STIFF = 10.0
-"""Stiffness of a step (rate times length) below which an explicit method is as efficient as this one."""
+"""Stiffness of a step (rate times length) below which an explicit method is as efficient."""
 
 FASTER = 0.01
 """Relative change of the slip speed for the derivative along the slip."""
@@ -62,9 +60,8 @@ def begin_slip(
 ) -> Outcome:
     """Follow slip from rest until an explicit method in standard unknowns can continue.
 
-    ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape
-    (slip,), the unit vector of the incipient slip. ``leave`` returns whether the motion needs another description,
-    for example because a point comes to rest. Raises ``SimulationError`` if the motion cannot be resolved.
+    ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape (slip,),
+    the unit vector of the incipient slip. Raises ``SimulationError`` if the motion cannot be resolved.
     """
     rest = _Rest(motion, np.array(y), np.array(drift), direction)
     return _follow(run, motion, t, rest.leading_order(), leave)
@@ -86,7 +83,7 @@ class _Rest:
         """Return the unknowns to leading order in time.
 
         Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change
-        − J·turning). J need not be symmetric, so gain is not the component of change along the direction.
+        − J·turning), where J need not be symmetric.
         """
         others, carried, direction, first = self._others, self._carried, self._direction, self._first
         axes, along = np.eye(len(direction)), np.outer(direction, direction)
@@ -110,13 +107,12 @@ class _Rest:
 
 
 def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Leave) -> Outcome:
-    """Follow slip that began at ``t`` by collocation until an explicit method is as good."""
     start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
     while t < run.end:
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
         if piece is None and t > since:
-            break  # friction changes sharply within a step, as where one of several points hardly slips
+            break  # friction changes sharply, as where one point hardly slips
         if piece is None or piece.error > run.thresholds.series:
             step *= 0.25 if piece is None else max(0.25, piece.change_of_step(run.thresholds.series))
             if step < LEAST_STEP:
@@ -140,9 +136,8 @@ class _Piece:
     """A polynomial that solves the equations of motion at the nodes of one step.
 
     It interpolates the values, because stiffness amplifies the residual of Newton's method in an integral of the
-    rates. ``values`` are functions of the time since the step began, and ``rates``, shape (NODES, unknowns), those
-    at the nodes. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling``
-    is True if slip decelerates.
+    rates. At the end ``stiffness`` is the relaxation rate of the direction of slip in 1/T, and ``falling`` is True if
+    slip decelerates.
     """
 
     values: Polynomial
@@ -159,15 +154,12 @@ class _Piece:
         return float(min(np.max(by_values), np.max(by_rates)))
 
     def change_of_step(self, tolerance: float) -> float:
-        """Return the factor for the step to reach an error of ``tolerance``."""
         return float(0.8 * (tolerance / max(self.error, 1e-300)) ** (1.0 / NODES))
 
     def at(self, delays: FloatArray) -> FloatArray:
-        """Return the unknowns at ``delays`` (n,) after the start, even beyond the end, shape (n, unknowns)."""
         return self.values.beyond(delays, np.zeros(1))
 
     def beyond(self, delays: FloatArray) -> FloatArray:
-        """Return the extrapolation to ``delays`` after the end."""
         return self.at(self.values.t + delays)
 
 
@@ -175,7 +167,7 @@ def _sample(motion: Coordinates, piece: _Piece, t: float, times: FloatArray) -> 
     return motion.standard(piece.at(times - t).T)
 
 
-@np.errstate(over="ignore", divide="ignore", invalid="ignore")  # a diverging trial step is rejected
+@np.errstate(over="ignore", divide="ignore", invalid="ignore")
 def _collocate(
     run: Run, motion: Coordinates, start: FloatArray, step: float, values: FloatArray
 ) -> _Piece | None:
@@ -214,8 +206,7 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Differences by the slip are on its own scale. Friction hardly changes with the slip speed, and Newton's method
-    needs that derivative more accurately than component-wise differences give it.
+    Friction hardly changes with the slip speed, so that derivative needs larger differences.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

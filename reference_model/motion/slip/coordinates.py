@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 Rates = Callable[[Sequence[float]], Sequence[float]]
 
 LEAST_SLIP = 1e-100
-"""A negligible slip speed that still gives friction a direction."""
+"""Negligible slip speed that still gives friction a direction."""
 
 DIFFERENCE = 1e-7
 """Change of unknowns of order one for numerical derivatives."""
@@ -36,30 +36,28 @@ SHARE = 1e-5
 
 @dataclass(frozen=True)
 class Coordinates:
-    """The unknowns of a motion and the functions that describe it.
-
-    The last ``slip`` unknowns are a relative velocity that friction may bring to rest.
+    """The unknowns of a motion, the last ``slip`` of them a slip velocity, and functions of them.
 
     Parameters
     ----------
     rates, many
-        Takes the unknowns and returns their rates in 1/T, never at zero slip; vectorised for arrays of shape (k,).
+        Return the rates in 1/T, never at zero slip; ``many`` for arrays of shape (k,).
     slow
-        Takes the unknowns and returns the speed limit of slow slip.
+        Returns the speed limit of slow slip.
     pace
         Largest rate of everything except the slip, in 1/T.
     standard
-        Converts unknowns of shape (k, n) to the standard unknowns of the body, (unknowns, n).
+        Converts unknowns (k, n) to the standard unknowns of the body, (unknowns, n).
     angle
         Index of an angle, which has an absolute tolerance.
     turning
-        Index of a relative velocity apart from the slip. Friction may change on its scale, however small it is.
+        Index of another relative velocity, which may be the scale of friction.
     leverage
         Derivative of the velocity of the centre by the slip.
     grip
-        Returns the margin of a held friction force; the motion ends where it falls to zero.
+        Returns the margin of a held friction force; the motion ends at zero.
     surfaces
-        Surfaces of continuous but not smooth friction or support.
+        Surfaces where friction or support is continuous but not smooth.
 
     """
 
@@ -76,15 +74,13 @@ class Coordinates:
     surfaces: tuple[SwitchingSurface, ...] = ()
 
     def rates_at(self, unknowns: FloatArray) -> FloatArray:
-        """Return the rates for many ``unknowns``, shape (unknowns, k)."""
         return np.array(self.many(unknowns))
 
     def speed(self, y: Sequence[float]) -> float:
-        """Return the slip speed."""
         return math.hypot(*y[-self.slip :])
 
     def differences(self, unknowns: FloatArray) -> FloatArray:
-        """Return the changes of ``unknowns`` (k, n), which may have more columns, for numerical derivatives."""
+        """Return the changes of ``unknowns`` (k, n or more) for numerical derivatives."""
         changes = np.full(unknowns.shape, DIFFERENCE)
         if self.turning is not None:
             own = SHARE * abs(unknowns[:, self.turning]) + LEAST_SLIP
@@ -95,8 +91,8 @@ class Coordinates:
         """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
         ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
-        tolerances. An implicit step bounds the error of s instead of ln s, because slip that decays for a long time
-        would need many steps otherwise.
+        tolerances. An implicit step bounds the error of s instead of ln s, because long decay would otherwise need
+        many steps.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
@@ -118,7 +114,7 @@ class Coordinates:
 
 
 def stop_surfaces(support: Support) -> tuple[SwitchingSurface, ...]:
-    """Return the surface where the stop begins, or () without one, for unknowns that start with x and y."""
+    """Return the surface where the stop begins, if any, for unknowns that start with x and y."""
     if support.stop_stiffness == 0.0 or support.stop_gap == 0.0:
         return ()
 
@@ -152,14 +148,14 @@ FAST_AGAIN = 1.2
 """Ratio to the slow slip speed above which slip is fast again."""
 
 NO_WAY, LEAST_WAY = 0.1, 1e-12
-"""Largest remaining distance of lingering slip that has ended: as a share of the local tolerance, and in units."""
+"""Largest distance that remains when slip has ended: as a share of the local tolerance, and scaled."""
 
 LONG = 0.01
-"""Smallest time to rest, in units, of lingering slip."""
+"""Smallest scaled time to rest of lingering slip."""
 
 
 def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcome | None:
-    """Follow slow slip to its end if that comes next; return None if not."""
+    """Follow slow slip to its end if it is about to end; otherwise return None."""
     others, s = len(y) - motion.slip, motion.speed(y)
     n = [part / s for part in y[others:]]
     growth = motion.rates(y)[others:]
@@ -173,13 +169,13 @@ def slip_ends(run: Run, motion: Coordinates, t: float, y: list[float]) -> Outcom
     way = s * max(1.0, min(left, run.end - t))
     lingers = left > LONG and way < max(NO_WAY * run.local_tolerance, LEAST_WAY)
     if s < run.thresholds.reversal_slip or lingers:
-        # Head-on, or at the friction limit: over to rounding error.
+        # Slip is over to rounding error, head-on or at the friction limit.
         return Outcome(t, [*y[:others], *[0.0] * motion.slip])
     return None
 
 
 def come_to_rest(run: Run, motion: Coordinates, t: float, left: float, y: list[float]) -> list[float]:
-    """Follow the last ``left`` of slip, which falls linearly, by the midpoint rule; return the final unknowns."""
+    """Follow the last ``left`` of slip, which falls linearly, by the midpoint rule; return the unknowns."""
     others = len(y) - motion.slip
     first = motion.rates(y)[:others]
 

@@ -1,9 +1,8 @@
 """Fast and slow slip by an explicit Runge-Kutta method of eighth order with the unregularised law.
 
-While slip is fast or grows, its components are unknowns. While it approaches zero it is written s·n with a unit
-vector n, and the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so
-these equations are smooth and not stiff down to s = 0. There n tends to a limit direction (Antali and Stépán 2019),
-and the remaining time is s over its rate of decrease.
+While slip is fast or grows, its components are unknowns. While it approaches zero it is s·n with a unit vector n, and
+the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so these equations
+are smooth and not stiff down to s = 0, where n tends to a limit direction (Antali and Stépán 2019).
 """
 
 from __future__ import annotations
@@ -75,7 +74,7 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
         n = stretched[others : others + d]
         size = math.hypot(*n)
         n = [part / size for part in n]
-        # A trial step may overshoot by far before it is rejected: exp() must not overflow then.
+        # A trial step may overshoot by far before it is rejected: exp() must not overflow.
         s = math.exp(min(stretched[-2], 50.0))
         return [*stretched[:others], *[s * part for part in n]], n, s
 
@@ -121,7 +120,6 @@ def slide_slowly(run: Run, motion: Coordinates, start: float, y: list[float], le
 def _stretched(
     motion: Coordinates, start: float, s0: float, dense: DenseOutput, times: FloatArray
 ) -> FloatArray:
-    """Return the standard unknowns in a step in stretched time, which starts at ``start``."""
     d = motion.slip
     stretched = dense(_stretched_times(dense, times - start, s0))
     n = stretched[-2 - d : -2]
@@ -130,7 +128,7 @@ def _stretched(
 
 
 def _stretched_times(dense: DenseOutput, delays: FloatArray, s0: float) -> FloatArray:
-    """Return τ for the values ``delays`` of the time, the last unknown of ``dense``, by Newton's method."""
+    """Return τ for ``delays`` of the time, the last unknown of ``dense``, by Newton's method."""
     first, last = dense.t_min, dense.t_max
     t_first, t_last = dense(first)[-1], dense(last)[-1]
     tau: FloatArray = first + (last - first) * (delays - t_first) / (t_last - t_first)

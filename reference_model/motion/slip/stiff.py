@@ -1,7 +1,7 @@
 """Stiff slip by an implicit method: creep, persistently slow slip, and strong damping.
 
-If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, and an explicit method needs steps
-of about s/g. As functions of time, n and ln s are smooth, and collocation takes steps as long as the motion allows.
+If slip s stays small, its direction n relaxes to that of the pull at the rate g/s, which limits explicit steps to
+about s/g. As functions of time n and ln s are smooth, so collocation takes steps as long as the motion allows.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from reference_model.numerics.collocation import Scales
 from reference_model.systems import FloatArray
 
 WORTH = 6.0
-"""Smallest step times largest rate of an unstable explicit step."""
+"""Smallest product of step and largest rate of an unstable explicit step."""
 
 COST = 4.0
 """Work of an implicit step relative to an explicit one."""
@@ -61,8 +61,7 @@ def slide_stiffly(
         ended = slip_ends(run, motion, t, y) if slow else None
         if ended is not None:
             return ended
-        # Explicit steps in stretched time are proportional to slow slip, and limited by that rather than by
-        # stability.
+        # Slow slip limits explicit steps in stretched time more than stability does.
         explicit = step * motion.speed(y) / first if slowly else step
         if solver.settled and (t - before < COST * explicit or (solver.stiffness < WORTH and not slowly)):
             run.patience *= 2
@@ -71,7 +70,6 @@ def slide_stiffly(
 
 
 def _stepper(run: Run, motion: Coordinates, start: float, y: list[float], first_step: float) -> Stepper:
-    """Return the implicit stepper from ``y`` on, for unknowns that contain slip as n and ln s."""
     d = motion.slip
     others = len(y) - d
 
@@ -111,7 +109,6 @@ def _one(others: int, polar: list[float]) -> list[float]:
 
 
 def _unknowns(others: int, polar: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unknowns, direction n and slip speed s for ``polar`` unknowns of shape (n, k)."""
     n = polar[others:-1]
     size = np.sqrt((n * n).sum(axis=0))
     n = n / np.where(size > 0.0, size, 1.0)

@@ -1,1 +1,1 @@
-"""Explicit and implicit steps of a lane, and the motion within a step."""
+"""Explicit and implicit steps of a lane."""

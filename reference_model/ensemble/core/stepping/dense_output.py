@@ -48,7 +48,7 @@ def size_of(z: complex) -> float:
 
 
 class Motion(NamedTuple):
-    """Position, velocity, acceleration and jerk at one time."""
+    """Position, velocity, acceleration and jerk."""
 
     place: complex
     velocity: complex
@@ -58,7 +58,6 @@ class Motion(NamedTuple):
 
 @scalar
 def dense_output(span: float, first: Motion, last: Motion) -> DenseOutput:
-    """Return the motion of the duration ``span`` between two ends."""
     v0, a0, j0 = first.velocity * span, first.acceleration * span**2, first.jerk * span**3
     v1, a1, j1 = last.velocity * span, last.acceleration * span**2, last.jerk * span**3
     z0, z1 = first.place, last.place
@@ -75,7 +74,6 @@ def _between(
 ) -> Polynomial:
     """Return the polynomial with the value f0 and the derivatives f1, f2, f3 at 0 and g0 to g3 at 1."""
     c2, c3 = f2 / 2.0, f3 / 6.0
-    # Residuals of the Taylor polynomial at the end, and of its derivatives.
     e0, e1 = g0 - (f0 + f1 + c2 + c3), g1 - (f1 + f2 + 3.0 * c3)
     e2, e3 = g2 - (f2 + f3), g3 - f3
     d2 = (e2 - 8.0 * e1 + 20.0 * e0) / 2.0
@@ -100,37 +98,35 @@ def _slope(p: Polynomial, u: float) -> float:
 
 @inlined
 def position_on(step: DenseOutput, u: float) -> complex:
-    """Return z(u)."""
     return complex(_value(step.x, u), _value(step.y, u))
 
 
 @inlined
 def velocity_on(step: DenseOutput, u: float) -> complex:
-    """Return ż(u)."""
     return complex(_slope(step.x, u), _slope(step.y, u)) / step.span
 
 
 @inlined
 def rightward(step: DenseOutput, u: float) -> float:
-    """Return ẋ(u) times the duration of the step, which is zero where x is largest."""
+    """Return ẋ(u) times the duration of the step."""
     return _slope(step.x, u)
 
 
 @inlined
 def outward(step: DenseOutput, u: float) -> float:
-    """Return ρρ̇ times the duration of the step, which is zero where the radius is largest or smallest."""
+    """Return ρρ̇ times the duration of the step."""
     return _value(step.x, u) * _slope(step.x, u) + _value(step.y, u) * _slope(step.y, u)
 
 
 @scalar
 def where_rightmost(step: DenseOutput) -> float:
-    """Return the u of the largest x; the rate of x changes sign between the ends."""
+    """Return the u of the largest x; ẋ changes sign between the ends."""
     return _zero_of(rightward, step)
 
 
 @scalar
 def where_radius_turns(step: DenseOutput) -> float:
-    """Return the u of the largest or smallest radius; inf if the radius is monotonic."""
+    """Return the u of the extreme radius; inf if the radius is monotonic."""
     if (outward(step, 0.0) > 0.0) == (outward(step, 1.0) > 0.0):
         return math.inf
     return _zero_of(outward, step)

@@ -1,11 +1,7 @@
 """Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
 
-Creeping slip draws its direction to that of the pull at the rate g/s, and a strong damper reduces the velocity at
-β/m. These rates limit an explicit step, but not this method.
-
-The unknowns of Newton's method are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative
-−g·P'' of friction is symmetric and zero along the slip, because P is a potential of degree one. Rounding would spoil
-the component along the slip, so it is removed from the differences.
+The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative −g·P'' of friction
+is symmetric and zero along the slip, because P is of degree one, so its rounding error along the slip is removed.
 """
 
 from __future__ import annotations
@@ -27,7 +23,7 @@ from reference_model.systems import FloatArray
 INTEGRAL, SERIES = np.array(collocation.INTEGRAL), np.array(collocation.TO_SERIES)
 LAST_TERM = np.array(collocation.FROM_START[NODES])
 PLACES = 0.5 * (np.array(collocation.POINTS) + 1.0)
-"""PLACES are the nodes in [0, 1]."""
+"""Nodes in [0, 1]."""
 
 APART = 1e-7
 """Relative change of slip for the derivative of friction."""
@@ -36,16 +32,16 @@ SHARE = 1e-3
 """Largest allowed error of slip, relative to it: slip must not reverse."""
 
 ROUNDED = 1e-15
-"""Rounding error of slip, in units."""
+"""Rounding error of scaled slip."""
 
 WORTH = 10.0
 """Number of explicit steps whose total time an implicit step must exceed."""
 
 FIRST_SPAN = 0.1
-"""First implicit step, in units of time, unless twice the smallest worthwhile step is longer."""
+"""Scaled first implicit step, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""Short steps to make after an implicit step failed to pay, doubled with each failure up to a largest number."""
+"""Number of short steps before another try after an implicit step failed to pay, and most doublings of it."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """Largest ratio of successive steps, and safety factor of the error estimate."""
@@ -54,7 +50,7 @@ GROWTH, CAUTION = 4.0, 0.8
 Collocation = Callable[
     [complex, float, FloatArray, float, DiscLaw, FloatArray, FloatArray, FloatArray], float
 ]
-"""Solves for the slip at the nodes of a step, as :func:`collocate_with` with a given friction."""
+""":func:`collocate_with` with a given friction."""
 
 
 @written_out
@@ -71,9 +67,9 @@ def collocate_with(
 ) -> float:
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
-    ``z``, ``angle`` and ``start`` describe the start of the step. The rates ``f`` and the mean slip speed ``power``
-    (NODES,) are results too. Returns how fast friction draws slip to its direction at the end, as a rate, or -1
-    without convergence.
+    ``z``, ``angle`` and ``start`` are those at the start of the step. The rates ``f`` and the mean slip speed
+    ``power`` (NODES,) are results too. Returns the relaxation rate of the direction of slip at the end, or -1 without
+    convergence.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
@@ -128,7 +124,6 @@ def _complete(slopes: FloatArray, along: FloatArray, size: float, law: DiscLaw) 
 
 @scalar
 def _turns(disc_speed: float, step: float) -> ComplexArray:
-    """Return e^(iωt) at the nodes."""
     turns = complex_zeros(NODES)
     for j in range(NODES):
         turn = disc_speed * step * PLACES[j]
@@ -175,7 +170,7 @@ def _linearise(
 
 @scalar
 def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
-    """Subtract the Newton correction (NODES, d) from the slip; return whether it was only rounding."""
+    """Subtract the Newton correction (NODES, d); return whether it was only rounding."""
     converged = True
     for i in range(NODES):
         size = length_of(change[i])
@@ -190,7 +185,6 @@ def _corrected(w: FloatArray, change: FloatArray, step: float) -> bool:
 def pin_friction(
     ux: float, uy: float, r: float, angle: float, law: DiscLaw
 ) -> tuple[float, float, float, float]:
-    """Return the friction of a pin, which does not spin, like ``laws.ring_friction``."""
     s = math.sqrt(ux * ux + uy * uy)
     return -ux / s, -uy / s, 0.0, s
 
@@ -210,7 +204,6 @@ def _collocation(friction: Friction, compiled: Callable[[Collocation], Collocati
 collocate_pin = _collocation(pin_friction, written_out)
 collocate_ring = _collocation(ring_friction, scalar)
 collocate_points = _collocation(points_friction, written_out)
-"""Collocation of a pin, and of a disc on a ring or on points."""
 
 
 @written_out
@@ -220,8 +213,8 @@ def stride_with(
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
-    ``start`` (2 or 3,) is the initial slip, and ``guess`` an estimate of slip soon after. Returns position, slip,
-    angle, duration (zero if the step is not worthwhile), slip distance and the proposed next step.
+    ``start`` (2 or 3,) is the initial slip, ``guess`` an estimate of it soon after. Returns position, slip, angle,
+    duration (zero if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
@@ -260,32 +253,30 @@ def stride_with(
 
 @inlined
 def first_try(planned: float, least: float, left: float) -> float:
-    """Return the first step to try, > 0; ``planned`` is the proposed step, if positive."""
+    """Return the first implicit step to try: ``planned`` if positive."""
     return min(planned if planned > 0.0 else max(FIRST_SPAN, 2.0 * least), left)
 
 
 @inlined
 def failed(planned: float) -> float:
-    """Return the code that replaces ``planned`` after a failure: minus the number of successive failures."""
+    """Return ``planned`` after another failure: minus the number of successive failures."""
     return max(min(planned, 0.0) - 1.0, -MOST_FAILURES)
 
 
 @inlined
 def patience(planned: float) -> float:
-    """Return the number of short steps to make after failures."""
     steps: float = PATIENCE * 2.0**-planned
     return steps
 
 
 @scalar
 def position_after(z: complex, w: FloatArray, step: float, law: DiscLaw) -> complex:
-    """Return the position of the centre at the end of a step."""
     return _position_at_node(z, w, step, NODES - 1, _turns(law.disc_speed, step))
 
 
 @inlined
 def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: ComplexArray) -> complex:
-    """Return the position of the centre at a node; relative to the master disc it depends on slip only."""
+    """Return the position of the centre, which relative to the master disc depends on slip only."""
     way = 0j
     for j in range(NODES):
         way += INTEGRAL[node, j] * turns[j].conjugate() * complex(w[j, 0], w[j, 1])
@@ -295,7 +286,6 @@ def _position_at_node(z: complex, w: FloatArray, step: float, node: int, turns: 
 
 @inlined
 def _free_of(matrix: FloatArray, along: FloatArray, size: float) -> None:
-    """Project a direction of length ``size`` out of a symmetric matrix from both sides."""
     d = len(along)
     for i in range(d):
         part = 0.0
@@ -322,7 +312,7 @@ def _size_of(matrix: FloatArray) -> float:
 
 @scalar
 def _turns_back(start: FloatArray, w: FloatArray) -> bool:
-    """Return whether slip turns by more than a right angle, so that it came to rest on the way."""
+    """Return whether slip turns by more than a right angle: it came to rest on the way."""
     before = start
     for i in range(NODES):
         along = 0.0
@@ -336,7 +326,7 @@ def _turns_back(start: FloatArray, w: FloatArray) -> bool:
 
 @scalar
 def _last_term(start: FloatArray, w: FloatArray) -> float:
-    """Return the largest last coefficient of the polynomials through the slip at the start and the nodes."""
+    """Return the largest last coefficient of the polynomials through the slip."""
     largest = 0.0
     for k in range(len(start)):
         term = LAST_TERM[0] * start[k]

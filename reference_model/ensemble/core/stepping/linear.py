@@ -1,4 +1,4 @@
-"""Compiled linear algebra for a few unknowns, because NumPy's takes longer to compile than all its uses."""
+"""Compiled linear algebra for a few unknowns, because NumPy's takes long to compile."""
 
 from __future__ import annotations
 
@@ -21,19 +21,16 @@ VANISHED, GROWN = 1e-6, 1e6
 
 @scalar
 def zeros(n: int) -> FloatArray:
-    """Return an array of zeros, shape (n,), which may be reshaped."""
     return np.zeros(n)
 
 
 @scalar
 def complex_zeros(n: int) -> ComplexArray:
-    """Return an array of complex zeros, shape (n,), which may be reshaped."""
     return np.zeros(n, dtype=np.complex128)
 
 
 @scalar
 def length_of(vector: FloatArray) -> float:
-    """Return the Euclidean norm."""
     total = 0.0
     for value in vector:
         total += value * value
@@ -42,7 +39,7 @@ def length_of(vector: FloatArray) -> float:
 
 @scalar
 def quadratic_form(upper: FloatArray | Tuple, x: Tuple) -> float:
-    """Return xᵀAx for a symmetric matrix A; ``upper`` is its upper half, row by row."""
+    """Return xᵀAx for a symmetric matrix A, given its upper half row by row."""
     total, k = 0.0, 0
     for i in range(len(x)):
         own, others = upper[k], 0.0
@@ -56,7 +53,6 @@ def quadratic_form(upper: FloatArray | Tuple, x: Tuple) -> float:
 
 @scalar
 def solve(matrix: FloatArray, right: FloatArray) -> bool:
-    """Solve a linear system in place by elimination with pivoting; return whether it succeeded."""
     n = len(right)
     for k in range(n):
         pivot = k
@@ -82,7 +78,7 @@ def solve(matrix: FloatArray, right: FloatArray) -> bool:
 
 @scalar
 def powers_vanish(matrix: FloatArray) -> bool:
-    """Return whether the powers of a square matrix vanish, so that all its eigenvalues have a modulus below 1."""
+    """Return whether all eigenvalues of a square matrix have a modulus below 1."""
     n = len(matrix)
     power, square = matrix.copy(), zeros(n * n).reshape(n, n)
     for _ in range(SQUARINGS):

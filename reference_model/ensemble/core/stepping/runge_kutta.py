@@ -28,24 +28,22 @@ def _without_zeros(row: Sequence[float]) -> Tuple:
 A2, A3, A4, A5, A6, A7, A8, A9, A10, A11, A12 = (_without_zeros(DOP853.A[i, :i]) for i in range(1, 12))
 B = _without_zeros(DOP853.B)
 E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
-"""Weights of the step, and of its differences from the embedded methods of orders 3 and 5, at stages 1, 6 to 12."""
+"""Weights of the step, and of its differences from the embedded methods of orders 3 and 5."""
 
 TURNED_BACK = 256.0
 """Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
-Friction reverses between two stages of such a step. The error estimate would accept some of them with errors of a
-hundred tolerances.
+Friction reverses within such a step, and the error estimate would accept errors of a hundred tolerances.
 """
 
 LOCAL = 0.1
-"""Tolerance of a step over that of a motion, in single runs and ensembles of pins and discs."""
+"""Tolerance of a step over that of a motion."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
-"""Bounds on the ratio of successive steps, and safety factor of the error estimate."""
+"""Bounds on the ratio of successive steps, and safety factor."""
 
 
 def tolerance_of_steps(tolerance: float) -> float:
-    """Return the tolerance of each step of a motion with the accuracy ``tolerance``."""
     return max(LOCAL * tolerance, TIGHTEST)
 
 
@@ -54,7 +52,7 @@ def tolerance_of_steps(tolerance: float) -> float:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return Σ weights[j]·rates[j] of every unknown; compiled code only."""
+    """Return Σ weights[j]·rates[j] of every unknown."""
     size = len(rates[0])
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -67,7 +65,7 @@ def weighted(context: Any, weights: Any, rates: Any) -> tuple[Any, Callable[...,
 
 @intrinsic  # type: ignore[untyped-decorator]
 def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, Callable[..., Any]]:
-    """Return y + h·Σ weights[j]·rates[j], where rates may be longer than y; compiled code only."""
+    """Return y + h·Σ weights[j]·rates[j], where rates may be longer than y."""
     size = len(y)
 
     def sums(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -82,7 +80,6 @@ def moved(context: Any, y: Any, h: Any, weights: Any, rates: Any) -> tuple[Any, 
 
 
 def _sums(builder: Any, weights: Any, rates: Any, *, stages: int, size: int) -> list[Any]:
-    """Return Σ weights[j]·rates[j] of the first ``size`` unknowns, added in order."""
     sums = []
     for v in range(size):
         terms = [
@@ -98,7 +95,7 @@ def _packed(context: Any, builder: Any, signature: Any, values: list[Any]) -> An
 
 
 def squares(differences: Tuple, before: Tuple, after: Tuple) -> Tuple:
-    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,) over the unknowns; compiled code only."""
+    """Return (Σ (difference/(1 + the larger of |before| and |after|))²,)."""
     raise NotImplementedError
 
 
@@ -117,8 +114,7 @@ def step(
 ) -> tuple[Tuple, Tuple, Tuple]:
     """Return the mean rates over a step of ``h`` from ``y``, and their differences from those of lower order.
 
-    ``rates(y, law)`` returns the rates of ``y``; numbers that do not affect the rates may follow. ``k1`` are the
-    rates at ``y``.
+    ``rates(y, law)`` returns the rates of ``y``, perhaps followed by other numbers. ``k1`` are the rates at ``y``.
     """
     k2 = rates(moved(y, h, A2, (k1,)), law)
     k3 = rates(moved(y, h, A3, (k1, k2)), law)
@@ -137,14 +133,14 @@ def step(
 
 @inlined
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
-    """Return the error over the tolerance by Hairer's estimate; absolute for unknowns below 1, else relative."""
+    """Return the error over the tolerance by Hairer's estimate, absolute for unknowns below 1."""
     high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
 
 
 @inlined
 def factor_of(error: float) -> float:
-    """Return the factor for the next step: error^(−1/8) within bounds; the smallest if the error is not a number."""
+    """Return the factor for the next step, error^(−1/8) within bounds."""
     root = math.sqrt(math.sqrt(math.sqrt(max(error, 1e-30))))
     factor = min(max(CAUTION / root, SMALLEST_FACTOR), LARGEST_FACTOR)
     return factor if error < 1e300 else SMALLEST_FACTOR
