@@ -89,7 +89,7 @@ VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
 ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
-"""Number of random starts, seed, and duration in s in which each reaches its end."""
+"""Number of random starts, seed, and duration in s until each has reached its end."""
 
 SOURCE = (
     "{}; X0 = 0.1 mm, ω = 300 rad/s and m = 0.5 kg are our choice, all dimensionless numbers are the paper's"

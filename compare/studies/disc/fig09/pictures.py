@@ -31,7 +31,7 @@ SIX: dict[str, dict[str, Any]] = {
     "reference": {"marker": "h", "markersize": 7.5},
     "exudyn": {"marker": "+", "markersize": 6.5},
 }
-"""Marks of results on six points."""
+"""Marks on six points."""
 
 SIX_BESIDE = 1.5
 

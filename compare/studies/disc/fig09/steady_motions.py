@@ -20,7 +20,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Steady motions of an engine, on the ring or on points, and orders of small gaps
+# --- Steady motions of an engine, and orders of small gaps
 
 
 Cases = tuple[tuple[float, int | None], ...]
@@ -58,8 +58,7 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    A single error may be small by chance, and two flows may agree to within the tolerance. So the tolerance times
-    ``amplified`` is added.
+    Two flows may agree to within the tolerance, so the tolerance times ``amplified`` is added.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -209,7 +208,7 @@ EXTRAPOLATED = (
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
-    """``whirls`` contains μN in N and the number of each whirl."""
+    """``whirls`` contains μN (N) and the number of each whirl."""
     exact = [theory.orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
@@ -253,7 +252,7 @@ def orbit_of(
 
 
 def sizes_of(orbit: Orbit) -> FloatArray:
-    """Return period, smallest and largest radius, smallest, largest and mean spin, in s, m and rad/s."""
+    """Return period (s), smallest and largest radius (m), smallest, largest and mean spin (rad/s)."""
     spin = orbit.trajectory.states[:-1, -1]
     return np.array([orbit.period, *extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 

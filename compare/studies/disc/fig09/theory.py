@@ -27,7 +27,7 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
-"""Disc without offset, whose whirl is a circle."""
+"""Its whirl is a circle."""
 PAPER_LAW = ThreeTermRing(FIG9.contact_radius)  # contact law (23)
 
 SOURCE = (
@@ -40,7 +40,7 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)  # circles far from the fold; the friction force doubles from one to the next
+ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from one to the next
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -48,13 +48,13 @@ ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
 
 HALVED_OFFSETS = (0.2, 0.1, 0.05)
 OFFSET_LOAD = 0.02
-"""X0 in m and μN in N of the whirls that show the effect of X0."""
+"""X0 in m and μN in N of whirls that show the effect of X0."""
 
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""μN in N and initial radii over (9) of sticking discs."""
-LATEST = 1.1  # duration of the simulation of a disc outside, over the release time (7)
+"""Sticking discs: μN in N, and initial radii over (9)."""
+LATEST = 1.1  # duration for a disc outside, over the release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
@@ -63,10 +63,10 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4  # initial deviation over the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
-"""Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
+"""For periodic motions of engines; the reference's have a hundredth of it."""
 
 TOLERANCE = 3e-8
-"""Tolerance of sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
+"""For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
 """End of the axis in N, which the paper omits: twice C·X0, about which sticking begins."""
@@ -93,7 +93,7 @@ DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
 def circle_of(load: float, which: int) -> SpinningWhirl:
-    """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` in N."""
+    """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` (N)."""
     return whirls(with_load(CENTRED, load))[which]
 
 
@@ -132,7 +132,7 @@ def radius_of_pin(load: float) -> float:
 
 
 def spin_of_large_whirl(disc: DiscOnDisc) -> float:
-    """Return the limit in rad/s of the whirl's spin for large μN.
+    """Return the limit (rad/s) of the whirl's spin for large μN.
 
     Then RS is much smaller than U = (ω − k)·μN/(βk), so F = 1 and M = R²S/(2U). The torsional balance b(ω − Ω − S) =
     μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
@@ -144,7 +144,7 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 
 
 def first_order_shift(disc: DiscOnDisc) -> complex:
-    """Return the time mean of x + iy in m of a disc's whirl, to first order in X0.
+    """Return the time mean of x + iy (m) of a disc's whirl, to first order in X0.
 
     In axes that turn with the circle the acceleration k²X0 due to the offset turns backwards. The deviation from the
     circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
@@ -174,7 +174,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
-    """Return the largest μN in N of a stable self-centred equilibrium; its end if it is always stable."""
+    """Return the largest μN (N) of a stable self-centred equilibrium; its end if it is always stable."""
     end = last_load(disc)
 
     def growth(logarithm: float) -> float:
@@ -188,7 +188,7 @@ def last_stable_load(disc: DiscOnDisc) -> float:
 
 
 def smallest_load(disc: DiscOnDisc) -> float:
-    """Return μN in N at the whirl's fold, the vertex of a parabola through the orbits next to it."""
+    """Return μN (N) at the whirl's fold, the vertex of a parabola through the orbits next to it."""
     sizes: list[float] = []
     loads: list[float] = []
     start = max(FOLD_START * disc.stiffness * disc.offset, LEAST_FOLD_START)
@@ -202,7 +202,7 @@ def smallest_load(disc: DiscOnDisc) -> float:
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
-    """Return the friction force in N where the equilibrium loses its stability, to first order in β.
+    """Return the friction force (N) where the equilibrium loses its stability, to first order in β.
 
     Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Friction resists a small additional slip
     u = ż − iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s +
@@ -234,9 +234,6 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
         return max(value.real for value in whirl_eigenvalues(with_load(CENTRED, whirl.load), state, law)[1:])
 
     return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
-
-
-# --- Curves
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:

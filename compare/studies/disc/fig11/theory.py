@@ -30,7 +30,7 @@ CENTRED = f"{SOURCE}: 0 here"
 
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
-UNTIL = 700.0  # duration in s, three periods of the modulation
+UNTIL = 700.0  # in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
@@ -38,7 +38,7 @@ TRIED = (0.0072, 0.00725, 0.0073)  # X0 in m between which the critical X0 is in
 
 SAMPLES_A_TURN = 16
 
-BOTH_STABLE = 0.0073  # X0 in m slightly above the critical one
+BOTH_STABLE = 0.0073  # X0 in m, slightly above the critical one
 
 STUDY = Study.beside(
     __file__,
@@ -62,8 +62,8 @@ class SteadyWhirl:
 
     - ``state``: a state on the whirl, shape (6,).
     - ``period``: in s.
-    - ``turn``, ``advance``: rotation of the whirl in a period in rad, and the disc's additional rotation.
-    - ``eigenvalue``: growth rate and frequency (> 0) in 1/s of the pair.
+    - ``turn``, ``advance``: rotation of the whirl in a period (rad), and the disc's additional rotation.
+    - ``eigenvalue``: growth rate and frequency > 0 (1/s) of the pair.
     - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). In axes that turn with the
       whirl, the share projection·d of a deviation d grows with the eigenvalue.
     """
@@ -78,7 +78,7 @@ class SteadyWhirl:
 
     @property
     def radius(self) -> float:
-        """Initial distance of the centre from the axis, in m."""
+        """Initial distance of the centre from the axis (m)."""
         return math.hypot(*self.state[:2])
 
     def displaced(self, amplitude: float) -> FloatArray:
@@ -99,7 +99,7 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     values, right = np.linalg.eig(turning_frame_jacobian(ring, circle.state, contact))
     mode, projection = _growing(values, right)
     period = 2.0 * math.pi / circle.frequency
-    # The equations do not depend on the angle, so its components are 0.
+    # The equations do not depend on the angle.
     return SteadyWhirl(
         circle.state,
         period,
@@ -140,7 +140,6 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
 
 
 def _pair(values: ComplexArray) -> complex:
-    """Return the eigenvalue of the least damped pair with positive imaginary part."""
     return complex(max((value for value in values if value.imag > 0.0), key=lambda value: value.real))
 
 
@@ -185,7 +184,7 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @functools.cache
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
-    """Return the last modulation by direct integration of (19), and its error, both of shape (6,)."""
+    """Return the last modulation by direct integration of (19), and its error, shape (6,) each."""
     fine, rough = (
         last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
     )
@@ -193,7 +192,7 @@ def predicted_modulation() -> tuple[FloatArray, FloatArray]:
 
 
 def extremes_of(trajectory: Trajectory) -> FloatArray:
-    """Return smallest and largest radius in m and spin in rad/s of a spline, shape (4,)."""
+    """Return smallest and largest radius (m) and spin (rad/s) of a spline, shape (4,)."""
     found = []
     for values in (trajectory.radius, trajectory.states[:, 5]):
         curve = CubicSpline(trajectory.times, values)
@@ -215,7 +214,7 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
 
 
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
-    """Return the critical X0 in m, its error, the slope of the modulus in 1/m, and the middle whirl of ``TRIED``.
+    """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
     A parabola through the moduli at ``TRIED`` gives the X0 of modulus 1. The error is the change with a straight line
     through the two nearest points, which exceeds the effect of a cubic term. Raise ``RuntimeError`` if there is no
@@ -239,7 +238,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
-    # Far from its points the parabola is not valid.
+    # The parabola is not valid far from its points.
     roots = [root.real for root in parabola.roots() if root.imag == 0.0 and abs(root.real) < 0.1 * middle]
     if not roots:
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
@@ -251,7 +250,6 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 
 @functools.cache
 def _whirl_of_reference() -> Orbit:
-    """Return the first guess for shooting."""
     return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
 
 
@@ -263,8 +261,8 @@ def critical_offset_of_reference() -> float:
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    Newton's method finds the orbit by integrating (19) together with its linearisation. Raise ``RuntimeError`` if it
-    does not converge.
+    Newton's method finds the orbit by integrating (19) with its linearisation. Raise ``RuntimeError`` if it does not
+    converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:
@@ -289,7 +287,7 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
 
 @functools.cache
 def rest_offset() -> float:
-    """Return the X0 in m above which the self-centred equilibrium is stable.
+    """Return the X0 (m) above which the self-centred equilibrium is stable.
 
     The whirl exists up to an X0 that is 0.25 % larger.
     """

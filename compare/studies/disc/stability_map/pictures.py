@@ -42,7 +42,7 @@ K = FIG11.natural_frequency
 
 
 class Region(NamedTuple):
-    """Name of a region and its position; ``at`` is the tip of an arrow if the name does not fit into the region."""
+    """Name of a region and its position; ``at`` is the tip of an arrow from names outside the region."""
 
     across: float
     up: float
@@ -200,10 +200,7 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
 
 
 def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
-    """Draw an engine's results: growth of deviations on the left of their points, ends on the right.
-
-    ``rank`` is the number of engines already drawn.
-    """
+    """Draw growth of deviations on the left of their points and ends on the right, after ``rank`` other engines."""
     none = np.empty((0, 3))
     sides, ends = found.get(f"sides/{name}", none), found.get(f"ends/{name}", none)
     groups = [
@@ -218,7 +215,7 @@ def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> Non
 
 
 def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray]:
-    """Yield the points and α of the curves of one kind, each of shape (n, 3)."""
+    """Yield the points and α of the curves of one kind, shape (n, 3) each."""
     for name, found in theory.items():
         if name.startswith(f"{plane}/{law}/{kind}/"):
             yield found
