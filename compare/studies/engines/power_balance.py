@@ -16,10 +16,8 @@ from reference_model import PowerBalance, Trajectory, power_balance, sticking_ra
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
 
-# --- Motions of every kind
-
 SAMPLE_DISTANCE = 0.02
-"""In s; the quadrature of the balance then has an error below 1e-9 through stick phases."""
+"""In s; the quadrature then has an error below 1e-9 through stick phases."""
 
 RESOLUTION = 1e-8
 """Relative to the energy turned over."""
@@ -27,7 +25,7 @@ RESOLUTION = 1e-8
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion to ``until`` in s, sampled every ``step`` s.
+    """A motion to ``until`` (s), sampled every ``step`` (s).
 
     The figure shows it if ``drawn``; engines that only provide the contact take part if ``contact_alone``.
     """
@@ -224,9 +222,6 @@ def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
         "residual": balance.residual / balance.turned_over,
         "change of residual": (balance.residual - others[-1].residual) / balance.turned_over,
     }
-
-
-# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

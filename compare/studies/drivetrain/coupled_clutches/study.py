@@ -50,7 +50,6 @@ from reference_model.systems import FloatArray
 
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]
-"""Steps in s of the runs to the end."""
 
 EVENTS = tuple(
     f"clutch {clutch + 1} {'sticks' if mode == STUCK else 'releases'} at {time:.4f} s"
@@ -117,7 +116,7 @@ HALVED = (
 
 
 def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Return the first of ``runs`` and its error; each run is twice as coarse as the previous one."""
+    """Return the first of ``runs`` and its error."""
     return runs[0], 2.0 * float(np.max(np.abs(runs[0] - runs[1])))
 
 
@@ -314,10 +313,8 @@ def published_switches() -> Measured:
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
-# --- Figure
-
 EXACT = 1e-7
-"""Lower end of the axis of errors in rad/s."""
+"""Lower end of the axis in rad/s."""
 
 
 def draw(data: ByEngine) -> Figures:

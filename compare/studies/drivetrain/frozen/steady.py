@@ -207,7 +207,6 @@ def _measured(
     components: Sequence[str] = (),
     data: Mapping[str, ArrayLike] | None = None,
 ) -> Measured:
-    """Compare the values at index ``place`` for a disc with ``offset`` (m)."""
     predicted = np.array([one.predicted.value[place] for one in motions])
     return Measured(
         predicted=predicted,
@@ -257,10 +256,7 @@ def _motion(speed: float, whirling: bool) -> Steady:
 
 
 def _settled(car: Drivetrain, operation: Operation, rate: float, *, whirling: bool) -> Measurement:
-    """Return x, y and slip, or for a whirl radius, frequency and slip, after all transients.
-
-    ``rate`` is the decay rate (1/s) of the slowest mode.
-    """
+    """Return the values after all transients; ``rate`` is the decay rate (1/s) of the slowest mode."""
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
         model = operation.build(car)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 Matrix = Callable[[theory.CarWhirl], FloatArray]
-"""State matrix of small motions about a whirl, see ``state_matrix_of``."""
+"""State matrix of small motions, see ``state_matrix_of``."""
 
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
@@ -162,7 +162,7 @@ def growth(engine: Engine) -> Measured:
 
 
 def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
-    """Return the initial and the final state in axes that turn with the whirl, ordered as in ``in_turning_axes``."""
+    """Return the first and last state in axes that turn with the whirl, ordered as in ``in_turning_axes``."""
     motion = build(car, whirl, deviation=deviation).run(
         theory.TIME, sample_every=theory.TIME, tolerance=tolerance
     )

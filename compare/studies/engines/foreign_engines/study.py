@@ -65,12 +65,10 @@ STUDY = Study.beside(
 
 
 _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
-"""Declares a claim about the order of convergence."""
 
 _of_law = functools.partial(
     STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
 )
-"""Declares a claim about the deviation from the exact motion under another friction law."""
 
 
 @_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
@@ -243,8 +241,6 @@ def creeps() -> Measured:
     )
 
 
-# --- Figures
-
 ROWS = (
     *(("Bullet",), ("DART",), ("Drake",), ("MuJoCo",)),
     *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
@@ -252,7 +248,6 @@ ROWS = (
 """Engines of the rows; those of the last two rows have two settings each."""
 
 LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
-"""Colours and markers of an engine's settings."""
 
 OURS = {"reference": "-", "exudyn": "--", "exudyn-native": ":"}
 """Line styles of our own engines, which every panel shows in grey."""
@@ -269,7 +264,7 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
-    """Draw a row for each engine and a column for each motion, with shared axes."""
+    """Draw a row for each engine and a column for each motion."""
     columns = len(titles)
     figure, axes = new_figure(
         columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True

@@ -36,7 +36,7 @@ def _pin(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stiffening(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin on a hardening support, with a stop along which a body that swings far out rolls."""
+    """Draw a pin on a hardening support, with a stop along which it rolls far out."""
     pin = _pin(random, disc_speed)
     size = abs(pin.offset)
     return replace(
@@ -84,7 +84,7 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
 
 
 def _slides(motion: Motion) -> bool:
-    """Return whether everything slips clearly, and the stop is touched always or never, so forces are smooth."""
+    """Return whether forces are smooth: everything slips clearly, and the stop is touched always or never."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
@@ -132,7 +132,7 @@ def _sticks(motion: Motion) -> bool:
 class Drawn:
     """Random motions of one kind, drawn on demand: at all ``SPEEDS``, in both senses.
 
-    ``number`` is part of the seed and differs between kinds.
+    ``number`` is part of the seed.
     """
 
     number: int
