@@ -1,4 +1,4 @@
-"""Simulated stability map: final motions of thousands of discs around Fig. 11, under the stability map's curves."""
+"""Final motions of thousands of discs around Fig. 11, under the curves of the stability map."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Two rotors and a clutch in Exudyn: onset of judder, heat, temperature and the energy balance."""
+"""Two rotors and a clutch in Exudyn: judder, heat, temperature and the energy balance."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
 """In N m and m/s, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
-"""Negative slope of the coefficient (s/m) at which friction feeds in the power that the damper dissipates."""
+"""Negative slope of the coefficient (s/m); friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
 """In s/m."""
@@ -132,7 +132,7 @@ def heating(
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
-    The initial slip is ``start`` (rad/s). The steps hit all ``times``; the last one ends the run.
+    The initial slip is ``start`` (rad/s). The steps hit all ``times``.
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 

@@ -1,8 +1,8 @@
-"""An isolated drivetrain of the project's parts keeps its angular momentum on every kind of node.
+"""Angular momentum of an isolated drivetrain on every kind of node.
 
-Engine, clutch disc and vehicle act on each other by friction, by an elastic shaft attached to the vehicle off-centre,
-and by a torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts on two bodies
-along different axes.
+Engine, clutch disc and vehicle act on each other by friction, by an elastic shaft attached off-centre, and by a
+torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts on two bodies along
+different axes.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ DRIVETRAINS = tuple(
 """Nodes of engine, disc and vehicle; each kind for each body occurs with each kind for the others."""
 
 DRAWN = ("rotation vector",) * 3
-"""In the figure."""
 
 
 class Body(NamedTuple):
@@ -139,7 +138,7 @@ def momentum(
 
 
 def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
-    """Return the drift of the sum about the conserved axes over the largest momentum of one body, shape (n, axes)."""
+    """Return the drift about the conserved axes over the largest momentum of one body, shape (n, axes)."""
     total = momenta.sum(axis=1)
     kept = slice(None) if set(kinds) <= set(SPATIAL) else slice(2, 3)
     return np.asarray((total - total[0])[:, kept] / np.abs(momenta).max())
@@ -220,7 +219,6 @@ def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
 
 
 def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
-    """Return the angular momentum about the origin (kg m²/s), from Exudyn's position and spin."""
     import exudyn as exu
 
     of = exu.OutputVariableType

@@ -1,4 +1,4 @@
-"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch: the same motions with the same verdicts."""
+"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch."""
 
 from __future__ import annotations
 
@@ -149,7 +149,6 @@ def states_of(
 
 @functools.lru_cache(maxsize=2)
 def to_rest(engine: Engine, tolerance: float) -> Trajectory:
-    """Return the motion to rest at the scale of a clutch."""
     return at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance)
 
 

@@ -1,4 +1,4 @@
-"""Energy balance: the work of the drive equals heat plus stored energy, on every kind of trajectory."""
+"""Energy balance: the work of the drive equals heat plus stored energy."""
 
 from __future__ import annotations
 
@@ -212,7 +212,6 @@ def _relative_residual(balance: PowerBalance) -> float:
 
 
 def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
-    """Return the curves of a balance; ``others`` have the same samples but other tolerances."""
     return {
         "times": balance.times,
         "drive work": balance.drive_work,

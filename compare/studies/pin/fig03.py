@@ -1,4 +1,4 @@
-"""Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle, its stability, and where it ends."""
+"""Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle."""
 
 from __future__ import annotations
 

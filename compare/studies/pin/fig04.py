@@ -1,4 +1,4 @@
-"""Fig. 4: the shift of the whirl by a small offset, eq. (18), and the exact first-order response."""
+"""Fig. 4: the shift of the whirl by a small offset, (18), and the exact first-order response."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, permanent stick and whirl under increasing friction force, and the end of each of them."""
+"""Fig. 6: equilibrium, permanent stick and whirl over the friction force."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
 UNIT_MULTIPLIER_ERROR = 1e-5
 """Error of a multiplier near a fold, from central differences with the relative step ``orbits.CENTRAL``.
 
-Two multipliers meet there, so the error is the root of the error of the return map; 3e-6 was observed.
+Two multipliers meet there, so it is the root of the error of the return map; 3e-6 was observed.
 """
 
 
@@ -133,7 +133,6 @@ def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measure
 
 
 def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the positions after a start 5 mm from the equilibrium."""
     pin = with_load(load)
     x, y = equilibrium_position(pin)
     motion = engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), (0.0, *times), tolerance=tolerance)

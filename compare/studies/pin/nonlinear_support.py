@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
+"""A support that hardens or has a stop, which limits the amplitude."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small deviations from a steady motion: remaining transients and eigenvalues."""
+"""Remaining transients and eigenvalues of small deviations from a steady motion."""
 
 from __future__ import annotations
 

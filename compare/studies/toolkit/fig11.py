@@ -1,4 +1,4 @@
-"""Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes around it."""
+"""Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rings that slide and spin freely until they rest, from integrals over an auxiliary variable.
+"""Rings that slide and spin freely until they rest.
 
 With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (19) without springs, dampers and shaft is
 
@@ -7,10 +7,10 @@ With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (1
 and F and G depend only on ε = U/W. So δ = ln ε obeys W·δ' = −g·q(δ), q = F/ε − G/c. The zero δ* of q, which exists
 for 1/2 < c < 2, is attracting, and ln W, time and distance are integrals over u = ln|δ − δ*|.
 
-Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), and the remaining time is
-N/(g·P). Its error is of second order because F and G are derivatives of one function.
+Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), so the remaining time is N/(g·P).
+Its error is of second order because F and G are derivatives of one function.
 
-Units are m and s, and g is 1 m/s², so results are those for μN = m·g.
+Units are m and s, and g is 1 m/s².
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pins that stick to the disc, and whirls as periodic orbits of an engine."""
+"""Stuck pins, and whirls as periodic orbits of an engine."""
 
 from __future__ import annotations
 

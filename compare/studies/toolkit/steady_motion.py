@@ -1,8 +1,8 @@
 """Steady motions of a disc as fixed points of an engine's flow over a fraction of a revolution.
 
-The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with the
-centre, a disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has
-turned by 2π/n in these axes. One search finds both.
+The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with it, a
+disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has turned by 2π/n
+in these axes.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
 class SteadyMotion:
     """A motion that repeats after a rotation, with its period in s.
 
-    ``states``, shape (SAMPLES + 1, 6), are equidistant over one period, in axes that rotate with the centre. The
-    centre's ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
+    ``states``, shape (SAMPLES + 1, 6), are equidistant in axes that rotate with the centre. The centre's
+    ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
     """
 
     states: FloatArray

@@ -1,4 +1,4 @@
-"""Friction on a disc in an engine, and contact laws against the integral, each other and the textbook."""
+"""Friction in an engine, and contact laws against the integral, each other and the textbook."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ DIFFERENCES = (
 """Weights of fourth and third order for the derivative at the first of five times."""
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""U/W for the comparison of the closed form with the integral."""
+"""U/W of the comparison."""
 
 RESTING = (INNER, 0.75 * R, R)
 """Radii (m) of a point at rest on the annulus."""
@@ -97,7 +97,7 @@ def friction_on(
 ) -> Measured:
     """Compare F_x, F_y (over μN) and M (over μN·R) with ``predicted``, shape (2n, 3).
 
-    According to (19), friction is the initial acceleration times inertia plus the resistance of springs and dampers.
+    According to (19), friction is the initial acceleration times inertia plus the forces of springs and dampers.
     ``name`` is the law's key in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))

@@ -88,7 +88,7 @@ def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> Flo
 def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
     """Return the largest errors of (23) by integrals (20), with and without (22), and by closed forms.
 
-    Both arrays contain U/W, size and the error of U/W, for force and moment, shape (2, 3).
+    Each array contains U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
 
     def by_integrals(ratio: float) -> FloatArray:
@@ -109,8 +109,7 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
 def top(error: Callable[[float], float], noise: float) -> tuple[float, float, float]:
     """Return the U/W of the largest ``error``, its size, and the error of U/W.
 
-    On a parabola of curvature c, points within √(2·noise/c) of the maximum cannot be distinguished from it. The
-    search has a tolerance of 1e-6.
+    On a parabola of curvature c, points within √(2·noise/c) of the maximum cannot be distinguished from it.
     """
     from scipy.optimize import minimize_scalar
 
@@ -135,7 +134,7 @@ def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
     """Return the U/W of the largest error of ``number`` points, its size, and the errors of size and U/W.
 
-    ``part`` selects force or moment. The largest error is next to a jump, so the search does not use slopes.
+    ``part`` selects force or moment. The search uses no slopes, because the maximum is next to a jump.
     """
     law = PointsOnRing(R, number)
     centre, spans, history = np.zeros(2), np.array((math.log(20.0), math.pi / number)), []

@@ -1,4 +1,4 @@
-"""Steady states by eqs. (24) to (26) and by (23), and an engine's motions near them."""
+"""Steady states by (23) to (26), and an engine's motions near them."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23)."""
+    """Return discs with all ``OFFSETS``, and μN up to the largest by (23)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))
@@ -114,7 +114,7 @@ STUDY = Study.beside(
 
 @functools.lru_cache(maxsize=4)
 def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
-    """Return the means of x, y (m) and spin (rad/s) at all μN, shape (n, 3), with one common error."""
+    """Return the means of x, y (m) and spin (rad/s) at all μN, shape (n, 3), with a common error."""
     found = refined(
         lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
     )
@@ -123,7 +123,6 @@ def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measur
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
-    """Start from (26), which deviates by a few per cent."""
     place, *_ = positions_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
@@ -207,7 +206,7 @@ def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = 
 
 
 def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], tolerance: float) -> FloatArray:
-    """Return growth rate and frequency (1/s) of the least damped mode in both halves of ``span``, shape (2, 2)."""
+    """Return growth rate and frequency (1/s) of the slowest mode in both halves of ``span``, shape (2, 2)."""
     rest = equilibrium_of(disc).state
     start = np.array([disc.offset, 0.0, 0.0, 0.0, 0.0, disc.shaft_speed])
     # Two samples per radian; the mode is slower than the natural frequency.

@@ -1,4 +1,4 @@
-"""Claims on the growth of deviations, on sticking, on six contact points, and without an engine."""
+"""Claims on growing deviations, on stick, on six contact points, and without an engine."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _growth(
 ) -> Measurement:
     """Return growth rate and frequency (1/s) of small deviations, shape (n, 2).
 
-    ``motions`` contains disc, steady motion, displacement from it and duration (s).
+    ``motions`` contains disc, steady motion, displacement and duration (s).
     """
 
     def rates(tolerance: float, scale: float = 1.0) -> FloatArray:

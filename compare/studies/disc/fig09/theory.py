@@ -1,4 +1,4 @@
-"""Formulas for Figs. 9 and 10: branches of all motions over the friction force, and their ends."""
+"""Branches of all motions over the friction force, and their ends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
-"""Its whirl is a circle."""
 PAPER_LAW = ThreeTermRing(FIG9.contact_radius)  # contact law (23)
 
 SOURCE = (
@@ -102,12 +101,11 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
-    """Return the whirl without offset of that number, or the equilibrium with the offset if it is None."""
+    """Return the whirl without offset of that number, or for None the equilibrium with the offset."""
     return rest_of(load) if which is None else circle_of(load, which)
 
 
 def disc_of(load: float, which: int | None, points: int | None) -> DiscOnDisc:
-    """Return the disc of this motion on ``points``, or on the ring."""
     return with_load(replace(RING if which is None else CENTRED, contact_points=points), load)
 
 
@@ -121,7 +119,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 
 @functools.cache
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
-    """Return the outer whirl with an offset, or the inner, unstable one if ``which`` is 1."""
+    """Return the outer whirl with an offset, or if ``which`` is 1 the inner, unstable one."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
@@ -146,7 +144,7 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 def first_order_shift(disc: DiscOnDisc) -> complex:
     """Return the time mean of x + iy (m) of a disc's whirl, to first order in X0.
 
-    In axes that turn with the circle the acceleration k²X0 due to the offset turns backwards. The deviation from the
+    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation from the
     circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
     + i·a_y)/2, is fixed in space.
     """
@@ -158,7 +156,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls by falling size, from the μN of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls by falling size, from that of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
@@ -252,7 +250,7 @@ def circles() -> Data:
 
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
-    """Return whirls with the offset by falling size, from the largest μN through the fold to the equilibrium."""
+    """Return whirls by falling size, from the largest μN through the fold to the equilibrium."""
     outer = [
         whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
     ]
@@ -262,7 +260,7 @@ def orbits() -> tuple[Orbit, ...]:
 def smooth(found: Sequence[Orbit]) -> Data:
     """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
-    Positions are interpolated, because the smallest radius is not smooth where the orbit passes the axis. Beyond the
+    Positions are interpolated, because the smallest radius has a kink where the orbit passes the axis. Beyond the
     last orbit its shape shrinks onto the equilibrium; the square of its size is linear in the load.
     """
     limit = spin_of_large_whirl(RING)

@@ -1,4 +1,4 @@
-"""Claims on the motion of Fig. 11 with an offset, and on six points."""
+"""Claims with an offset, and on six points."""
 
 from __future__ import annotations
 

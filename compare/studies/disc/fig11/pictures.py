@@ -92,7 +92,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
-    """Return the states by engine (or theory) under the key ``words``."""
     return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
 
 
@@ -234,7 +233,7 @@ def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
     """Return the amplitudes (m) of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
 
-    They are Fourier coefficients of the cycle, which is periodic in axes that turn with the carrier.
+    The cycle is periodic in axes that turn with the carrier.
     """
     times = TIMES[-1] - period + period * np.arange(4096) / 4096.0
     z = CubicSpline(TIMES, states[:, 0] + 1j * states[:, 1])(times) * np.exp(-1j * carrier * times)

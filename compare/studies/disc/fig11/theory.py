@@ -1,4 +1,4 @@
-"""Theory of Fig. 11: the whirl and its modes, the modulated cycle, and the branches over the offset."""
+"""The whirl and its modes, the modulated cycle, and the branches over the offset."""
 
 from __future__ import annotations
 
@@ -57,15 +57,15 @@ STUDY = Study.beside(
 class SteadyWhirl:
     """A whirl that is periodic up to a rotation, and its least damped pair of modes.
 
-    On the continuous ring the whirl is a circle. On n points it also has a ripple, which repeats each time the disc
-    has turned by 2π/n relative to the line from the axis to its centre.
+    On n points it has a ripple, which repeats each time the disc has turned by 2π/n relative to the line from the
+    axis to its centre.
 
     - ``state``: a state on the whirl, shape (6,).
     - ``period``: in s.
     - ``turn``, ``advance``: rotation of the whirl in a period (rad), and the disc's additional rotation.
     - ``eigenvalue``: growth rate and frequency > 0 (1/s) of the pair.
-    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). In axes that turn with the
-      whirl, the share projection·d of a deviation d grows with the eigenvalue.
+    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). The share projection·d of a
+      deviation d grows with the eigenvalue, in axes that turn with the whirl.
     """
 
     state: FloatArray
@@ -88,10 +88,7 @@ class SteadyWhirl:
 
 @functools.cache
 def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
-    """Return the whirl of ``disc`` without offset under its own contact law or under ``contact``.
-
-    On points it is the whirl closest to the circle of the continuous ring.
-    """
+    """Return the whirl without offset; on points, it is the whirl closest to the circle of the ring."""
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
     if disc.contact_points is not None:
@@ -157,7 +154,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 def modulations(states: FloatArray) -> FloatArray:
     """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    ``states`` are those at ``TIMES``. A modulation is the interval between successive maxima of the radius.
+    A modulation is the interval between successive maxima of the radius; ``states`` are those at ``TIMES``.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -184,7 +181,7 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @functools.cache
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
-    """Return the last modulation by direct integration of (19), and its error, shape (6,) each."""
+    """Return the last modulation by integration of (19), and its error, shape (6,) each."""
     fine, rough = (
         last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
     )
@@ -216,9 +213,8 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
     """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
-    A parabola through the moduli at ``TRIED`` gives the X0 of modulus 1. The error is the change with a straight line
-    through the two nearest points, which exceeds the effect of a cubic term. Raise ``RuntimeError`` if there is no
-    whirl, or if it is not nearly critical.
+    A parabola through the moduli gives the X0 of modulus 1. The error is the change with a straight line through the
+    two nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
     orbits: list[Orbit] = []
     for offset in TRIED:

@@ -1,4 +1,4 @@
-"""Claims on sliding motions, the growth of small deviations from the whirl, and the modulated cycle of Fig. 11."""
+"""Claims on sliding, the growth of small deviations from the whirl, and the modulated cycle."""
 
 from __future__ import annotations
 
@@ -99,7 +99,6 @@ def frequency_of_growth(engine: Engine, contact: str) -> Measured:
 
 
 def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str) -> Measured:
-    """Compare rate (0) or frequency (1) of the growth with the eigenvalue, resolved to a ``share`` of it."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     predicted = (whirl.eigenvalue.real, whirl.eigenvalue.imag)[which]
     note = "Predicted: the eigenvalues in the frame that turns with the whirl."
@@ -137,8 +136,7 @@ def deviation(
 ) -> tuple[FloatArray, ComplexArray]:
     """Return times (s), once a period, and the pair's share q of a deviation, 1 at the start.
 
-    The deviation is half the difference of two simulations that start on opposite sides of the whirl, which removes
-    even powers.
+    Half the difference of two simulations that start on opposite sides of the whirl has no even powers.
     """
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
@@ -169,7 +167,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
     """Return times (s), once a period, and the size of the pair's share over the radius.
 
-    The deviation starts ten times larger than in :func:`deviation`, and grows to the modulated cycle in 900 s.
+    The deviation starts ten times larger than in :func:`deviation`, and reaches the modulated cycle in 900 s.
     """
     turns = np.arange(round(900.0 / whirl.period) + 1)
     times = turns * whirl.period

@@ -1,4 +1,4 @@
-"""Ends of sliding and spinning, times and positions of rest, heat, and the existence of a final ratio."""
+"""Claims on the end of sliding and spinning, on rest, heat and the final ratio."""
 
 from __future__ import annotations
 

@@ -1,11 +1,10 @@
-"""A ring thrown on a table at rest: limits of its motion, with the symbols and units of ``toolkit.free_bodies``.
+"""Limits of a thrown ring's motion, with the symbols and units of ``toolkit.free_bodies``.
 
 For c = 1, friction's slopes grow logarithmically near the ratio 1: Wδ' = −(2/π)·g·δ·L with L = ln(8/|δ|) − 2, and W =
 (2/π)·g·t with the remaining time t. So L = A/t, and |δ| = 8·e^(−2)·exp(−A/t) decays faster than any power.
 
 For c < 1/2 there is no terminal δ*: spinning dies out faster, W/U ~ t^(1/(2c) − 1), because F → 1 and G → W/(2U). For
-c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio has the same limits but converges
-more slowly than any power.
+c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio converges more slowly than any power.
 """
 
 from __future__ import annotations
@@ -45,10 +44,9 @@ HEADING = 0.7  # of the throw, in rad from the x axis
 
 @dataclass(frozen=True)
 class Throw:
-    """Initial conditions of a ring.
+    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees.
 
-    ``inertia`` is c = J/(mR²), and ``degrees`` the initial atan(W/U): 0 only slides, 90 only spins, and a negative
-    value reverses the spin.
+    0 only slides, 90 only spins, and a negative value reverses the spin.
     """
 
     inertia: float
@@ -109,7 +107,7 @@ SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and 
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)
-"""J/(mR²) to check the existence of a terminal ratio."""
+"""J/(mR²) inside and outside 1/2 to 2."""
 
 
 def nearness(delta: ArrayLike) -> FloatArray:
@@ -143,8 +141,8 @@ def curves() -> Data:
 def roughly_rest(engine: Engine, throw: Throw) -> float:
     """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    It has the tolerance of the claims. At a smaller tolerance the rest moves relative to the samples by about the
-    error of the sample times, so the change of a measured value includes this error.
+    Its tolerance is that of the claims. At a smaller tolerance the rest moves relative to the samples, so the change
+    of a measured value includes the error of the sample times.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))

@@ -1,4 +1,4 @@
-"""Claims on the borders of the map and their dependence on the contact law."""
+"""Claims on the borders of the map."""
 
 from __future__ import annotations
 
@@ -272,7 +272,6 @@ def stable_by_23() -> Measured:
 
 
 def _side(law: str, sign: float) -> Measured:
-    """Check the sign of the largest real part of Fig. 11's whirl by ``law``."""
     (whirl,) = whirls(theory.DISC, LAWS[law])
     values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
     near = theory.nearest(

@@ -31,7 +31,6 @@ from reference_model.systems import FloatArray
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
 SHRINKING = "v"
-"""Labels and marks of simulated results."""
 
 COLOURS = {"ring": GREEN, "(23)": PURPLE}
 DASHES: dict[str, Any] = {"ring": "-", "(23)": (0.0, (5.0, 2.0))}
@@ -228,7 +227,7 @@ def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def hopf_curve(theory: Data, plane: str, x: FloatArray, side: float) -> FloatArray:
-    """Return the second coordinate over ``x`` of the ring's Hopf curve on one side of U = W, NaN outside its range.
+    """Return the second coordinate over ``x`` of the ring's Hopf curve, NaN outside its range.
 
     ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large ones.
     """

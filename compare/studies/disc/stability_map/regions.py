@@ -112,7 +112,6 @@ def _place(one: Deviation) -> str:
 
 @functools.lru_cache(maxsize=4)
 def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
-    """Simulate small deviations on both sides of the Hopf curves that ``lines`` cross."""
     found = []
     for plane, disc in discs_beside(lines):
         whirl = min(whirls(disc), key=lambda whirl: abs(whirl.eigenvalues[1].real))
@@ -133,8 +132,8 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
     """Return the growth rate λ (1/s) of a small deviation in the plane of the slow pair, and its error.
 
-    Half the difference of two motions that start on either side of the whirl, in axes that turn with it and projected
-    by the left eigenvector, grows by exp(λt).
+    Half the difference of two motions on either side of the whirl, projected by the left eigenvector in axes that
+    turn with it, grows by exp(λt).
     """
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
     which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
@@ -210,7 +209,7 @@ def starts_in_regions() -> tuple[theory.Start, ...]:
 def coexisting() -> tuple[theory.Start, ...]:
     """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off.
 
-    The modulated cycle coexists with the whirl 0.3 % outside the curves, but not 2 % outside.
+    The cycle coexists with the whirl 0.3 % outside, but not 2 % outside.
     """
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
     starts = []

@@ -1,4 +1,4 @@
-"""Curves of the stability map, eigenvalues that check them, and data for the figures."""
+"""Curves of the stability map, and eigenvalues that check them."""
 
 from __future__ import annotations
 
@@ -60,8 +60,7 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    The error includes that of the state: if U and W are nearly equal, friction's slopes depend on their small
-    difference.
+    It includes the effect of the state's: if U and W are nearly equal, friction's slopes depend on their difference.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -199,7 +198,7 @@ def kind_of_end(
 
 
 def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
-    """Return the kinds of final motion, and answers whether they are the expected ones."""
+    """Return the kinds of final motion, and answers whether they are as expected."""
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:

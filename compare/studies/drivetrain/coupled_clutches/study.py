@@ -87,7 +87,6 @@ def _is_native(engine: Engine) -> bool:
 
 @functools.lru_cache(maxsize=2)
 def _runs(engine: Engine) -> list[Run]:
-    """Return runs with Exudyn's connector or with explicit steps, each twice as coarse as the previous one."""
     if _is_native(engine):
         return [with_bristles(*of_one) for of_one in BRISTLES]
     return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
@@ -116,7 +115,6 @@ HALVED = (
 
 
 def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Return the first of ``runs`` and its error."""
     return runs[0], 2.0 * float(np.max(np.abs(runs[0] - runs[1])))
 
 

@@ -1,9 +1,9 @@
-"""Predictions of the reference for the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
+"""Predictions of the reference for the clutch, and small motions of the whole drivetrain about a whirl.
 
-The small motions have five coordinates: x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the
-vehicle. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The
-transpose of this map applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes
-that turn with the whirl, its stability is an eigenvalue problem.
+Their five coordinates are x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the vehicle. The
+slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The transpose of this map
+applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes that turn with the whirl,
+its stability is an eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class CarWhirl:
     """A steady whirl of the clutch disc in a car whose engine and load have constant torques (N m).
 
     ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
-    ρ·βκρ of friction about its axis.
+    ρ·βκρ of friction.
     """
 
     engine_speed: float
@@ -136,9 +136,9 @@ def whirl_under_surplus(
 ) -> CarWhirl | None:
     """Return the whirl of a clutch whose load exceeds the needed one by the fraction ``surplus``, or None.
 
-    A centred disc would lock up under this load. The whirl reduces the friction moment: M(U, S) equals the torque at
-    a certain ratio of the slips U of the centre and S of the rim. This ratio determines the force, and the force the
-    radius, ρ·β·κ(ρ) = μN·F. S is (ω − κ)ρ over the ratio.
+    A centred disc would lock up. The whirl reduces the friction moment: M(U, S) equals the torque at a certain ratio
+    of the slips U of the centre and S of the rim. This ratio determines the force, and the force the radius, ρ·β·κ(ρ)
+    = μN·F. S is (ω − κ)ρ over the ratio.
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)
@@ -161,7 +161,6 @@ def whirl_under_surplus(
 
 @functools.lru_cache(maxsize=64)
 def _ratio_of_moment(law: Annulus, needed: float) -> float:
-    """Return U/S (m) for the moment ``needed`` per unit of friction force (m)."""
     widest = 10.0 * law.outer_radius
     return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
 
@@ -202,7 +201,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
 def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
     """Return the matrix of small motions in axes that turn with ``frequency`` (rad/s), shape (8, 8).
 
-    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ; only the twist of the angles has an effect.
+    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ.
     """
     turned = matrix.copy()
     for first in (2, 7):
@@ -230,8 +229,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 def curves(every: int = 1) -> Data:
     """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
 
-    Over the speed (rpm): x, y at rest, and radius and frequency of a whirl. Over (torque, speed) and (torque,
-    surplus): :func:`whirl_growth`.
+    Lines are x, y at rest, and radius and frequency of a whirl; :func:`whirl_growth` explains the maps.
     """
     car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM

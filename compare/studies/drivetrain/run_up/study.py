@@ -150,8 +150,8 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    Orders below one half are excluded, so a disc almost at rest does not count. A parabola through three logarithms
-    locates the maximum between the lines.
+    Orders below one half are excluded, so a disc almost at rest does not count. A parabola locates the maximum
+    between the lines.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))

@@ -42,8 +42,8 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 class Scan:
     """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Error and error estimate have the same ``order`` in the step, so the step is ~ tolerance^(1/order). The next term
-    is smaller by one power of the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
+    Errors have the ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
+    the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
     """
 
     order: int
@@ -127,9 +127,9 @@ def stick_slip_truth() -> FloatArray:
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     """Return the shift of the end of a stick phase by creep, in s per m/s of ε.
 
-    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force that friction must balance (eq. 6) and g
-    = μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is
-    linear in z = z₀·exp(iωt). The release occurs at |a| = g (eq. 7), so the shift is −d|a|/dε over d|a|/dt.
+    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force (6) that friction must balance and g =
+    μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is linear
+    in z = z₀·exp(iωt). The release (7) occurs at |a| = g, so the shift is −d|a|/dε over d|a|/dt.
     """
     omega = 1j * pin.disc_speed
     spring = pin.stiffness / pin.mass

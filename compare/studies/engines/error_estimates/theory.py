@@ -1,4 +1,4 @@
-"""Random motions with an exact solution, in closed form or by the reference at a far tighter tolerance."""
+"""Random motions with an exact solution, or solved by the reference at a far tighter tolerance."""
 
 from __future__ import annotations
 
@@ -114,7 +114,6 @@ class Calibration:
 
     @functools.cached_property
     def _covered(self) -> FloatArray:
-        """Share of the numbers of each motion whose true error lies within the estimate."""
         within = np.bincount(self.motion, self.errors <= self.estimates)  # False for NaN
         return np.asarray(within / np.bincount(self.motion))
 
@@ -125,7 +124,7 @@ class Calibration:
 
     @property
     def coverage_noise(self) -> float:
-        """Standard error of the coverage as a mean over motions, because the numbers of a motion are correlated."""
+        """Standard error of the coverage as a mean over motions, whose numbers are correlated."""
         return float(np.std(self._covered, ddof=1) / math.sqrt(self.motions))
 
     @property
@@ -159,7 +158,6 @@ def _at_end(trajectory: Trajectory) -> FloatArray:
 
 
 def _duration(random: Generator, system: System) -> float:
-    """Draw one to two natural periods of the support (s)."""
     return between(random, 2.0 * math.pi, 4.0 * math.pi) / system.natural_frequency
 
 
@@ -289,7 +287,7 @@ def free_ring(random: Generator) -> Problem:
 
 @functools.cache
 def _unit_stop(inertia: float, degrees: float) -> tuple[float, float, float]:
-    """Return time and distances to rest for an initial √(U² + W²) of 1 m/s and μN/m = 1 m/s²."""
+    """Return time and distances to rest for √(U² + W²) = 1 m/s and μN/m = 1 m/s²."""
     angle = math.radians(degrees)
     return Slowing(inertia).stop(math.cos(angle), math.sin(angle))[:3]
 

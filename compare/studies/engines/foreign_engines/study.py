@@ -112,7 +112,6 @@ def disc_stays_off() -> Measured:
 def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
-    """Compare the observed orders of the ``wanted`` settings in each of ``cases`` with ``predicted``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     runs = {(name, case): halvings(by_name[name].runs[case]) for case in cases for name in wanted}
     found = [
@@ -171,7 +170,6 @@ def pyramid_releases() -> Measured:
 
 
 def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
-    """Compare the deviations of the ``wanted`` settings, of order 1, with the deviation by ``law``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
@@ -264,7 +262,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
-    """Draw a row for each engine and a column for each motion."""
     columns = len(titles)
     figure, axes = new_figure(
         columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True

@@ -113,7 +113,6 @@ def creep(steps: int) -> float:
 
 
 def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
-    """Integrate ``case`` under ``law``, smoothed over the slip ``epsilon`` (m/s)."""
     pin = case.system
 
     def friction(slip_x: float, slip_y: float, *_: float) -> tuple[float, float, float]:
@@ -130,7 +129,7 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 
 
 def release_by(law: Law) -> tuple[float, float]:
-    """Return the time (s) when ``law`` releases a stuck pin, and its error, see ``refined``.
+    """Return the time (s) when ``law`` releases a stuck pin, and its error.
 
     A held pin creeps along each axis of the world with a slip below ε; it is released when the slip reaches ε.
     """
@@ -153,7 +152,7 @@ def release_by(law: Law) -> tuple[float, float]:
 def release_where(held: Callable[[complex], float]) -> float:
     """Return the time (s) when a stuck pin is released, in closed form.
 
-    ``held`` maps the force (6) over μN to the used share of the friction law's limit. The pin is released above 1.
+    ``held`` maps the force (6) over μN to the used share of the friction law's limit.
     """
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])
@@ -170,10 +169,7 @@ def release_where(held: Callable[[complex], float]) -> float:
 
 
 def error_of(law: Law, name: str) -> tuple[float, float]:
-    """Return the deviation (m) of a pin under ``law`` from the exact motion of the case ``name``, and its error.
-
-    The error is the change at smaller ε and tolerance, see ``refined``.
-    """
+    """Return the deviation (m) of a pin under ``law`` from the exact motion of the case ``name``, and its error."""
     case = CASES[name]
     pin = case.system
 
@@ -217,7 +213,7 @@ def recorded_settings() -> tuple[Recorded, ...]:
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    """Return the claims of one setting, one per simulated case, from the finest run."""
+    """Return the claims of one setting, one per case, from the finest run."""
     claims = []
     for name, runs in recording.runs.items():
         case = CASES[name]
@@ -259,7 +255,7 @@ def recorded_claims(recording: Recording) -> Recorded:
 
 
 def _advice(recording: Recording) -> str:
-    """Return the refinement for an error of ``WANTED`` in converging motions, or the error of the finest run."""
+    """Return the refinement for an error of ``WANTED``, or the error of the finest run."""
     runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
     if not runs or recording.engine == "reference":
         return ""
@@ -303,7 +299,6 @@ def _at(wanted: float, runs: FloatArray, column: int) -> float:
 
 
 def _finest(runs: FloatArray) -> str:
-    """Return as text the error (m) of the finest of ``runs``, its estimate and, for several runs, the order."""
     steps, error = runs[:, STEPS], runs[:, ERROR]
     if len(runs) == 1 or not np.all(error[-2:] > 0.0):
         return f"{error[-1]:.1g}"

@@ -1,4 +1,4 @@
-"""Random motions from the whole parameter range of the studies, redrawn until they suit the claims."""
+"""Random motions from the whole parameter range, redrawn until they suit the claims."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ def _pin(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stiffening(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin on a hardening support, with a stop along which it rolls far out."""
     pin = _pin(random, disc_speed)
     size = abs(pin.offset)
     return replace(
@@ -103,7 +102,6 @@ def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stuck(random: Generator, pin: PinOnDisc) -> tuple[float, ...]:
-    """Draw a start that turns with the disc, at a radius where friction may or may not hold the pin by (7)."""
     z = cmath.rect(min(farthest(pin), 1.0) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
     v = 1j * pin.disc_speed * z
     return (z.real, z.imag, v.real, v.imag)

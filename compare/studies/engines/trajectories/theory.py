@@ -1,8 +1,8 @@
-"""Motions with given parameters, ranges of the random motions, and integrals of rates over panels of time.
+"""Motions, ranges of the random ones, and integrals over panels of time.
 
-The paper's m, J and C are all one, so an engine that confuses two of them still moves correctly. Here no two
-parameters are equal. A mistake may also occur only for certain parameters, such as a slow disc or one that turns the
-other way, so random motions cover the whole range.
+The paper's m, J and C are all one, so an engine that confuses them still moves correctly. Here no two parameters are
+equal. A mistake may also occur only for certain parameters, such as a slow disc, so random motions cover the whole
+range.
 """
 
 from __future__ import annotations
@@ -161,8 +161,8 @@ def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
 
     The rule with n nodes misses the Legendre coefficients from 2n on. The error estimate assumes that they decay at
-    the mean rate between the middle and the last of the first n coefficients. It contains SAFETY, because they decay
-    more slowly if a point of the contact comes to rest.
+    the mean rate between the middle and the last of the first n, times SAFETY, because they decay more slowly if a
+    point of the contact comes to rest.
     """
     n = len(NODES)
     project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)

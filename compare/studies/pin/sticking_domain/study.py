@@ -1,4 +1,4 @@
-"""The radius (9) and the turn until release (7) over the disc speed, and the speed of the largest radius."""
+"""The radius (9) and the turn until release (7) over the disc speed."""
 
 from __future__ import annotations
 
@@ -84,8 +84,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. If a radius is missing, the vertex is missing; it is open if the errors
-    of all missing radii are infinite.
+    ``relative_error`` is that of the radii A. Without one of them the vertex is missing, and open if the errors of
+    all missing radii are infinite.
     """
 
     def found(values: FloatArray) -> float:
@@ -122,10 +122,7 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return the displacements on the disc of pins inside the radius (9), shape (n, 2), and which pins always stick.
-
-    Displacements are relative to the distance from the axis.
-    """
+    """Return the displacements of pins inside the radius (9) over it, shape (n, 2), and which pins always stick."""
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
     starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]

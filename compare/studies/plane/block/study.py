@@ -50,7 +50,6 @@ BEYOND = 1.01
 """Pull over μN that exceeds friction."""
 
 HELD = 10.0
-"""Duration in s."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
 """Smallest displacement (m) that counts as motion: half of the slide under ``BEYOND``."""
@@ -60,10 +59,8 @@ RELEASED = 8.5
 """Over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
-"""Half swings to rest."""
 
 DIAGONAL = 45.0
-"""In degrees."""
 
 PULL = 1.5
 """Initial pull over μN on a block thrown along it."""
@@ -72,7 +69,6 @@ AFAR = replace(BLOCK, stiffness=1e-2)
 """Initially stretched by 150 m; a larger distance would cost digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
-"""Sample times in s."""
 
 ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
 """The spring pulls a block at the origin with μN along x, constant to about 1e-6."""

@@ -1,14 +1,14 @@
 """Reduction of the logs of measured planar pushes to one row per push.
 
 The logs come from the repository robinzhoucmu/MLab_EXP, commit 4d86db94, folder PushExp/sensor_log (J. Zhou, Carnegie
-Mellon University, 2015, Apache-2.0) and are not part of this project. ``reduced.csv`` contains all numbers that the
-study uses; ``friction-discs report pushes --data FOLDER`` reduces logs again.
+Mellon University, 2015, Apache-2.0) and are not part of this project. ``reduced.csv`` contains the rows;
+``friction-discs report pushes --data FOLDER`` compares them with the logs.
 
 Choices, and their effect on a series' median error of the force's direction, which is 5 to 9 degrees:
 
 - Only the first and last poses are recorded, so a body is assumed to move straight and turn uniformly. Displacement
-  and force are in the body's axes halfway. The axes of the first pose, with a linearised displacement, raise the
-  median by up to 8.3 degrees.
+  and force are in its axes halfway. The axes of the first pose, with a linearised displacement, raise the median by
+  up to 8.3 degrees.
 - The mean force excludes the first 30 % of the samples (``SETTLING``), while the pusher closes a gap of 2.5 mm and
   the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. A
   start 0.2 s after the force exceeds 1 N changes them by at most 0.4 degrees and 2 %.
@@ -56,10 +56,8 @@ class Push:
 
     - ``series``: "wood" or nothing for the board, then the positions of three feet or "patch".
     - ``samples``: number of force samples.
-    - ``x``, ``y``, ``turn``: displacement (mm) of the origin of the body's frame, in the axes halfway, and rotation
-      (rad).
-    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height (mm) and tilts (rad), which are errors on a
-      flat surface.
+    - ``x``, ``y``, ``turn``: displacement (mm) of the body's origin, in the axes halfway, and rotation (rad).
+    - ``lift``, ``tilt_x``, ``tilt_y``: changes of height (mm) and tilts (rad), which are errors on a flat surface.
     - ``force_x``, ``force_y``: mean force of the pusher on the body (N), in the axes halfway.
     - ``noise``: standard deviation (N) of a force component before contact.
     - ``start_x``, ``start_y``, ``end_x``, ``end_y``: first and last position of the hand (mm) in the body's frame.
@@ -216,8 +214,8 @@ def reduced_pushes() -> tuple[Push, ...]:
 def check_table(folder: Path) -> tuple[list[str], list[Push]]:
     """Compare the table with the logs in ``folder``.
 
-    Return the names of the series that agree, and the pushes whose series is not in the table. Raise ``ValueError``
-    if there are no logs, a log is invalid or a number differs.
+    Return the names of the series that agree, and the pushes of other series. Raise ``ValueError`` if there are no
+    logs, a log is invalid or a number differs.
     """
     logs = sorted(path for path in folder.iterdir() if NAMES.fullmatch(path.name)) if folder.is_dir() else []
     if not logs:

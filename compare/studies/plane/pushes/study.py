@@ -1,4 +1,4 @@
-"""Measured pushes of a triangle on three feet, or on its whole face, against Coulomb's law: a validation."""
+"""Claims on the pushes, and their validation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coulomb friction in measured pushes: predicted forces, their errors, and other explanations of these errors.
+"""Predicted forces of measured pushes, their errors, and explanations of these errors.
 
 A push is quasi-static, so the pusher balances friction: a foot that moves by d carries its share of the sliding force
 against d. All parameters are the authors' values; nothing is fitted.
@@ -146,7 +146,7 @@ def work_ratio(push: Push, law: Law) -> float:
 # --- Uncertainties of the force's direction (ASME V&V 20)
 
 GIVEN_TO = 1.0
-"""Last digit (mm) of the centre of mass; the authors state no uncertainty."""
+"""In mm; the authors state no uncertainty of the centre of mass."""
 
 NORMAL = 1.4826
 """Standard deviation over the median deviation of a normal distribution."""
@@ -231,7 +231,6 @@ def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrenc
 
 
 def _edges(count: int = 60) -> NDArray[np.complex128]:
-    """Return equidistant points on the triangle's edges (m), relative to the centre of mass."""
     corners = np.array([0.0, LEGS, 1j * LEGS, 0.0])
     lengths = abs(np.diff(corners))
     along = (np.arange(count) + 0.5) / count * lengths.sum()
