@@ -1,4 +1,4 @@
-"""The studies in the order of the report; each is a module of this package that exports ``STUDY``."""
+"""The studies in the order of the report; each is a module that exports ``STUDY``."""
 
 from __future__ import annotations
 

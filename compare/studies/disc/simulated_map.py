@@ -1,4 +1,4 @@
-"""Simulated stability map: final motions of thousands of discs around Fig. 11, under the stability map's curves."""
+"""Final motions of thousands of discs around Fig. 11, under the curves of the stability map."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, 
 """β in N s/m and b in N m s/rad."""
 
 START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # x, y, angle, vx, vy, spin, close to the axis
-UNTIL = 12000.0  # duration in s until the slowest motions settle
+UNTIL = 12000.0  # in s until the slowest motions settle
 TOLERANCE = 10.0 * WORKING  # sufficient for the kind of final motion
 
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5  # stride of the discs whose whirls' eigenvalues are computed
+EVERY = 5  # stride of the discs for eigenvalues of whirls
 
 GROWN = 15.0
 """Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
@@ -64,7 +64,7 @@ def simulated() -> Ends:
 
 
 def growth(disc: DiscOnDisc) -> float:
-    """Return the smallest growth rate in 1/s among the whirls of a disc, −inf if it has none."""
+    """Return the smallest growth rate (1/s) among the whirls of a disc, −inf if it has none."""
     found = whirls(disc)
     return min((max(value.real for value in each.eigenvalues) for each in found), default=-np.inf)
 

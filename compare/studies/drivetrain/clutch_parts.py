@@ -1,4 +1,4 @@
-"""Two rotors and a clutch in Exudyn: onset of judder, heat, temperature and the energy balance."""
+"""Two rotors and a clutch in Exudyn: judder, heat, temperature and the energy balance."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
 """Disc in kg m² and its shaft in N m/rad and N m s/rad: 19 Hz, 2 % damping."""
 
 SPEED, DRIVE_INERTIA = 50.0, 1e12
-"""Drive in rad/s and kg m²; friction slows it by only 1e-11 rad/s²."""
+"""Drive in rad/s and kg m², slowed by only 1e-11 rad/s²."""
 
 RADIUS, LOAD, COEFFICIENT = 0.1, 1000.0, 0.5
-"""Contact radius in m, load in N, and friction coefficient at the steady slip speed."""
+"""Contact radius in m, load in N, and coefficient at the steady slip speed."""
 
 STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
-"""Friction moment in N m and slip speed in m/s, with the shaft wound up and at rest."""
+"""In N m and m/s, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
-"""Negative slope of the coefficient in s/m; friction then feeds in the power that the damper dissipates."""
+"""Negative slope of the coefficient (s/m); friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
-"""Negative slopes of the coefficient in s/m."""
+"""In s/m."""
 
 EPSILON = 1e-4
-"""ε in m/s, 1/50,000 of the steady slip speed; without effect, because the disc does not stick."""
+"""ε in m/s, without effect because the disc does not stick."""
 
 PERTURBED = 0.1
 """Initial speed of the disc in rad/s."""
@@ -45,13 +45,13 @@ TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS
 # Heat: a clutch engages between an engine and a vehicle and warms the linings, whose friction fades.
 
 INERTIAS, SLIP = (0.2, 1.5), 200.0
-"""Inertias of engine and vehicle in kg m², and initial slip in rad/s."""
+"""Engine and vehicle in kg m², and initial slip in rad/s."""
 
 RING, PRESSED = 0.1, 3000.0
 """Contact radius in m and load in N."""
 
 COLD_COEFFICIENT, FADE = 0.33, 2e-3
-"""Coefficient at ambient temperature, and its relative loss per K above it."""
+"""Coefficient at ambient temperature, and its relative loss per K."""
 
 CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
 """Heat capacity of the linings in J/K, heat loss in W/K and ambient temperature in °C."""
@@ -63,7 +63,7 @@ ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
 """In s: times during slip, and a time after lock-up."""
 
 NEARLY_HOLDS = 1.0
-"""Slip in rad/s that ends the slipping time; ten times the slip at ε."""
+"""In rad/s, the slip that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
 """Sustained slip: slip in rad/s, inertias in kg m² and times in s."""
@@ -71,10 +71,10 @@ SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
 MOMENT = COLD_COEFFICIENT * PRESSED * RING
 REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
 HEAT = 0.5 * REDUCED * SLIP**2
-"""Moment of cold friction in N m, effective inertia in kg m², and energy in J of the slip."""
+"""Moment of cold friction in N m, effective inertia in kg m², and energy of the slip in J."""
 
 BOTH = (1e-10, 1e-10 / COARSENING)
-"""Tolerances of explicit steps, in rad, rad/s, K and J."""
+"""Tolerances of explicit steps."""
 
 LEFT_OUT = 2e-13
 """Fraction of a run's span that ``solve_dynamic`` skips at each break."""
@@ -83,8 +83,8 @@ LEFT_OUT = 2e-13
 def slipping_time(end: float) -> float:
     """Return the time (s) until the slip of the engaging clutch has fallen to ``end`` (rad/s).
 
-    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with
-    c = k·J/(2C) and b = 1 − c·S₀², and the solution is a tangent.
+    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with c = k·J/(2C)
+    and b = 1 − c·S₀², and the solution is a tangent.
     """
     c = FADE * REDUCED / (2.0 * CAPACITY)
     b = 1.0 - c * SLIP**2
@@ -97,14 +97,14 @@ def cold_slipping_time(end: float) -> float:
 
 
 def held(times: FloatArray) -> FloatArray:
-    """Return the temperature (°C) of the clutch with sustained slip; in the limit, the loss equals the heat."""
+    """Return the temperature (°C) with sustained slip; in the limit, the loss equals the heat."""
     power = MOMENT * SLOW_SLIP
     rate = CONDUCTANCE + FADE * power
     return SURROUNDINGS + power / rate * (1.0 - np.exp(-rate / CAPACITY * times))
 
 
 def juddering(gradient: float) -> Rotors:
-    """Return a drive and a disc on its shaft, with a friction coefficient of slope −``gradient`` (s/m)."""
+    """Return a drive and a disc, with a friction coefficient of slope −``gradient`` (s/m)."""
     from exudyn_models import add_ring_friction
 
     rotors = Rotors((DRIVE_INERTIA, INERTIA), (SPEED, PERTURBED), STEADY_MOMENT / STIFFNESS)
@@ -132,7 +132,7 @@ def heating(
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
-    The initial slip is ``start`` (rad/s). The steps hit all ``times``; the last one ends the run.
+    The initial slip is ``start`` (rad/s). The steps hit all ``times``.
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 
@@ -198,7 +198,7 @@ def onset(engine: Engine) -> Measured:
 
 
 def _growth(gradient: float, tolerance: float) -> float:
-    """Return the growth rate of the vibration in 1/s.
+    """Return the growth rate in 1/s.
 
     Speeds of a linear vibration at equal intervals Δ satisfy v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
     """
@@ -289,9 +289,6 @@ def balance(engine: Engine) -> Measured:
     )
 
 
-# --- Figures
-
-
 def draw(data: ByEngine) -> Figures:
     if not data:
         return {}
@@ -316,7 +313,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _both(panel: Axes, data: ByEngine, closed_form: tuple[str, str], measured: tuple[str, str]) -> None:
-    """Draw the closed form and the engines' results; each pair names abscissa and ordinate."""
     for name in ("theory", *engines_in(data)):
         x, y = closed_form if name == "theory" else measured
         found = data.get(name, {})

@@ -1,8 +1,8 @@
-"""An isolated drivetrain of the project's parts keeps its angular momentum on every kind of node.
+"""Angular momentum of an isolated drivetrain on every kind of node.
 
-Engine, clutch disc and vehicle act only on each other, by friction, by an elastic shaft attached to the vehicle
-off-centre, and by a torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts
-on two bodies along different axes.
+Engine, clutch disc and vehicle act on each other by friction, by an elastic shaft attached off-centre, and by a
+torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts on two bodies along
+different axes.
 """
 
 from __future__ import annotations
@@ -30,11 +30,10 @@ DRIVETRAINS = tuple(
 """Nodes of engine, disc and vehicle; each kind for each body occurs with each kind for the others."""
 
 DRAWN = ("rotation vector",) * 3
-"""The drivetrain of the figure."""
 
 
 class Body(NamedTuple):
-    """Mass in kg, principal moments of inertia in kg m², position and rotation, velocity and turn rates."""
+    """Mass (kg), principal moments of inertia (kg m²), position and rotation, velocity and turn rates."""
 
     mass: float
     inertia: tuple[float, float, float]
@@ -53,7 +52,7 @@ BODIES = {
         80.0, (5.0, 5.0, 8.0), (0.0, 0.009, 0.015, 1e-4, 1e-4, 0.1), (0.0, 0.0, 0.0, -1e-4, 1e-4, 1.0)
     ),
 }
-"""The axes of the bodies are apart and slightly tilted, which reveals a force without its arm."""
+"""The axes are apart and slightly tilted, which reveals a force without its arm."""
 
 FRICTION: dict[str, Any] = {
     "friction_coefficient": 1.0,
@@ -139,7 +138,7 @@ def momentum(
 
 
 def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
-    """Return the drift of the sum about the conserved axes over the largest momentum of one body, shape (n, axes)."""
+    """Return the drift about the conserved axes over the largest momentum of one body, shape (n, axes)."""
     total = momenta.sum(axis=1)
     kept = slice(None) if set(kinds) <= set(SPATIAL) else slice(2, 3)
     return np.asarray((total - total[0])[:, kept] / np.abs(momenta).max())
@@ -178,7 +177,6 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
 
 
 def _add_drivetrain(mbs: Any, kinds: Sequence[str]) -> list[Any]:
-    """Add engine, disc, vehicle and all connections; return the nodes."""
     import exudyn.itemInterface
 
     from exudyn_models import add_radial_support, add_ring_friction
@@ -221,7 +219,6 @@ def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
 
 
 def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
-    """Return the angular momentum about the origin (kg m²/s), from Exudyn's position and spin."""
     import exudyn as exu
 
     of = exu.OutputVariableType
@@ -234,9 +231,6 @@ def _angular_momentum(mbs: Any, kind: str, body: Body, node: Any) -> FloatArray:
     own = rotation.reshape(3, 3) @ (np.array(body.inertia) * spin)
     (x, y, z), (vx, vy, vz) = position, velocity
     return np.asarray(body.mass * np.array((y * vz - z * vy, z * vx - x * vz, x * vy - y * vx)) + own)
-
-
-# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -1,1 +1,1 @@
-"""Studies of the engines: single motions, balances, convergence, error estimates and scale."""
+"""Studies of the engines."""

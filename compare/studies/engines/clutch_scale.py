@@ -1,4 +1,4 @@
-"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch: the same motions with the same verdicts."""
+"""Figs. 5, 6, 8 and 11 at the size and speed of a clutch."""
 
 from __future__ import annotations
 
@@ -21,12 +21,10 @@ from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import DiscOnDisc, FloatArray, System
 
-# --- The paper's systems at the scale of a clutch
-
 
 @dataclass(frozen=True)
 class Scale:
-    """Length in m, time in s and mass in kg that correspond to 1 m, 1 s and 1 kg of a system."""
+    """Length (m), time (s) and mass (kg) that correspond to 1 m, 1 s and 1 kg of a system."""
 
     length: float
     time: float
@@ -72,13 +70,13 @@ UNTIL, SAMPLES = 240.0, 481
 """Duration in s until this pin rests, and number of samples."""
 
 WHIRLING = replace(FIG4, disc_speed=1.2)
-"""Fig. 6 at the friction force 0.12 N."""
+"""Fig. 6 at 0.12 N."""
 
 REST_OF_DISC = 40.0
 """Duration in s for a disc of Fig. 8 that starts in the equilibrium of (19) and (20)."""
 
 CYCLE_START = (0.05, 0.0, 0.4, 0.0, 0.05, 1.3)
-"""x, y, angle, vx, vy, spin of a disc that slides and spirals towards the cycle of Fig. 11."""
+"""x, y, angle, vx, vy, spin of a disc that spirals towards the cycle of Fig. 11."""
 
 CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Duration in s of this motion, and number of samples."""
@@ -89,7 +87,7 @@ VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
 ENSEMBLE, SEED, ENSEMBLE_UNTIL = 1000, 13, 1000.0
-"""Number of random starts, seed, and duration in s in which each reaches its end."""
+"""Random starts, seed, and duration in s until each has reached its end."""
 
 SOURCE = (
     "{}; X0 = 0.1 mm, ω = 300 rad/s and m = 0.5 kg are our choice, all dimensionless numbers are the paper's"
@@ -98,9 +96,6 @@ SOURCE = (
 
 def scaled(system: System) -> System:
     return CLUTCH.system(system)
-
-
-# --- Motions at the paper's scale, for comparison
 
 
 @functools.cache
@@ -154,7 +149,6 @@ def states_of(
 
 @functools.lru_cache(maxsize=2)
 def to_rest(engine: Engine, tolerance: float) -> Trajectory:
-    """Return the motion to rest at the scale of a clutch, which two claims share."""
     return at_clutch(engine, FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance)
 
 
@@ -166,7 +160,7 @@ def to_rest(engine: Engine, tolerance: float) -> Trajectory:
     "tolerance, plus the rest of the slowest transient.",
 )
 def rests(engine: Engine) -> Measured:
-    # The positions cover the last 40 s in the paper's units.
+    # The last 40 s in the paper's units.
     places, error = refined(
         lambda tolerance: (
             to_rest(engine, tolerance).states[-81:, :2] / CLUTCH.states(np.ones(4))[:2] / FIG5.offset
@@ -334,9 +328,6 @@ def shares(starts: int = ENSEMBLE) -> Measured:
         components=("share of the equilibrium", "share of the whirl", "share with another end"),
         note=f"{starts} starts.",
     )
-
-
-# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

@@ -1,4 +1,4 @@
-"""Energy balance: the work of the drive equals heat plus stored energy, on every kind of trajectory."""
+"""Energy balance: the work of the drive equals heat plus stored energy."""
 
 from __future__ import annotations
 
@@ -16,10 +16,8 @@ from reference_model import PowerBalance, Trajectory, power_balance, sticking_ra
 from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
 
-# --- Motions of every kind
-
 SAMPLE_DISTANCE = 0.02
-"""In s; the quadrature of the balance then has an error below 1e-9 through stick phases."""
+"""In s; the quadrature then has an error below 1e-9 through stick phases."""
 
 RESOLUTION = 1e-8
 """Relative to the energy turned over."""
@@ -27,7 +25,7 @@ RESOLUTION = 1e-8
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion to ``until`` in s, sampled every ``step`` s.
+    """A motion to ``until`` (s), sampled every ``step`` (s).
 
     The figure shows it if ``drawn``; engines that only provide the contact take part if ``contact_alone``.
     """
@@ -214,7 +212,6 @@ def _relative_residual(balance: PowerBalance) -> float:
 
 
 def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
-    """Return the curves of a balance; ``others`` have the same samples but other tolerances."""
     return {
         "times": balance.times,
         "drive work": balance.drive_work,
@@ -224,9 +221,6 @@ def _drawn(balance: PowerBalance, *others: PowerBalance) -> Data:
         "residual": balance.residual / balance.turned_over,
         "change of residual": (balance.residual - others[-1].residual) / balance.turned_over,
     }
-
-
-# --- Figure
 
 
 def draw(data: ByEngine) -> Figures:

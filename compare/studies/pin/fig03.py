@@ -1,4 +1,4 @@
-"""Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle, its stability, and where it ends."""
+"""Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ from reference_model.systems import FloatArray, PinOnDisc
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
-LIMIT = largest_load_with_equilibrium(PIN)  # limit (5) in N
-START = (0.1, 0.05, 0.0, 0.0)  # at rest in m, displaced from every equilibrium
+LIMIT = largest_load_with_equilibrium(PIN)  # (5), in N
+START = (0.1, 0.05, 0.0, 0.0)  # in m, displaced from every equilibrium
 LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # μN in N, within (5)
 DURATION = 520.0  # in s; the slowest transient, exp(−βt/2m), falls to 5e-12
-DELAY = 60.0  # final part of a run in s, which yields the remaining transient
+DELAY = 60.0  # final part of a run in s, for the remaining transient
 
 TOLERANCE = 0.03 * WORKING
 """For positions of rest, whose resolution is 1e-9 of X0."""
 
 SHARES = (0.98, 0.999, 1.05, 1.2)  # μN over the limit (5)
-SETTLING = 300.0  # duration in s from the axis to the equilibrium
+SETTLING = 300.0  # in s from the axis to the equilibrium
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
-"""Period of the disc in s. Above the limit the pin sticks at once, so two periods suffice."""
+"""In s. Above the limit the pin sticks at once, so two periods suffice."""
 
 FLOW_DURATION = 0.3
-"""Duration in s of the simulations for eigenvalues, short enough for strongly damped ones."""
+"""In s, short enough for strongly damped eigenvalues."""
 
 GRID_SHARES = np.array([0.01, *np.linspace(0.05, 0.95, 19), 0.99, 0.999])
 GRID_SPEEDS = np.geomspace(0.05, 5.0, 25)
@@ -56,7 +56,7 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the positions of rest in m and their eigenvalues in 1/s over μN in N."""
+    """Return the positions of rest (m) and their eigenvalues (1/s) over μN (N)."""
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 181))[:-1]  # equal steps along the semicircle
     eigenvalues = [along_and_across(equilibrium_eigenvalues(with_load(load))) for load in loads[1:]]
     return {
@@ -67,7 +67,7 @@ def curves() -> Data:
 
 
 def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
-    """Return the positions (3) in m at μN = ``loads`` in N, shape (n, 2)."""
+    """Return the positions (3) at μN = ``loads`` (N), shape (n, 2)."""
     return np.array([equilibrium_position(with_load(load)) for load in loads])
 
 
@@ -126,7 +126,7 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.lru_cache(maxsize=2)
 def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Return the final positions of the pin (m), shape (n, 2), and their errors as distances."""
+    """Return the final positions (m), shape (n, 2), and their errors as distances."""
 
     def track(load: float, times: list[float], tolerance: float) -> FloatArray:
         return engine.simulate(with_load(load), START, times, tolerance=tolerance).states[1:, :2]
@@ -142,7 +142,7 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
             tolerance=TOLERANCE,
         )
         places.append(end.value)
-        # A single error may be small by chance. At rest, two runs may agree better than the tolerance.
+        # At rest, two runs may agree better than the tolerance.
         errors.append(np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset)
     return np.array(places), np.array(errors)
 

@@ -1,4 +1,4 @@
-"""Fig. 4: the shift of the whirl by a small offset, eq. (18), and the exact first-order response."""
+"""Fig. 4: the shift of the whirl by a small offset, (18), and the exact first-order response."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0
 CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # in rad/s
 
 OFFSETS = (0.02, 0.01, 0.005)
-"""X0 in m for the orders; each is half of the previous one and far below the whirl's radius of 1.2 m."""
+"""X0 in m, each half of the previous one and far below the whirl's radius of 1.2 m."""
 
-SHIFT_TOLERANCE = 1e3 * WORKING  # for means over ω; (18) has an error of a few per cent
+SHIFT_TOLERANCE = 1e3 * WORKING  # (18) has an error of a few per cent
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"
@@ -44,7 +44,7 @@ def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return both formulas over ω in rad/s."""
+    """Return both formulas over ω (rad/s)."""
     speeds = np.geomspace(1.08, 5.0, 200)
     return {
         "speeds": speeds,
@@ -130,7 +130,7 @@ def order(engine: Engine, speed: float) -> Measured:
     means = over_offset(engine, speed)
     exact = [complex(*first_order_whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
     gaps = means.value[:, 0] + 1j * means.value[:, 1] - exact
-    noise = np.hypot(*means.error[:, :2].T) / np.abs(gaps)  # relative error of each gap
+    noise = np.hypot(*means.error[:, :2].T) / np.abs(gaps)  # relative
     orders = np.log2(np.abs(gaps[:-1] / gaps[1:]))
     # The error is a series in odd powers of X0, so the observed order tends to 3 like X0².
     (extrapolated,) = towards_zero(orders)
@@ -186,7 +186,7 @@ def towards_zero(values: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
-    """Return the means of the whirls in m, shape (n, 2), along the branch from high to low speed."""
+    """Return the means of the whirls (m), shape (n, 2), along the branch from high to low speed."""
     found, guess = [], None
     for speed in reversed(speeds):
         guess = whirl_of(engine, pin_at(speed), SHIFT_TOLERANCE, guess)
@@ -201,7 +201,7 @@ def over_offset(engine: Engine, speed: float) -> Measurement:
 
 
 def harmonics(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Measurement:
-    """Return mean and second harmonic of x + iy over a whirl in m, shape (4,).
+    """Return mean and second harmonic of x + iy over a whirl (m), shape (4,).
 
     The phase of the second harmonic refers to a time when the first harmonic is real.
     """

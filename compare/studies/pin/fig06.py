@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, permanent stick and whirl under increasing friction force, and the end of each of them."""
+"""Fig. 6: equilibrium, permanent stick and whirl over the friction force."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def with_load(load: float) -> PinOnDisc:
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
     """Return the branch of whirls through its folds by the reference, and (3) and (9) over the friction force.
 
-    The branch ends at the crossing ``innermost`` in m; its relative steps are ``step``.
+    The branch ends at the crossing ``innermost`` (m); its relative steps are ``step``.
     """
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
@@ -77,7 +77,7 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
 UNIT_MULTIPLIER_ERROR = 1e-5
 """Error of a multiplier near a fold, from central differences with the relative step ``orbits.CENTRAL``.
 
-Two multipliers meet there, so the error is the root of the error of the return map; 3e-6 was observed.
+Two multipliers meet there, so it is the root of the error of the return map; 3e-6 was observed.
 """
 
 
@@ -117,7 +117,7 @@ STUDY = Study.beside(
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
-    times = np.linspace(590.0, 600.0, 11)  # a single error may be small by chance
+    times = np.linspace(590.0, 600.0, 11)
     found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
     positions = np.array([equilibrium_position(with_load(load)) for load in loads])
     # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).
@@ -133,7 +133,6 @@ def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measure
 
 
 def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> FloatArray:
-    """Return the positions at ``times`` after a start 5 mm from the equilibrium."""
     pin = with_load(load)
     x, y = equilibrium_position(pin)
     motion = engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), (0.0, *times), tolerance=tolerance)

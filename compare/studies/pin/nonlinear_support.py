@@ -1,4 +1,4 @@
-"""A support that hardens or has a stop, which limits the amplitude in practical applications."""
+"""A support that hardens or has a stop, which limits the amplitude."""
 
 from __future__ import annotations
 
@@ -22,8 +22,6 @@ from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import PinOnDisc
 
-# --- Pins and a disc on supports that harden or have a stop
-
 HARDENING = replace(CENTRED, hardening=0.5)
 STOP = replace(CENTRED, stop_gap=0.6, stop_stiffness=2.0)
 PINS = {"hardening": HARDENING, "stop": STOP}
@@ -36,19 +34,19 @@ LAWS = (
 
 SOURCE = "Fig. 4, with β, μN and X0 as stated; C₃, C_s and the gap are our choice, the paper names no law"
 
-LOADS = (0.04, 0.1, 0.2)  # μN in N; at the smallest one, the pin does not reach the stop
+LOADS = (0.04, 0.1, 0.2)  # in N; at the smallest, the pin does not reach the stop
 
 SHIFTED = [replace(pin, offset=FIG4.offset) for pin in PINS.values()]
 
-SUPPORTS = {"support": tuple(PINS)}  # labels of the elements of each support
+SUPPORTS = {"support": tuple(PINS)}  # labels
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 """X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""
 
 RESTING = {"offset": 0.8, "friction_force": 0.9}
-"""Offset (m) and friction force (N) that put the equilibrium into the nonlinear range of either law."""
+"""In m and N, with the equilibrium in the nonlinear range of either law."""
 
-BESIDE = 0.005  # distance in m of the starts from the equilibrium
+BESIDE = 0.005  # in m, of the starts from the equilibrium
 
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
 SLIDING_TIMES = np.linspace(0.0, 50.0, 51)
@@ -62,7 +60,7 @@ TOLERANCE = 10 * WORKING
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
 GROWING_LOADS = (0.12, 0.06, 0.03)
-"""μN in N of pins without damping; its effect on their final radius falls with it."""
+"""μN in N without damping; its effect on the final radius falls with it."""
 
 GROWING_FROM = 0.3
 """Initial radius in m; closer to the axis, the largest of these friction forces holds a pin on the disc."""

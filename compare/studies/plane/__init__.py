@@ -1,1 +1,1 @@
-"""Standard problems on a plane at rest, with closed forms, for engines without a turntable."""
+"""Standard problems on a plane at rest, with closed forms."""

@@ -22,24 +22,24 @@ from reference_model.systems import DiscOnDisc, FloatArray
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
 
 MASS, RADIUS, FRICTION = 1.0, 0.1, 1.0
-"""Mass m in kg, radius R in m and friction force μN in N."""
+"""m in kg, R in m and μN in N."""
 
 DECELERATION = FRICTION / MASS
-"""Deceleration g in m/s² of a disc that only slides."""
+"""g in m/s² of a disc that only slides."""
 
 SPEED = 1.0
-"""Initial speed in m/s of the centre, the rim or both."""
+"""Initial speed (m/s) of the centre, the rim or both."""
 
 HEADING = 0.7
-"""Direction of the throw in rad from the x axis."""
+"""In rad from the x axis."""
 
 
 @dataclass(frozen=True)
 class Throw:
     """A throw with uniform deceleration, of a disc with the inertia J/(mR²).
 
-    ``sliding`` and ``rim`` are the initial U and W in m/s; W has the sign of the spin. ``force`` and ``moment`` are
-    those of friction over μN and μNR.
+    ``sliding`` and ``rim`` are the initial U and W (m/s); W has the sign of the spin. ``force`` and ``moment`` of
+    friction are over μN and μNR.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Throw:
     moment: float = 0.0
 
     def disc(self, contact_points: int | None = None) -> DiscOnDisc:
-        """Return the parameters of the disc."""
+        """Return the disc."""
         return DiscOnDisc(
             mass=MASS,
             polar_inertia=self.inertia * MASS * RADIUS**2,
@@ -72,13 +72,13 @@ class Throw:
 
     @property
     def time(self) -> float:
-        """Time to rest in s."""
+        """Time to rest (s)."""
         if self.sliding > 0.0:
             return self.sliding / (DECELERATION * self.force)
         return abs(self.rim) * self.inertia / (DECELERATION * self.moment)
 
     def seen_at(self, shares: FloatArray) -> FloatArray:
-        """Return distances along, across and of the rim in m, and their speeds, at ``shares`` of ``time``, (n, 6)."""
+        """Return distances along, across and of the rim (m) and their speeds at ``shares`` of ``time``, (n, 6)."""
         share = np.minimum(shares, 1.0)[:, np.newaxis]
         start = np.array([self.sliding, 0.0, self.rim])
         return np.hstack((start * self.time * (share - 0.5 * share**2), start * (1.0 - share)))
@@ -92,7 +92,7 @@ RING = (
 """Throws of a ring; if U = W, the share |cos χ/2| of the friction at the point χ acts along U, on average 2/π."""
 
 POINTS: Mapping[int, tuple[Throw, ...]] = {3: RING[:2], 6: RING[:2]}
-"""Throws by number of points; combined sliding and spinning has no closed form on points."""
+"""Throws by number of points; combined sliding and spinning has no closed form."""
 
 FULL = (
     Throw("slides", 0.5, SPEED, 0.0, force=1.0),
@@ -112,10 +112,10 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times of a full disc, which a regularised law need not bring to rest."""
 
 
-# --- A full disc under uniform pressure, by the reference's contact law and Exudyn's part
+# --- A full disc under uniform pressure
 
 EPSILON = 100.0
-"""Regularisation ε of the part over tolerance and speed; its effect on a sliding disc is of order ε²."""
+"""Regularisation ε of Exudyn's part over tolerance and speed; its effect on a sliding disc is of order ε²."""
 
 
 def by_contact_law(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
@@ -149,11 +149,11 @@ class Way:
 
 
 WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Way(by_part, 4e-10)}
-"""Quadrature errors are documented in ``Annulus`` and ``exudyn_models.forces.slip_potential``."""
+"""``Annulus`` and ``exudyn_models.forces.slip_potential`` document the quadrature errors."""
 
 
 def way_of(engine: Engine) -> Way:
-    """Return the function of ``engine`` for full discs; raise ``UnsupportedSystemError`` if it has none."""
+    """Return the function for full discs; raise ``UnsupportedSystemError`` if the engine has none."""
     if engine.name not in WAYS:
         raise UnsupportedSystemError(f"{engine.name} has no model of a full disc")
     return WAYS[engine.name]
@@ -171,7 +171,7 @@ SEEN = (
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""Takes a throw, times and a tolerance; returns the states."""
+"""From a throw, times and a tolerance to states."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:
@@ -214,7 +214,7 @@ def compared(
 
 
 def seen(states: FloatArray) -> FloatArray:
-    """Return distances in m and speeds in m/s along and across the throw and of the rim, from states (n, 6)."""
+    """Return distances (m) and speeds (m/s) along and across the throw and of the rim, shape (n, 6)."""
     z, v = (states[:, (0, 3)] + 1j * states[:, (1, 4)]).T * cmath.rect(1.0, -HEADING)
     rim = RADIUS * states[:, (2, 5)]
     return np.column_stack((z.real, z.imag, rim[:, 0], v.real, v.imag, rim[:, 1]))

@@ -1,4 +1,4 @@
-"""Small deviations from a steady motion: remaining transients and eigenvalues."""
+"""Remaining transients and eigenvalues of small deviations from a steady motion."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ PARTS = ("real part", "imaginary part")
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
     """Return the distance of ``end``, shape (...), from the steady state.
 
-    A deviation of size a at the end changes by a·(exp(r·delay) − 1) during the last ``delay`` s, where r is the decay
-    ``rate`` in 1/s of the slowest mode. The largest change since ``earlier``, shape (n, ...), determines a; the
-    earlier samples cover one oscillation that ends ``delay`` before the end.
+    A final deviation a has changed by a·(exp(r·delay) − 1) during the last ``delay`` s, where r is the decay ``rate``
+    (1/s) of the slowest mode. The largest change since ``earlier``, shape (n, ...), determines a; the earlier samples
+    cover one oscillation.
     """
     change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
     return np.asarray(change / np.expm1(rate * delay))
@@ -46,8 +46,8 @@ def settled(
 ) -> Settled:
     """Return the final value of a quantity in a simulation of ``duration`` s.
 
-    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` after the first, which is 0.
-    ``period`` in s is that of the transient's oscillation; ``remaining_transient`` explains ``delay`` and ``rate``.
+    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` after the first, 0. ``period`` (s)
+    is that of the transient; ``remaining_transient`` explains ``delay`` and ``rate``.
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
     found = refined(lambda asked: track(times, asked), tolerance)
@@ -56,7 +56,7 @@ def settled(
 
 
 class Rates(NamedTuple):
-    """Eigenvalues in 1/s, shape (n, m), of small deviations from n steady motions.
+    """Eigenvalues (1/s), shape (n, m), of small deviations from n steady motions.
 
     ``error``, shape (n,), is that of the ``measured`` eigenvalues; the ``predicted`` ones have their order.
     """
@@ -93,7 +93,7 @@ def measured_rates(
 ) -> Rates:
     """Return the eigenvalues from simulations of ``duration`` s and the ``predicted`` ones, shape (m,) each.
 
-    ``motions`` are systems with states of steady motions; the other parameters are those of ``measured_eigenvalues``.
+    ``motions`` are systems with states of steady motions; ``measured_eigenvalues`` explains the other parameters.
     """
     found = [
         measured_eigenvalues(engine, system, state, duration=duration, frame_speed=frame_speed)

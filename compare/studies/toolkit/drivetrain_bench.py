@@ -1,8 +1,8 @@
-"""Clutch of a passenger car on a bench: the drivetrain at one speed, and the equivalent disc of the reference.
+"""Clutch of a passenger car on a bench, and the equivalent disc of the reference.
 
-The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) holds the vehicle's speed. In steady motion the torque
-of the torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake instead of the shaft. A
-model with five coordinates and one with three agree to rounding error.
+The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) the vehicle's. In steady motion the torque of the
+torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake. Models with five and with three
+coordinates then agree to rounding error.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ EPSILON = 1e-3
 
 
 def passenger_car() -> Drivetrain:
-    """Return the car's parameters; the import of Exudyn is deferred to the call."""
+    """Return the car's parameters; importing Exudyn is deferred."""
     from exudyn_models import PASSENGER_CAR
 
     return PASSENGER_CAR
@@ -68,7 +68,7 @@ def facings(car: Drivetrain, rings: int = 16) -> Annulus:
 
 
 def rotating_damping(car: Drivetrain, slip: float, torque: float) -> float:
-    """Return the damping D in N s/m that friction of a slipping clutch exerts on small motions of the disc's centre.
+    """Return the damping D (N s/m) that friction of a slipping clutch exerts on small motions of the disc's centre.
 
     D = μN·∂F/∂U at U = 0, with μN such that the clutch transmits ``torque`` (N m) at ``slip`` (rad/s). It is the
     paper's μN/(2W), averaged over the facings.
@@ -88,7 +88,7 @@ def onset_speed(car: Drivetrain, slip: float, torque: float) -> float:
 
 @dataclass(frozen=True)
 class Operation:
-    """Operating point: speed of the flywheel and slip in rad/s, transmitted torque in N m and X0 in m."""
+    """Operating point: speed of the flywheel and slip (rad/s), transmitted torque (N m) and X0 (m)."""
 
     speed: float
     slip: float
@@ -97,7 +97,7 @@ class Operation:
 
     @property
     def brake_speed(self) -> float:
-        """Ω of the brake in rad/s."""
+        """Ω of the brake (rad/s)."""
         return self.speed - self.slip - self.torque / BRAKE
 
     def reduced(self, car: Drivetrain) -> DiscOnDisc:
@@ -166,7 +166,7 @@ def centre(disc: FloatArray) -> ComplexArray:
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
-# --- Equilibrium and whirl of the reference's equivalent disc
+# --- The reference's equivalent disc
 
 RINGS = 16
 """Rings of the reference's annulus."""

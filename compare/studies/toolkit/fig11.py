@@ -1,4 +1,4 @@
-"""Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes around it."""
+"""Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SOURCE = "Fig. 11, which omits X0"
 
 
 def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
-    """Return the right-hand side of (19) with (20) or (21) at ``state``, shape (6,)."""
+    """Return the right-hand side of (19) with (20) or (21), shape (6,)."""
     return plain.rates(disc, plain.by_law(disc.friction_force, contact_of(disc)), state)
 
 
@@ -35,9 +35,9 @@ def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
 def integrated(
     disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
 ) -> FloatArray:
-    """Integrate (19) without ``simulate``; return states at equidistant times up to ``until`` s, shape (samples, 6).
+    """Integrate (19) without ``simulate`` for a disc that always slides.
 
-    The disc must always slide.
+    Return the states at equidistant times up to ``until`` (s), shape (samples, 6).
     """
     friction = plain.by_law(disc.friction_force, contact_of(disc))
     run = solve_ivp(

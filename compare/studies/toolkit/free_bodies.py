@@ -1,4 +1,4 @@
-"""Rings that slide and spin freely until they rest, from integrals over an auxiliary variable.
+"""Rings that slide and spin freely until they rest.
 
 With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (19) without springs, dampers and shaft is
 
@@ -7,10 +7,10 @@ With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (1
 and F and G depend only on ε = U/W. So δ = ln ε obeys W·δ' = −g·q(δ), q = F/ε − G/c. The zero δ* of q, which exists
 for 1/2 < c < 2, is attracting, and ln W, time and distance are integrals over u = ln|δ − δ*|.
 
-Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), and the remaining time is
-N/(g·P). Its error is of second order because F and G are derivatives of one function.
+Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), so the remaining time is N/(g·P).
+Its error is of second order because F and G are derivatives of one function.
 
-Speeds are in m/s, lengths in m, and g is 1 m/s², so times and distances are those for μN = m·g.
+Units are m and s, and g is 1 m/s².
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray
 
 NEAR = 1e-7
-"""|δ − δ*| below which δ counts as constant; its square is the error relative to the remaining time."""
+"""|δ − δ*| below which δ counts as constant; its square is the relative error of the remaining time."""
 
 LARGEST = 40.0
 """Largest |δ| in the search for δ*."""
@@ -57,13 +57,13 @@ class Slowing:
 
     @cached_property
     def terminal(self) -> float:
-        """δ*, the logarithm of the final ratio of sliding speed to rim speed."""
+        """δ*, the logarithm of the final ratio U/W."""
         if self.inertia == 1.0:
             return 0.0
         return float(brentq(self.unevenness, -LARGEST, LARGEST, xtol=1e-15))
 
     def stop(self, sliding: float, rim: float, near: float = NEAR) -> Stop:
-        """Return the stopping time and distances, from initial U > 0 and W > 0 in m/s.
+        """Return the stopping time and distances, from initial U > 0 and W > 0 (m/s).
 
         ``near`` is the |δ − δ*| below which δ counts as constant.
         """
@@ -78,13 +78,13 @@ class Slowing:
             return math.exp(delta), away / self.unevenness(delta)
 
         def rates(u: float, passed: FloatArray) -> tuple[float, float, float, float]:
-            """Return the derivatives of ln W, time and both distances with respect to u."""
+            """Return the derivatives of ln W, time and both distances by u."""
             (ratio, duration), rim = at(u), math.exp(passed[0])
             along_rim = mean_directions(ratio, 1.0)[1]
             time = -rim * duration
             return along_rim / self.inertia * duration, time, time * ratio * rim, time * rim
 
-        # At equal speeds the slopes of friction are infinite, so the integration is split there.
+        # Friction has infinite slopes at equal speeds, so the integration is split there.
         edges = [first, *([math.log(abs(self.terminal))] if begin * self.terminal < 0.0 else []), last]
         passed = np.array([math.log(rim), 0.0, 0.0, 0.0])
         for span in itertools.pairwise(edges):

@@ -1,4 +1,4 @@
-"""Pins that stick to the disc, and whirls as periodic orbits of an engine."""
+"""Stuck pins, and whirls as periodic orbits of an engine."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Stuck pins and their release
+# --- Stuck pins
 
 
 def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle in rad where the holding force on a stuck pin is smallest, by (7) that of (C − mω²) − iβω."""
+    """Return the angle (rad) of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 
 def farthest(pin: PinOnDisc) -> float:
-    """Return the largest radius in m where friction can hold a pin, by (7)."""
+    """Return the largest radius (m) where friction can hold a pin, by (7)."""
     return (pin.friction_force + pin.stiffness * abs(pin.offset)) / abs(
         complex(pin.stiffness - pin.mass * pin.disc_speed**2, pin.damping * pin.disc_speed)
     )
@@ -32,17 +32,17 @@ def stuck(pin: PinOnDisc, radius: float, angle: float) -> FloatArray:
 
 
 def first_release(run: Trajectory) -> float:
-    """Return the end of the first stick phase in s: inf if it does not end, NaN if the motion starts with slip."""
+    """Return the end (s) of the first stick phase: inf if it does not end, NaN if the motion starts with slip."""
     first = run.phases[0]
     if first.kind != "stick":
         return math.nan
     return first.end if len(run.phases) > 1 else math.inf
 
 
-# --- The pin's whirl as a periodic orbit of an engine
+# --- The pin's whirl
 
 SAMPLES = 64
-"""Number of states per revolution."""
+"""States per revolution."""
 
 
 def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
@@ -57,6 +57,6 @@ def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | No
 
 
 def extent(orbit: Orbit) -> FloatArray:
-    """Return the smallest and largest distance from the axis in m."""
+    """Return the smallest and largest distance from the axis (m)."""
     radius = orbit.trajectory.radius
     return np.array([np.min(radius), np.max(radius)])

@@ -30,7 +30,7 @@ def vector(random: Generator, size: float) -> complex:
 def state_of(
     place: complex, velocity: complex, *, angle: float = 0.0, spin: float | None = None
 ) -> FloatArray:
-    """Return the state of a pin, shape (4,), or with a ``spin`` the state of a disc, shape (6,)."""
+    """Return the state of a pin, shape (4,), or with a ``spin`` that of a disc, shape (6,)."""
     if spin is None:
         return np.array([place.real, place.imag, velocity.real, velocity.imag])
     return np.array([place.real, place.imag, angle, velocity.real, velocity.imag, spin])
@@ -51,7 +51,7 @@ def any_pin(random: Generator) -> PinOnDisc:
 
 
 def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
-    """Draw a disc with shaft damping and offset, on ``points`` contact points or on a continuous ring (None)."""
+    """Draw a disc with shaft damping and offset, on ``points`` or on a continuous ring (None)."""
     pin = any_pin(random)
     radius = abs(pin.offset) * between(random, 0.5, 5.0)
     inertia = pin.mass * radius**2 * between(random, 0.3, 3.0)

@@ -14,13 +14,13 @@ NUMERICAL_DAMPING = 0.8
 
 
 class Rotors:
-    """Rotors with inertias in kg m², initial speeds in rad/s and the initial angle of the last one in rad."""
+    """Rotors with inertias (kg m²), initial speeds (rad/s) and the initial angle (rad) of the last one."""
 
     def __init__(self, inertias: Sequence[float], speeds: Sequence[float], last_angle: float = 0.0) -> None:
-        import exudyn as exu  # deferred, because the command line must start without it
+        import exudyn as exu  # deferred: the command line must start without it
         import exudyn.itemInterface
 
-        self.items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+        self.items: Any = exudyn.itemInterface  # its type hints do not fit its calls
         self.container = exu.SystemContainer()  # must live as long as its model
         self.mbs: Any = self.container.AddSystem()
         self.nodes, self.sensors = [], []
@@ -34,7 +34,7 @@ class Rotors:
             self.nodes.append(node)
 
     def marker(self, node: Any) -> Any:
-        """Return a new marker on the angle of a node."""
+        """Return a new marker on a node's angle."""
         return self.mbs.AddMarker(self.items.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
 
     def run(
@@ -47,9 +47,9 @@ class Rotors:
         tolerance: float = 1e-8,
         breaks: Sequence[float] = (),
     ) -> FloatArray:
-        """Continue the motion; return times in s and the sensor values after each step, one column each.
+        """Continue the motion; return times (s) and the sensor values after each step, one column each.
 
-        The run stops and continues at the ``breaks``, so the times contain them. All ``steps`` have equal size.
+        The run stops and continues at the ``breaks``, so the times contain them. All ``steps`` have equal size;
         DOPRI5 subdivides them for a local error of ``tolerance``.
         """
         import exudyn as exu

@@ -1,8 +1,8 @@
 """Steady motions of a disc as fixed points of an engine's flow over a fraction of a revolution.
 
-The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with the
-centre, a disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has
-turned by 2π/n in these axes. One search finds both.
+The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with it, a
+disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has turned by 2π/n
+in these axes.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ CONVERGED = 1e-9
 """Largest relative residual of a fixed point."""
 
 SAMPLES = 12
-"""Number of samples for the means of a motion."""
+"""Samples for the means of a motion."""
 
 SYMMETRY = 6
-"""Divisor of the revolution for a continuous ring, whose symmetry allows any value."""
+"""Divisor of the revolution for a continuous ring, which allows any value."""
 
 Y = 1
-"""Index of y in the state and of the angle θ in the unknowns, which replaces y."""
+"""Index of y in the state and of θ in the unknowns, which replaces y."""
 
 TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """Rate of change of a state that rotates about the axis at 1 rad/s, without the disc's angle."""
@@ -45,8 +45,8 @@ TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
 class SteadyMotion:
     """A motion that repeats after a rotation, with its period in s.
 
-    ``states``, shape (SAMPLES + 1, 6), are equidistant over one period, in axes that rotate with the centre. The
-    centre's ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
+    ``states``, shape (SAMPLES + 1, 6), are equidistant in axes that rotate with the centre. The centre's
+    ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
     """
 
     states: FloatArray
@@ -56,7 +56,7 @@ class SteadyMotion:
 
     @property
     def mean(self) -> FloatArray:
-        """Mean of x and y in m, in axes that rotate with the centre; the sum over a period is exact to rounding."""
+        """Mean of x and y (m) in axes that rotate with the centre; the sum over a period is exact to rounding."""
         return np.asarray(self.states[:-1, :2].mean(axis=0))
 
     @property
@@ -134,10 +134,10 @@ def mode_growth(
     duration: float,
     tolerance: float,
 ) -> complex:
-    """Return growth rate and frequency in 1/s of the slowest mode of small deviations from a steady motion on a ring.
+    """Return growth rate and frequency (1/s) of the slowest mode of small deviations from a steady motion on a ring.
 
-    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), from the motion; even powers of the
-    deviation cancel in their difference. The left eigenvector selects the slowest mode other than a free phase.
+    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), from the motion; even powers cancel in
+    their difference. The left eigenvector selects the slowest mode other than a free phase.
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):
@@ -145,7 +145,7 @@ def mode_growth(
     # Nothing depends on the angle, so its component of this eigenvector is zero.
     values, left = np.linalg.eig((sliding_jacobian(disc, motion.state) - frequency * TURNING).T)
     slowest = left[:, np.argmin(np.abs(values - eigenvalue))]
-    # Two samples per radian: in these axes slow modes oscillate at most at about the natural frequency.
+    # Two samples per radian: slow modes oscillate at most at about the natural frequency.
     times = np.linspace(0.0, duration, 2 * math.ceil(disc.natural_frequency * duration) + 1)
     outwards, inwards = (
         rotated(
@@ -161,7 +161,7 @@ def mode_growth(
     return complex(growth[1] - growth[0], turn[1] - turn[0]) / duration
 
 
-# --- The self-centred equilibrium of a disc against the friction force, and its end
+# --- The self-centred equilibrium and its end
 
 
 def with_load(disc: DiscOnDisc, load: float) -> DiscOnDisc:
@@ -175,7 +175,7 @@ def equilibrium_of(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
-    """Return the μN in N where the self-centred equilibrium ends: (5) for a disc.
+    """Return the μN (N) where the self-centred equilibrium ends: (5) for a disc.
 
     Above it friction can supply both the force C·|X0|, which holds the disc on the axis, and the moment b|ω − Ω| of
     the shaft. The limit surface is convex and contains both if C·|X0| + b|ω − Ω|/R <= μN.
@@ -185,5 +185,5 @@ def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> floa
     def spare(load: float) -> float:
         return held_pin(with_load(disc, load), contact).friction_force - springs
 
-    least = max(springs, moment * (1.0 + ROUNDING))  # load required by force or moment alone
+    least = max(springs, moment * (1.0 + ROUNDING))  # required by force or moment alone
     return float(brentq(spare, least, springs + moment, xtol=ROUNDING * springs, rtol=ROUNDING))

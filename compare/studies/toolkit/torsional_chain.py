@@ -1,8 +1,8 @@
 """Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
 
 Torques and capacities are piecewise harmonic, so the motion between events has a closed form. An event is the end of
-a clutch's slip, or a torque that exceeds its holding capacity. After an event, a search over all combinations of
-modes finds the consistent one. Roots are exact to rounding.
+a clutch's slip, or a torque that exceeds its holding capacity. After it, a search over all combinations of modes
+finds the consistent one.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Harmonic:
     phase: float = math.pi / 2.0
 
     def __call__(self, t: FloatArray) -> FloatArray:
-        """Return the torque at times in s."""
+        """Return the torque (N m)."""
         return np.asarray(self.amplitude * np.sin(self.rate * t + self.phase))
 
     def integrals(self, begin: float, t: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -52,15 +52,15 @@ class Harmonic:
 
 
 Pieces = Sequence[tuple[float, Harmonic]]
-"""Harmonics with their start times in s; the first is the start of the motion."""
+"""Harmonics with their start times (s); the first is the start of the motion."""
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Rotors in a row with inertias in kg m² and external torques, and the clutches between them.
+    """Rotors in a row with inertias (kg m²) and external torques, and the clutches between them.
 
-    A slipping clutch transmits its capacity, and a stuck one holds up to ``static_ratio`` times as much. It is open
-    if the amplitude is 0.
+    A slipping clutch transmits its capacity, and a stuck one holds up to ``static_ratio`` times as much. An amplitude
+    of 0 opens it.
     """
 
     inertias: Sequence[float]
@@ -70,16 +70,15 @@ class Chain:
 
     @cached_property
     def breaks(self) -> list[float]:
-        """Start times of all pieces in s."""
+        """Start times (s) of all pieces."""
         return sorted({begin for pieces in (*self.torques, *self.capacities) for begin, _ in pieces})
 
     @cached_property
     def _differences(self) -> FloatArray:
-        """Matrix of shape (n - 1, n) that yields slips from speeds."""
         return np.diff(np.eye(len(self.inertias)), axis=0)
 
     def in_force(self, t: float) -> list[Harmonic]:
-        """Return the harmonics of torques and capacities in effect from ``t`` in s."""
+        """Return the harmonics of torques and capacities in effect from ``t`` (s)."""
         return [[f for begin, f in pieces if begin <= t][-1] for pieces in (*self.torques, *self.capacities)]
 
     def transmitted(self, modes: Sequence[int]) -> FloatArray:
@@ -101,7 +100,7 @@ class Chain:
         return np.asarray(torques / np.asarray(self.inertias)[:, np.newaxis])
 
     def motion(self, speeds: Sequence[float], until: float) -> Motion:
-        """Return the motion from ``breaks[0]`` to ``until`` in s, from angles of 0 and ``speeds`` in rad/s."""
+        """Return the motion from ``breaks[0]`` to ``until`` (s), from angles of 0 and ``speeds`` (rad/s)."""
         begin, state = self.breaks[0], (np.zeros(len(speeds)), np.asarray(speeds, dtype=float))
         signs, phases = np.sign(self._differences @ state[1]), []
         while begin < until:
@@ -141,7 +140,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Phase:
-    """Motion of a chain from ``begin`` (s) without a change of modes, from angles in rad and speeds in rad/s."""
+    """Motion of a chain from ``begin`` (s) without a change of modes, from angles (rad) and speeds (rad/s)."""
 
     chain: Chain
     begin: float
@@ -154,19 +153,19 @@ class Phase:
         return self.chain.in_force(self.begin)
 
     def states(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return angles and speeds at times in s, each of shape (len(t), n)."""
+        """Return angles and speeds, each of shape (len(t), n)."""
         once, twice = np.swapaxes([f.integrals(self.begin, t) for f in self._harmonics], 0, 1)
         matrix = self.chain.accelerations(self.modes)
         gone = (t - self.begin)[:, np.newaxis]
         return self.angles + gone * self.speeds + (matrix @ twice).T, self.speeds + (matrix @ once).T
 
     def transmitted(self, t: FloatArray) -> FloatArray:
-        """Return the clutch torques on the rotors behind them in N m, shape (len(t), n - 1)."""
+        """Return the clutch torques (N m) on the rotors behind them, shape (len(t), n - 1)."""
         values = np.array([f(t) for f in self._harmonics])
         return np.asarray((self.chain.transmitted(self.modes) @ values).T)
 
     def first_event(self, end: float) -> tuple[float, NDArray[np.bool_]]:
-        """Return the time in s of the first event, at most ``end``, and a mask of the clutches that change mode."""
+        """Return the time (s) of the first event, at most ``end``, and a mask of the clutches that change mode."""
         fastest = max(f.rate for f in self._harmonics)
         number = max(LEAST_SAMPLES, math.ceil(PER_PERIOD * fastest * (end - self.begin) / (2.0 * math.pi)))
         times = np.linspace(self.begin, end, number + 1)
@@ -198,7 +197,7 @@ class Phase:
 
 @dataclass(frozen=True)
 class Motion:
-    """Exact motion of a chain up to ``until`` in s."""
+    """Exact motion of a chain up to ``until`` (s)."""
 
     chain: Chain
     phases: tuple[Phase, ...]
@@ -210,20 +209,20 @@ class Motion:
         return [(number == k, phase) for k, phase in enumerate(self.phases)]
 
     def states(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return angles in rad and speeds in rad/s at times in s, each of shape (len(t), n)."""
+        """Return angles (rad) and speeds (rad/s), each of shape (len(t), n)."""
         angles, speeds = np.empty((2, len(t), len(self.chain.inertias)))
         for at, phase in self._each(t):
             angles[at], speeds[at] = phase.states(t[at])
         return angles, speeds
 
     def modes(self, t: FloatArray) -> NDArray[np.int_]:
-        """Return the modes at times in s, shape (len(t), n - 1)."""
+        """Return the modes, shape (len(t), n - 1)."""
         found = np.empty((len(t), len(self.chain.inertias) - 1), dtype=int)
         for at, phase in self._each(t):
             found[at] = phase.modes
         return found
 
     def switches(self, clutch: int) -> list[tuple[float, int]]:
-        """Return the times in s of a clutch's mode changes, each with the new mode."""
+        """Return the times (s) of a clutch's mode changes, each with the new mode."""
         modes = [(phase.begin, phase.modes[clutch]) for phase in self.phases]
         return [later for earlier, later in itertools.pairwise(modes) if later[1] != earlier[1]]

@@ -1,4 +1,4 @@
-"""Eqs. (20) to (23): friction on a disc in each engine, and differences between the contact laws."""
+"""Contact laws of the disc, eqs. (20) to (23)."""
 
 from compare.studies.disc.contact_laws.pictures import draw
 from compare.studies.disc.contact_laws.study import STUDY

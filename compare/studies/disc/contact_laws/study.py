@@ -1,4 +1,4 @@
-"""Friction on a disc in an engine, and contact laws against the integral, each other and the textbook."""
+"""Friction in an engine, and contact laws against the integral, each other and the textbook."""
 
 from __future__ import annotations
 
@@ -23,38 +23,38 @@ SOURCE = "Fig. 11; the motion of the disc is our choice"
 SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
-"""Ratios U/W, not too close to 1, where friction is not differentiable."""
+"""U/W, not too close to 1, where friction is not differentiable."""
 
 SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
 
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Position of the disc's centre as x + iy in m, direction of its slip and angle of the disc in rad."""
+"""Position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
 
-STEP = 2e-3  # time step in s
+STEP = 2e-3  # in s
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
     (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
 )
-"""Finite-difference weights of fourth and third order for the derivative at the first of five times."""
+"""Weights of fourth and third order for the derivative at the first of five times."""
 
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
-"""Ratios U/W for the comparison of the closed form with the integral."""
+"""U/W of the comparison."""
 
 RESTING = (INNER, 0.75 * R, R)
-"""Radii in m of a point at rest on the annulus."""
+"""Radii (m) of a point at rest on the annulus."""
 
 RINGS = (8, 9, 10, 11, 12)
-"""Rings on either side of that radius, few enough for errors well above rounding."""
+"""On either side of that radius, few enough for errors well above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli over their mean radius
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # of thin annuli over their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)
 STUDY.provides(curves=theory.curves)
 
 
-# --- Friction on a disc in an engine, from its acceleration
+# --- Friction on a disc, from its acceleration in an engine
 
 NOTE = (
     "F_x, F_y over μN and M over μN·R. Measured: the initial acceleration, from the velocities in the first "
@@ -95,10 +95,10 @@ def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
-    """Compare F_x, F_y (over μN) and M (over μN·R) on ``disc`` with ``predicted``, shape (2n, 3).
+    """Compare F_x, F_y (over μN) and M (over μN·R) with ``predicted``, shape (2n, 3).
 
-    According to (19), friction is the initial acceleration times inertia plus the resistance of springs and dampers.
-    ``name`` is the key of the law in the figures' data.
+    According to (19), friction is the initial acceleration times inertia plus the forces of springs and dampers.
+    ``name`` is the law's key in the figures' data.
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 
@@ -114,8 +114,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # A single error may be small by chance, so the largest noise of all motions and the largest truncation error in a
-    # motion count.
+    # Single errors may be small by chance, so the largest noise of all motions and the largest truncation error of
+    # each count.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(

@@ -19,31 +19,31 @@ from reference_model.systems import FloatArray
 R = FIG11.contact_radius
 
 NUMBERS = (6, 12, 24)  # numbers of points
-ZOOMS = 30  # halvings of the search range for the points' largest error
-INNER = 2.0 / 3.0 * R  # inner radius in m of the annulus; the outer one is R
+ZOOMS = 30  # halvings of the search range for the largest error
+INNER = 2.0 / 3.0 * R  # inner radius of the annulus (m)
 
 # --- Friction on a contact ring by (20) to (22), independent of the reference's closed forms. ``slip`` is the slip of
 # the disc's centre, u = (ẋ + ωy) + i(ẏ − ωx), and ``rim`` is R·(ω − φ̇), both in m/s. Friction is the array (F_x,
-# F_y, M) in units of μN and μN·R.
+# F_y, M) over μN and μN·R.
 
-EVEN = 16  # equally spaced angles, exact for the mean of trigonometric polynomials up to order 15
+EVEN = 16  # angles, exact for the mean of trigonometric polynomials up to order 15
 
 
 def velocities(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
-    """Return ν_rx, ν_ry and ν̃_r of (21) in m/s at the angles φ + χ in rad, shape (3, ...)."""
+    """Return ν_rx, ν_ry and ν̃_r of (21) at the angles φ + χ (rad), shape (3, ...)."""
     s, c = np.sin(angle), np.cos(angle)
     x, y = slip.real + rim * s, slip.imag - rim * c
     return np.stack((x, y, x * s - y * c))
 
 
 def directions(slip: complex, rim: float, angle: ArrayLike) -> FloatArray:
-    """Return −ν_rx/|ν_r|, −ν_ry/|ν_r| and ν̃_r/|ν_r| of (20) at the angles φ + χ in rad, shape (3, ...)."""
+    """Return −ν_rx/|ν_r|, −ν_ry/|ν_r| and ν̃_r/|ν_r| of (20) at the angles φ + χ (rad), shape (3, ...)."""
     x, y, along = velocities(slip, rim, angle)
     speed = np.hypot(x, y)
     return np.stack((-x, -y, along)) / np.where(speed > 0.0, speed, 1.0)
 
 
-@functools.cache  # several claims use the same integrals
+@functools.cache  # shared by several claims
 def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
     """Return the integral (20) by adaptive quadrature, and its error."""
     from scipy.integrate import quad_vec
@@ -57,7 +57,7 @@ def ring_by_quadrature(slip: complex, rim: float) -> tuple[FloatArray, float]:
 
 
 def sum_of_points(slip: complex, rim: float, angle: float, number: int) -> FloatArray:
-    """Return the mean over points at φ + 2πi/n instead of the integral (20), with φ = ``angle`` in rad."""
+    """Return the mean over points at φ + 2πi/n instead of the integral (20), with φ = ``angle`` (rad)."""
     return np.asarray(
         np.mean(directions(slip, rim, angle + 2.0 * math.pi * np.arange(number) / number), axis=1)
     )
@@ -75,11 +75,11 @@ def average_of_expansion(slip: complex, rim: float) -> FloatArray:
 
 RING, EXPANSION = Ring(R), ThreeTermRing(R)
 
-QUADRATURE = 1e-11  # error of an integral, ten times the tolerance of the quadrature
+QUADRATURE = 1e-11  # ten times the tolerance of the quadrature
 
 
 def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> FloatArray:
-    """Return (F_x, F_y, M) of ``law`` for ``slip`` and ``rim`` in m/s."""
+    """Return (F_x, F_y, M) of ``law``."""
     force, moment = law.force_and_moment(slip, rim / R, angle)
     return np.array((force.real, force.imag, moment / R))
 
@@ -88,7 +88,7 @@ def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> Flo
 def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
     """Return the largest errors of (23) by integrals (20), with and without (22), and by closed forms.
 
-    Both arrays contain U/W, size and the error of U/W, for force and moment, shape (2, 3).
+    Each array contains U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
 
     def by_integrals(ratio: float) -> FloatArray:
@@ -109,8 +109,7 @@ def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
 def top(error: Callable[[float], float], noise: float) -> tuple[float, float, float]:
     """Return the U/W of the largest ``error``, its size, and the error of U/W.
 
-    On a parabola of curvature c, points within √(2·noise/c) of the maximum cannot be distinguished from it. The
-    search has a tolerance of 1e-6.
+    On a parabola of curvature c, points within √(2·noise/c) of the maximum cannot be distinguished from it.
     """
     from scipy.optimize import minimize_scalar
 
@@ -128,14 +127,14 @@ def top(error: Callable[[float], float], noise: float) -> tuple[float, float, fl
 
 @functools.cache
 def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
-    """Return ``worst`` for all ``numbers`` of points, for force and moment, shape (n, 2, 4)."""
+    """Return ``worst`` for all ``numbers``, for force and moment, shape (n, 2, 4)."""
     return np.array([[worst(number, part) for part in (slice(2), slice(2, 3))] for number in numbers])
 
 
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
     """Return the U/W of the largest error of ``number`` points, its size, and the errors of size and U/W.
 
-    ``part`` selects force or moment. The largest error is next to a jump, so the search does not use slopes.
+    ``part`` selects force or moment. The search uses no slopes, because the maximum is next to a jump.
     """
     law = PointsOnRing(R, number)
     centre, spans, history = np.zeros(2), np.array((math.log(20.0), math.pi / number)), []

@@ -1,4 +1,4 @@
-"""Steady states by eqs. (24) to (26) and by (23), and an engine's motions near them."""
+"""Steady states by (23) to (26), and an engine's motions near them."""
 
 from __future__ import annotations
 
@@ -45,32 +45,32 @@ LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
 """μN in N, which the paper omits; the equilibrium ends slightly above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
-"""μN in N, and the time span in s of the measured decay, late enough for small deviations."""
+"""μN in N, and the time span (s) of the measured decay, late enough for small deviations."""
 
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
-"""μN in N close to the end of the equilibrium, where its distance from the axis falls linearly."""
+"""μN in N near the end of the equilibrium, where its distance from the axis falls linearly."""
 
 STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN over the largest one with an equilibrium
 
 STICKING_TIME = 80.0
-"""Time in s within which friction can accelerate a disc from 95 % to the speed of the master disc."""
+"""Time (s) within which friction can accelerate a disc from 95 % to the speed of the master disc."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
-"""X0 in m, which the paper omits; Figs. 4 to 6 have 0.1 m."""
+"""X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
 
-TOLERANCE = WORKING / 10  # tolerance of motions to rest, which the claims resolve to 1e-9
+TOLERANCE = WORKING / 10  # of motions to rest, which the claims resolve to 1e-9
 BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
-RESOLUTION = 1e-9  # resolution of positions in m and spins in rad/s on the continuous ring
+RESOLUTION = 1e-9  # of positions (m) and spins (rad/s) on the continuous ring
 
 
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:
-    """Return x and y in m and spin in rad/s of the self-centred equilibrium."""
+    """Return x, y (m) and spin (rad/s) of the self-centred equilibrium."""
     equilibrium = equilibrium_of(disc, contact)
     return np.array([equilibrium.x, equilibrium.y, equilibrium.spin])
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs with all ``OFFSETS`` and friction forces up to the largest one by (23)."""
+    """Return discs with all ``OFFSETS``, and μN up to the largest by (23)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))
@@ -80,7 +80,7 @@ def grid() -> list[DiscOnDisc]:
 
 
 def by_26(disc: DiscOnDisc) -> FloatArray:
-    """Return x and y in m and spin in rad/s by the corrected (26)."""
+    """Return x, y (m) and spin (rad/s) by the corrected (26)."""
     (place,) = positions_by_26(disc)
     return np.array(place)
 
@@ -94,7 +94,7 @@ def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
 
 
 def last_load_by_26(disc: DiscOnDisc) -> float:
-    """Return the friction force in N where A of (26) becomes zero."""
+    """Return the friction force (N) where A of (26) becomes zero."""
     difference = reduced_parameters(disc).speed_difference
 
     def miss(unknowns: FloatArray) -> FloatArray:
@@ -114,16 +114,15 @@ STUDY = Study.beside(
 
 @functools.lru_cache(maxsize=4)
 def means_of(engine: Engine, disc: DiscOnDisc, loads: Sequence[float]) -> Measurement:
-    """Return the means of x and y in m and of the spin in rad/s at all μN, shape (n, 3), with one common error."""
+    """Return the means of x, y (m) and spin (rad/s) at all μN, shape (n, 3), with a common error."""
     found = refined(
         lambda tolerance: [_means(engine, with_load(disc, load), tolerance) for load in loads], TOLERANCE
     )
-    # A single error may be small by chance, and two runs may agree to within the tolerance.
+    # Two runs may agree to within the tolerance.
     return Measurement(found.value, np.asarray(found.largest + TOLERANCE * disc.offset))
 
 
 def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
-    """Start from (26), which deviates by a few per cent."""
     place, *_ = positions_by_26(disc)
     motion = steady_motion(engine, disc, [place.x, place.y, 0.0, 0.0, 0.0, place.spin], tolerance)
     return np.full(3, np.nan) if motion is None else np.array([*motion.mean, motion.spin])
@@ -186,7 +185,7 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = DECAYS) -> Measured:
-    """``spans`` contains μN in N and times in s."""
+    """``spans`` contains μN (N) and times (s)."""
     measured, errors = [], []
     for load, span in spans:
         (earlier, later), error = refined(
@@ -207,10 +206,10 @@ def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = 
 
 
 def _decay(engine: Engine, disc: DiscOnDisc, span: tuple[float, float], tolerance: float) -> FloatArray:
-    """Return real and imaginary growth rate in 1/s of the least damped mode in both halves of ``span``, (2, 2)."""
+    """Return growth rate and frequency (1/s) of the slowest mode in both halves of ``span``, shape (2, 2)."""
     rest = equilibrium_of(disc).state
     start = np.array([disc.offset, 0.0, 0.0, 0.0, 0.0, disc.shaft_speed])
-    # Two samples per radian; the mode's frequency is below the natural frequency.
+    # Two samples per radian; the mode is slower than the natural frequency.
     intervals = 4 * round(0.5 * disc.natural_frequency * (span[1] - span[0]))
     times = np.linspace(*span, intervals + 1)
     states = engine.simulate(disc, start, [0.0, *times], tolerance=tolerance).states[1:]
@@ -251,7 +250,7 @@ def ends(engine: Engine) -> Measured:
 
 
 def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
-    """Return μN in N at the axis, extrapolated from ``distances`` in m; NaN unless these decrease."""
+    """Return μN (N) at the axis, extrapolated from ``distances`` (m); NaN unless these decrease."""
     if not np.all(np.diff(distances) < 0.0):
         return math.nan
     return float(KroghInterpolator(distances, np.array(loads))(0.0))
@@ -267,7 +266,7 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
     swept=("friction_force",),
 )
 def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measured:
-    """``ratios`` are in units of the μN at the end of the equilibrium."""
+    """``ratios`` are over the μN at the end of the equilibrium."""
     loads = np.array(ratios) * last_load(RING)
     start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
 

@@ -1,4 +1,4 @@
-"""Claims on the growth of deviations, on sticking, on six contact points, and without an engine."""
+"""Claims on growing deviations, on stick, on six contact points, and without an engine."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from reference_model.formulas.disc import whirl_at
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Small deviations from the equilibrium and from the whirl
+# --- Small deviations from equilibrium and whirl
 
 FOLLOWED = (
     f"Half the difference of two simulations that start {theory.DISPLACED:g} of the distance from the axis to either "
@@ -94,9 +94,9 @@ def _growth(
     engine: Engine,
     motions: Sequence[tuple[DiscOnDisc, SpinningEquilibrium | SpinningWhirl, FloatArray, float]],
 ) -> Measurement:
-    """Return real and imaginary part of the growth rate in 1/s of small deviations, shape (n, 2).
+    """Return growth rate and frequency (1/s) of small deviations, shape (n, 2).
 
-    ``motions`` contains disc, steady motion, displacement from it and duration in s.
+    ``motions`` contains disc, steady motion, displacement and duration (s).
     """
 
     def rates(tolerance: float, scale: float = 1.0) -> FloatArray:
@@ -108,15 +108,15 @@ def _growth(
         )
 
     found = refined(rates, theory.ORBIT_TOLERANCE)
-    # Two flows that agree to within the tolerance may hide an error of that size.
+    # Flows that agree to within the tolerance may hide such an error.
     unseen = [[theory.ORBIT_TOLERANCE / (theory.DISPLACED * duration)] for *_, duration in motions]
     with_larger = found.plus(np.abs(rates(theory.ORBIT_TOLERANCE, 2.0) - found.value))
     return Measurement(found.value, with_larger.rows + unseen)
 
 
-# --- Discs that stick to the master disc
+# --- Sticking discs
 
-REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force on a sticking disc
+REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # in s, of the force on a sticking disc
 
 
 @STUDY.claim(

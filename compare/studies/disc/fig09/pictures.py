@@ -31,7 +31,6 @@ SIX: dict[str, dict[str, Any]] = {
     "reference": {"marker": "h", "markersize": 7.5},
     "exudyn": {"marker": "+", "markersize": 6.5},
 }
-"""Marks of results on six points."""
 
 SIX_BESIDE = 1.5
 
@@ -101,7 +100,6 @@ def _near_axis(panel: Axes, found: Data) -> None:
 
 
 def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
-    """Return the prefixes in the data, for the ring and for six points, with their marks."""
     both = (
         ("", points(engine)),
         ("six ", points(engine, f"{engine}, six points", **SIX.get(engine, {"markersize": 3.5}))),

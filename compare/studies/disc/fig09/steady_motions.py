@@ -1,4 +1,4 @@
-"""Claims on whirls without and with offset, and on the self-centred equilibrium."""
+"""Claims on whirls and on the self-centred equilibrium."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Steady motions of an engine, on the ring or on points, and orders of small gaps
+# --- Steady motions of an engine, and orders of small gaps
 
 
 Cases = tuple[tuple[float, int | None], ...]
@@ -39,10 +39,10 @@ def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> M
 
 
 def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
-    """Return the means over a steady motion on a ring or ``points``, NaN if none is found.
+    """Return the means over a steady motion, NaN if none is found.
 
-    They are radius, frequency and spin of a whirl in units of μN/(βk), k and ω, or x, y and spin of the equilibrium
-    in units of X0 and ω.
+    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin of the equilibrium over X0
+    and ω.
     """
     disc = theory.disc_of(load, which, points)
     motion = steady_motion(engine, disc, theory.exact_motion(load, which).state, tolerance)
@@ -58,8 +58,7 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    A single error may be small by chance, and two flows may agree to within the tolerance. So the tolerance times
-    ``amplified`` is added.
+    Two flows may agree to within the tolerance, so it is added, times ``amplified``.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -69,8 +68,8 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
-    The gaps are series in every second power, so the order between neighbours converges like the square of the
-    variable. ``error``, shape (3, 1), is that of the gaps.
+    The order between neighbours converges like the square of the variable. ``error``, shape (3, 1), is that of the
+    gaps.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
@@ -162,7 +161,6 @@ def limit_of_large_loads(engine: Engine) -> Measured:
 def _orders_of_loads(
     engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]
 ) -> Measured:
-    """Compare the orders of convergence of radius and spin to ``others`` in the friction force with ``orders``."""
     found = steady_motions(engine, theory.CIRCLES)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
     noise = found.error[theory.ORDERS][:, :1]
@@ -178,7 +176,7 @@ def _orders(
     components: Sequence[str],
     system: DiscOnDisc,
 ) -> Measured:
-    """Compare ``orders`` with those of ``gaps`` at a variable that is halved, or doubled if they are negative."""
+    """Compare the orders of ``gaps`` at a variable that is halved, or doubled if ``orders`` are negative."""
     observed, numerical, model = extrapolated(gaps, noise)
     return Measured(
         predicted=orders,
@@ -209,7 +207,7 @@ EXTRAPOLATED = (
     swept=("friction_force",),
 )
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
-    """``whirls`` contains μN in N and the number of each whirl."""
+    """``whirls`` contains μN (N) and the number of each whirl."""
     exact = [theory.orbit_of_reference(*one) for one in whirls]
     predicted = np.array([sizes_of(orbit) for orbit in exact])
     found = refined(
@@ -240,7 +238,6 @@ def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) 
 def orbit_of(
     engine: Engine, load: float, which: int, tolerance: float, offset: float = theory.RING.offset
 ) -> Orbit:
-    """Return a whirl found by shooting with the engine, from the reference's."""
     guess = theory.orbit_of_reference(load, which, offset)
     return whirl_orbit(
         guess.system,
@@ -253,7 +250,7 @@ def orbit_of(
 
 
 def sizes_of(orbit: Orbit) -> FloatArray:
-    """Return period, smallest and largest radius, smallest, largest and mean spin, in s, m and rad/s."""
+    """Return period (s), smallest and largest radius (m), smallest, largest and mean spin (rad/s)."""
     spin = orbit.trajectory.states[:-1, -1]
     return np.array([orbit.period, *extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 

@@ -1,4 +1,4 @@
-"""Formulas for Figs. 9 and 10: branches of all motions over the friction force, and their ends."""
+"""Branches of all motions over the friction force, and their ends."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 RING = FIG9
 CENTRED = replace(FIG9, offset=0.0)
-"""Disc without offset, whose whirl is a circle."""
 PAPER_LAW = ThreeTermRing(FIG9.contact_radius)  # contact law (23)
 
 SOURCE = (
@@ -40,7 +39,7 @@ SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
 """Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
 
-ORDERS = slice(2, 5)  # circles far from the fold; the friction force doubles from one to the next
+ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from one to the next
 
 REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
@@ -48,13 +47,13 @@ ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
 
 HALVED_OFFSETS = (0.2, 0.1, 0.05)
 OFFSET_LOAD = 0.02
-"""X0 in m and μN in N of the whirls that show the effect of X0."""
+"""X0 in m and μN in N of whirls that show the effect of X0."""
 
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""μN in N and initial radii over (9) of sticking discs."""
-LATEST = 1.1  # duration of the simulation of a disc outside, over the release time (7)
+"""Sticking discs: μN in N, and initial radii over (9)."""
+LATEST = 1.1  # duration for a disc outside, over the release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
@@ -63,10 +62,10 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4  # initial deviation over the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
-"""Tolerance of an engine's periodic motions; the reference's have a hundredth of it."""
+"""For periodic motions of engines; the reference's have a hundredth of it."""
 
 TOLERANCE = 3e-8
-"""Tolerance of sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
+"""For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
 """End of the axis in N, which the paper omits: twice C·X0, about which sticking begins."""
@@ -93,7 +92,7 @@ DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
 
 def circle_of(load: float, which: int) -> SpinningWhirl:
-    """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` in N."""
+    """Return whirl number ``which`` (largest first) of the ring without offset at μN = ``load`` (N)."""
     return whirls(with_load(CENTRED, load))[which]
 
 
@@ -102,12 +101,11 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
-    """Return the whirl without offset of that number, or the equilibrium with the offset if it is None."""
+    """Return the whirl without offset of that number, or for None the equilibrium with the offset."""
     return rest_of(load) if which is None else circle_of(load, which)
 
 
 def disc_of(load: float, which: int | None, points: int | None) -> DiscOnDisc:
-    """Return the disc of this motion on ``points``, or on the ring."""
     return with_load(replace(RING if which is None else CENTRED, contact_points=points), load)
 
 
@@ -121,7 +119,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 
 @functools.cache
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
-    """Return the outer whirl with an offset, or the inner, unstable one if ``which`` is 1."""
+    """Return the outer whirl with an offset, or if ``which`` is 1 the inner, unstable one."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
@@ -132,7 +130,7 @@ def radius_of_pin(load: float) -> float:
 
 
 def spin_of_large_whirl(disc: DiscOnDisc) -> float:
-    """Return the limit in rad/s of the whirl's spin for large μN.
+    """Return the limit (rad/s) of the whirl's spin for large μN.
 
     Then RS is much smaller than U = (ω − k)·μN/(βk), so F = 1 and M = R²S/(2U). The torsional balance b(ω − Ω − S) =
     μN·M gives S = b(ω − Ω)/(b + R²βk/(2(ω − k))).
@@ -144,9 +142,9 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 
 
 def first_order_shift(disc: DiscOnDisc) -> complex:
-    """Return the time mean of x + iy in m of a disc's whirl, to first order in X0.
+    """Return the time mean of x + iy (m) of a disc's whirl, to first order in X0.
 
-    In axes that turn with the circle the acceleration k²X0 due to the offset turns backwards. The deviation from the
+    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation from the
     circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
     + i·a_y)/2, is fixed in space.
     """
@@ -158,7 +156,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls by falling size, from the μN of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls by falling size, from that of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
@@ -174,7 +172,7 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
-    """Return the largest μN in N of a stable self-centred equilibrium; its end if it is always stable."""
+    """Return the largest μN (N) of a stable self-centred equilibrium; its end if it is always stable."""
     end = last_load(disc)
 
     def growth(logarithm: float) -> float:
@@ -188,7 +186,7 @@ def last_stable_load(disc: DiscOnDisc) -> float:
 
 
 def smallest_load(disc: DiscOnDisc) -> float:
-    """Return μN in N at the whirl's fold, the vertex of a parabola through the orbits next to it."""
+    """Return μN (N) at the whirl's fold, the vertex of a parabola through the orbits next to it."""
     sizes: list[float] = []
     loads: list[float] = []
     start = max(FOLD_START * disc.stiffness * disc.offset, LEAST_FOLD_START)
@@ -202,7 +200,7 @@ def smallest_load(disc: DiscOnDisc) -> float:
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
-    """Return the friction force in N where the equilibrium loses its stability, to first order in β.
+    """Return the friction force (N) where the equilibrium loses its stability, to first order in β.
 
     Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Friction resists a small additional slip
     u = ż − iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s +
@@ -236,9 +234,6 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
     return float(brentq(growth, 0.1, 1.5, xtol=1e-6))
 
 
-# --- Curves
-
-
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
     """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
     return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
@@ -255,7 +250,7 @@ def circles() -> Data:
 
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
-    """Return whirls with the offset by falling size, from the largest μN through the fold to the equilibrium."""
+    """Return whirls by falling size, from the largest μN through the fold to the equilibrium."""
     outer = [
         whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
     ]
@@ -265,7 +260,7 @@ def orbits() -> tuple[Orbit, ...]:
 def smooth(found: Sequence[Orbit]) -> Data:
     """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
-    Positions are interpolated, because the smallest radius is not smooth where the orbit passes the axis. Beyond the
+    Positions are interpolated, because the smallest radius has a kink where the orbit passes the axis. Beyond the
     last orbit its shape shrinks onto the equilibrium; the square of its size is linear in the load.
     """
     limit = spin_of_large_whirl(RING)

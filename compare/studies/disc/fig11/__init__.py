@@ -1,4 +1,4 @@
-"""Fig. 11: the modulated cycle of the whirl, its origin, and the range of offsets where it exists."""
+"""Fig. 11: the modulated cycle of the whirl."""
 
 # ruff: noqa: I001 - the order of the report
 from compare.studies.disc.fig11 import whirl, offsets

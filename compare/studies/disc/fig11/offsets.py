@@ -1,4 +1,4 @@
-"""Claims on the motion of Fig. 11 with an offset, and on six points."""
+"""Claims with an offset, and on six points."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
 
-ROUND = np.linspace(0.0, 300.0, 1201)  # times in s, over more than one period of the modulation
-OF_RESTS = 200 * WORKING  # tolerance of the motions on six points, which come to rest singly
+ROUND = np.linspace(0.0, 300.0, 1201)  # in s, longer than a period of the modulation
+OF_RESTS = 200 * WORKING  # for motions on six points, which come to rest singly
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last is that of the other figures."""
 
-ENDS_UNTIL = 720.0  # duration in s of the long simulations
+ENDS_UNTIL = 720.0  # duration in s
 LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
-ENDS_TOLERANCE = 1e-4  # tolerance of the long simulations
+ENDS_TOLERANCE = 1e-4  # of the long simulations
 
 SWING = 0.005
-"""Smallest swing in rad/s of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
+"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
 
-ORBITS_EXTENT = 1e-4  # smallest swing in m of a whirl's radius
+ORBITS_EXTENT = 1e-4  # smallest swing (m) of a whirl's radius
 
 MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
-"""State close to the modulated motion at ``theory.BOTH_STABLE``, found by raising X0 in small steps."""
+"""Near the modulated motion at ``theory.BOTH_STABLE``, found by raising X0 in small steps."""
 
 KINDS = ("rest", "whirl", "modulated")
 
@@ -64,7 +64,7 @@ def critical(engine: Engine) -> Measured:
 
 @functools.lru_cache(maxsize=4)
 def critical_of(engine: Engine) -> tuple[float, Measurement]:
-    """Return the critical X0 in m by exact multipliers and by the engine's, NaN if there is none."""
+    """Return the critical X0 (m) by exact multipliers and by the engine's, NaN if there is none."""
     found = functools.cache(lambda tolerance: theory.critical_offset(engine, tolerance))
     try:
         measured, error = refined(lambda tolerance: found(tolerance)[0])
@@ -116,7 +116,7 @@ def ends(engine: Engine, offsets: Sequence[float] = OFFSETS) -> Measured:
 def end_of(
     engine: Engine, offset: float, start: tuple[float, ...] = START, tolerance: float = ENDS_TOLERANCE
 ) -> tuple[list[float], str]:
-    """Return smallest and largest final radius in m and spin in rad/s, and the kind, one of ``KINDS``."""
+    """Return smallest and largest final radius (m) and spin (rad/s), and the kind, one of ``KINDS``."""
     step = 2.0 * math.pi / RING.natural_frequency / theory.SAMPLES_A_TURN
     run = engine.simulate(
         theory.disc_at(offset), start, np.arange(0.0, ENDS_UNTIL, step), tolerance=tolerance
@@ -130,7 +130,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, where single points come to rest
+# --- The modulated motion on six points, which come to rest singly
 
 NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 
@@ -186,7 +186,7 @@ def extremes_on_six_points(engine: Engine) -> Measured:
 
 
 def rests_of_points(trajectory: Trajectory) -> FloatArray:
-    """Return start and end in s of each rest of a single point, in order of time, shape (2·rests,)."""
+    """Return start and end (s) of each rest of a single point, in order of time, shape (2·rests,)."""
     return np.ravel([(phase.start, phase.end) for phase in trajectory.phases if phase.kind == "pivot"])
 
 
@@ -200,7 +200,7 @@ def _reference() -> Trajectory:
     return simulate(SIX, START, ROUND, tolerance=1e-11)
 
 
-# --- Without an engine: stability of the whirl under each contact law, and the motion's limit cycle
+# --- Without an engine
 
 
 @STUDY.claim(

@@ -32,7 +32,7 @@ from reference_model.systems import FloatArray
 BRANCH = np.array(
     [*np.linspace(0.0, 0.015, 11), 0.016, 0.0166, 0.0175, 0.0185, 0.0192, 0.0196, 0.0198, 0.0199, 0.01993]
 )
-"""X0 in m of the whirls, up to the fold at 0.019930 m; the equilibrium is stable there."""
+"""X0 in m of the whirls, up to the fold at 0.019930 m, where the equilibrium is stable."""
 
 
 K = RING.natural_frequency
@@ -43,13 +43,13 @@ ENLARGED = 20.0  # factor on x in the paper's figure
 
 SIDE_BANDS = 5
 
-SETTLED = 230.0  # start time in s of sections and spectra
+SETTLED = 230.0  # start of sections and spectra in s
 
 X0_AXIS = 0.025
 
 
 def curves(whirling: ArrayLike = BRANCH) -> Data:
-    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` in m."""
+    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` (m)."""
     found = theory.whirls_by_law()
     return {
         "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in found]),
@@ -92,7 +92,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def histories(data: ByEngine, words: str) -> dict[str, FloatArray]:
-    """Return the states by engine (or theory) under the key ``words``."""
     return {name: data[name][words] for name in (*engines_in(data), "theory") if words in data.get(name, {})}
 
 
@@ -221,7 +220,7 @@ def draw_spectrum(panel: Axes, data: ByEngine) -> None:
 
 
 def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return angular frequencies in rad/s near k and amplitudes of x + iy in m, with a Hann window."""
+    """Return angular frequencies (rad/s) near k and amplitudes of x + iy (m), with a Hann window."""
     window = np.hanning(len(states))
     padded = 8 * len(states)
     amplitude = np.abs(np.fft.fft(window * (states[:, 0] + 1j * states[:, 1]), padded)) / np.sum(window)
@@ -232,9 +231,9 @@ def spectrum(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
-    """Return the amplitudes in m of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
+    """Return the amplitudes (m) of x + iy at the carrier and its side bands, shape (2·SIDE_BANDS + 1,).
 
-    They are Fourier coefficients of the cycle, which is periodic in axes that turn with the carrier.
+    The cycle is periodic in axes that turn with the carrier.
     """
     times = TIMES[-1] - period + period * np.arange(4096) / 4096.0
     z = CubicSpline(TIMES, states[:, 0] + 1j * states[:, 1])(times) * np.exp(-1j * carrier * times)
@@ -243,7 +242,7 @@ def harmonics(states: FloatArray, period: float, carrier: float) -> FloatArray:
 
 
 def section(states: FloatArray, after: float = SETTLED) -> tuple[FloatArray, FloatArray]:
-    """Return radius in m and spin in rad/s at each crossing of the positive x axis later than ``after`` in s."""
+    """Return radius (m) and spin (rad/s) at each crossing of the positive x axis later than ``after`` (s)."""
     x, y, spin = (CubicSpline(TIMES, states[:, i]) for i in (0, 1, 5))
     crossings = y.roots(extrapolate=False)
     crossings = crossings[(x(crossings) > 0.0) & (crossings > after)]

@@ -1,4 +1,4 @@
-"""Theory of Fig. 11: the whirl and its modes, the modulated cycle, and the branches over the offset."""
+"""The whirl and its modes, the modulated cycle, and the branches over the offset."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ CENTRED = f"{SOURCE}: 0 here"
 
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
-UNTIL = 700.0  # duration in s, three periods of the modulation
+UNTIL = 700.0  # in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
@@ -38,7 +38,7 @@ TRIED = (0.0072, 0.00725, 0.0073)  # X0 in m between which the critical X0 is in
 
 SAMPLES_A_TURN = 16
 
-BOTH_STABLE = 0.0073  # X0 in m slightly above the critical one
+BOTH_STABLE = 0.0073  # X0 in m, slightly above the critical one
 
 STUDY = Study.beside(
     __file__,
@@ -57,15 +57,15 @@ STUDY = Study.beside(
 class SteadyWhirl:
     """A whirl that is periodic up to a rotation, and its least damped pair of modes.
 
-    On the continuous ring the whirl is a circle. On n points it also has a ripple, which repeats each time the disc
-    has turned by 2π/n relative to the line from the axis to its centre.
+    On n points it has a ripple, which repeats each time the disc has turned by 2π/n relative to the line from the
+    axis to its centre.
 
     - ``state``: a state on the whirl, shape (6,).
     - ``period``: in s.
-    - ``turn``, ``advance``: rotation of the whirl in a period in rad, and the disc's additional rotation.
-    - ``eigenvalue``: growth rate and frequency (> 0) in 1/s of the pair.
-    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). In axes that turn with the
-      whirl, the share projection·d of a deviation d grows with the eigenvalue.
+    - ``turn``, ``advance``: rotation of the whirl in a period (rad), and the disc's additional rotation.
+    - ``eigenvalue``: growth rate and frequency > 0 (1/s) of the pair.
+    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). The share projection·d of a
+      deviation d grows with the eigenvalue, in axes that turn with the whirl.
     """
 
     state: FloatArray
@@ -78,7 +78,7 @@ class SteadyWhirl:
 
     @property
     def radius(self) -> float:
-        """Initial distance of the centre from the axis, in m."""
+        """Initial distance of the centre from the axis (m)."""
         return math.hypot(*self.state[:2])
 
     def displaced(self, amplitude: float) -> FloatArray:
@@ -88,10 +88,7 @@ class SteadyWhirl:
 
 @functools.cache
 def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
-    """Return the whirl of ``disc`` without offset under its own contact law or under ``contact``.
-
-    On points it is the whirl closest to the circle of the continuous ring.
-    """
+    """Return the whirl without offset; on points, it is the whirl closest to the circle of the ring."""
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
     if disc.contact_points is not None:
@@ -99,7 +96,7 @@ def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> S
     values, right = np.linalg.eig(turning_frame_jacobian(ring, circle.state, contact))
     mode, projection = _growing(values, right)
     period = 2.0 * math.pi / circle.frequency
-    # The equations do not depend on the angle, so its components are 0.
+    # The equations do not depend on the angle.
     return SteadyWhirl(
         circle.state,
         period,
@@ -140,7 +137,6 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
 
 
 def _pair(values: ComplexArray) -> complex:
-    """Return the eigenvalue of the least damped pair with positive imaginary part."""
     return complex(max((value for value in values if value.imag > 0.0), key=lambda value: value.real))
 
 
@@ -158,7 +154,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 def modulations(states: FloatArray) -> FloatArray:
     """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    ``states`` are those at ``TIMES``. A modulation is the interval between successive maxima of the radius.
+    A modulation is the interval between successive maxima of the radius; ``states`` are those at ``TIMES``.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -185,7 +181,7 @@ def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @functools.cache
 def predicted_modulation() -> tuple[FloatArray, FloatArray]:
-    """Return the last modulation by direct integration of (19), and its error, both of shape (6,)."""
+    """Return the last modulation by integration of (19), and its error, shape (6,) each."""
     fine, rough = (
         last_modulation(integrated(RING, START, UNTIL, len(TIMES), tolerance)) for tolerance in (1e-12, 1e-11)
     )
@@ -193,7 +189,7 @@ def predicted_modulation() -> tuple[FloatArray, FloatArray]:
 
 
 def extremes_of(trajectory: Trajectory) -> FloatArray:
-    """Return smallest and largest radius in m and spin in rad/s of a spline, shape (4,)."""
+    """Return smallest and largest radius (m) and spin (rad/s) of a spline, shape (4,)."""
     found = []
     for values in (trajectory.radius, trajectory.states[:, 5]):
         curve = CubicSpline(trajectory.times, values)
@@ -215,11 +211,10 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
 
 
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
-    """Return the critical X0 in m, its error, the slope of the modulus in 1/m, and the middle whirl of ``TRIED``.
+    """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
-    A parabola through the moduli at ``TRIED`` gives the X0 of modulus 1. The error is the change with a straight line
-    through the two nearest points, which exceeds the effect of a cubic term. Raise ``RuntimeError`` if there is no
-    whirl, or if it is not nearly critical.
+    A parabola through the moduli gives the X0 of modulus 1. The error is the change with a straight line through the
+    two nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
     orbits: list[Orbit] = []
     for offset in TRIED:
@@ -239,7 +234,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     parabola = Polynomial.fit(tried, moduli, 2).convert()
     if not np.all(np.isfinite(parabola.coef)):
         raise RuntimeError(f"a whirl near offset = {middle:g} m has no pair of multipliers")
-    # Far from its points the parabola is not valid.
+    # The parabola is not valid far from its points.
     roots = [root.real for root in parabola.roots() if root.imag == 0.0 and abs(root.real) < 0.1 * middle]
     if not roots:
         raise RuntimeError(f"no whirl near offset = {middle:g} m is critical")
@@ -251,7 +246,6 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
 
 @functools.cache
 def _whirl_of_reference() -> Orbit:
-    """Return the first guess for shooting."""
     return whirl_orbit(disc_at(TRIED[0]), tolerance=1e-8, samples=SAMPLES_A_TURN)
 
 
@@ -263,8 +257,8 @@ def critical_offset_of_reference() -> float:
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    Newton's method finds the orbit by integrating (19) together with its linearisation. Raise ``RuntimeError`` if it
-    does not converge.
+    Newton's method finds the orbit by integrating (19) with its linearisation. Raise ``RuntimeError`` if it does not
+    converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:
@@ -289,7 +283,7 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
 
 @functools.cache
 def rest_offset() -> float:
-    """Return the X0 in m above which the self-centred equilibrium is stable.
+    """Return the X0 (m) above which the self-centred equilibrium is stable.
 
     The whirl exists up to an X0 that is 0.25 % larger.
     """

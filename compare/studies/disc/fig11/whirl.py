@@ -1,4 +1,4 @@
-"""Claims on sliding motions, the growth of small deviations from the whirl, and the modulated cycle of Fig. 11."""
+"""Claims on sliding, the growth of small deviations from the whirl, and the modulated cycle."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
-"""Start of a motion whose contact points all slip for 100 s (our choice)."""
+"""All contact points slip for 100 s (our choice)."""
 
 SLIDING = np.linspace(0.0, 100.0, 101)
 
-OF_CYCLE = 10 * WORKING  # tolerance of the motion that settles on the modulated cycle
+OF_CYCLE = 10 * WORKING  # of the motion that settles on the modulated cycle
 AMPLITUDE = 1e-4  # initial deviation over the whirl's radius
-DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
-TOLERANCE = 2000 * WORKING  # tolerance for deviations, small compared with ``AMPLITUDE``
+DURATION = 200.0  # in s, about a period of the modulation; the deviation grows tenfold
+TOLERANCE = 2000 * WORKING  # small compared with ``AMPLITUDE``
 
 
 GROWTH_NOTE = (
@@ -63,7 +63,6 @@ def slides(engine: Engine, contact: str) -> Measured:
     return Measured(
         predicted=predicted,
         value=found.value,
-        # A single error may be small by chance.
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": SLIDING},
         components=components_of(RING),
@@ -100,7 +99,6 @@ def frequency_of_growth(engine: Engine, contact: str) -> Measured:
 
 
 def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str) -> Measured:
-    """Compare rate (0) or frequency (1) of the growth with the eigenvalue, resolved to a ``share`` of it."""
     found, whirl = growth(engine, DISCS[contact]), steady_whirl(DISCS[contact])
     predicted = (whirl.eigenvalue.real, whirl.eigenvalue.imag)[which]
     note = "Predicted: the eigenvalues in the frame that turns with the whirl."
@@ -121,7 +119,7 @@ def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str
 
 @functools.lru_cache(maxsize=4)
 def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
-    """Return growth rate and frequency in 1/s of a deviation from the whirl under the law ``contact``, shape (2,).
+    """Return growth rate and frequency (1/s) of a deviation from the whirl under the law ``contact``, shape (2,).
 
     The error is the 95 % interval of the fit plus the changes with twice the deviation and at a smaller tolerance.
     """
@@ -136,10 +134,9 @@ def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = 
 def deviation(
     engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl, amplitude: float, tolerance: float
 ) -> tuple[FloatArray, ComplexArray]:
-    """Return times in s, once a period, and the pair's share q of a deviation, 1 at the start.
+    """Return times (s), once a period, and the pair's share q of a deviation, 1 at the start.
 
-    The deviation is half the difference of two simulations that start on opposite sides of the whirl, which removes
-    even powers.
+    Half the difference of two simulations that start on opposite sides of the whirl has no even powers.
     """
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
@@ -168,9 +165,9 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 
 
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
-    """Return times in s, once a period, and the size of the pair's share over the radius.
+    """Return times (s), once a period, and the size of the pair's share over the radius.
 
-    The deviation starts ten times larger than in :func:`deviation`, and grows to the modulated cycle in 900 s.
+    The deviation starts ten times larger than in :func:`deviation`, and reaches the modulated cycle in 900 s.
     """
     turns = np.arange(round(900.0 / whirl.period) + 1)
     times = turns * whirl.period
@@ -181,7 +178,7 @@ def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[Flo
     return np.asarray(times, dtype=float), np.asarray(sizes)
 
 
-# --- The modulated cycle on the continuous ring
+# --- The modulated cycle on the ring
 
 CYCLE_NOTE = (
     f"The last modulation within {theory.UNTIL:g} s, from one maximum of the radius to the next. Predicted: "

@@ -1,4 +1,4 @@
-"""A ring thrown on a table at rest: sliding and spinning end together, in a ratio independent of the start."""
+"""A ring thrown on a table at rest."""
 
 from compare.studies.disc.free_ring.pictures import draw
 from compare.studies.disc.free_ring.study import STUDY

@@ -1,4 +1,4 @@
-"""Ends of sliding and spinning, times and positions of rest, heat, and the existence of a final ratio."""
+"""Claims on the end of sliding and spinning, on rest, heat and the final ratio."""
 
 from __future__ import annotations
 
@@ -318,7 +318,7 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
     )
 
 
-# --- Existence of a terminal ratio, and its published value for a disc
+# --- Existence of a terminal ratio
 
 
 @STUDY.claim(
@@ -350,7 +350,7 @@ def published_ratio() -> Measured:
     face = Annulus(0.0, 1.0, rings=16)
 
     def unevenness(ratio: float) -> float:
-        """Return the difference of both relative decelerations for J = mR²/2."""
+        """Return the difference of both relative decelerations."""
         resistance, moment = face.shares(ratio, 1.0)
         return resistance / ratio - moment / 0.5
 

@@ -1,11 +1,10 @@
-"""A ring thrown on a table at rest: limits of its motion, with the symbols and units of ``toolkit.free_bodies``.
+"""Limits of a thrown ring's motion, with the symbols and units of ``toolkit.free_bodies``.
 
 For c = 1, friction's slopes grow logarithmically near the ratio 1: Wδ' = −(2/π)·g·δ·L with L = ln(8/|δ|) − 2, and W =
 (2/π)·g·t with the remaining time t. So L = A/t, and |δ| = 8·e^(−2)·exp(−A/t) decays faster than any power.
 
 For c < 1/2 there is no terminal δ*: spinning dies out faster, W/U ~ t^(1/(2c) − 1), because F → 1 and G → W/(2U). For
-c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio has the same limits but converges
-more slowly than any power.
+c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio converges more slowly than any power.
 """
 
 from __future__ import annotations
@@ -45,10 +44,9 @@ HEADING = 0.7  # of the throw, in rad from the x axis
 
 @dataclass(frozen=True)
 class Throw:
-    """Initial conditions of a ring.
+    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees.
 
-    ``inertia`` is c = J/(mR²), and ``degrees`` the initial atan(W/U): 0 only slides, 90 only spins, and a negative
-    value reverses the spin.
+    0 only slides, 90 only spins, and a negative value reverses the spin.
     """
 
     inertia: float
@@ -56,17 +54,17 @@ class Throw:
 
     @property
     def disc(self) -> DiscOnDisc:
-        """Parameters of the disc."""
+        """The disc."""
         return replace(TABLE, polar_inertia=self.inertia * TABLE.mass * TABLE.contact_radius**2)
 
     @property
     def sliding(self) -> float:
-        """Initial U in m/s."""
+        """Initial U (m/s)."""
         return 0.0 if abs(self.degrees) == 90.0 else SPEED * math.cos(math.radians(self.degrees))
 
     @property
     def rim(self) -> float:
-        """Initial W in m/s, with the sign of the spin."""
+        """Initial W (m/s), with the sign of the spin."""
         return SPEED * math.sin(math.radians(self.degrees))
 
     @property
@@ -92,29 +90,29 @@ INTEGRATED = (*RINGS, *OTHERS)
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Throws with J/(mR²) outside 1/2 to 2."""
 
-INTERVALS = 400  # of the time to rest, for the heat and the figure
+INTERVALS = 400  # of the time to rest
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 """Remaining times of samples over the time to rest."""
 
-NEARNESSES = (7.0, 9.0)  # values of A/t of the samples
+NEARNESSES = (7.0, 9.0)  # A/t of the samples
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
 """Remaining times for the fit of a power law, over the time to rest."""
 
 TOLERANCE = WORKING / 10
-"""Tolerance for ratios near rest, where less than a thousandth of the initial speed is left."""
+"""For ratios near rest, where less than a thousandth of the initial speed is left."""
 
 SOURCE = "assumption: the ring of Fig. 8 on a table at rest; friction force and starts are our choice"
 CITED = "; Farkas et al. 2003, Weidman and Malhotra 2007"
 
 INERTIAS = (0.1, 0.3, 0.45, 0.499, 0.501, 0.55, 0.7, 1.3, 1.7, 1.9, 1.99, 2.01, 2.2, 3.0, 10.0)
-"""Values of J/(mR²) to check the existence of a terminal ratio."""
+"""J/(mR²) inside and outside 1/2 to 2."""
 
 
 def nearness(delta: ArrayLike) -> FloatArray:
     """Return L = ln(8/|δ|) − 2, which increases as δ tends to zero."""
-    with np.errstate(divide="ignore"):  # an engine may reach zero to rounding
+    with np.errstate(divide="ignore"):  # an engine may reach zero
         return np.asarray(math.log(8.0) - 2.0 - np.log(np.abs(delta)))
 
 
@@ -125,7 +123,7 @@ def deviation(nearness: ArrayLike) -> FloatArray:
 
 @functools.cache
 def expected_approach(throw: Throw, near: float = NEAR) -> float:
-    """Return A in s for a throw with c = 1, evaluated at |δ| = ``near``."""
+    """Return A (s) for a throw with c = 1, evaluated at |δ| = ``near``."""
     left = Slowing(1.0).stop(throw.sliding, abs(throw.rim), near).left
     return float(left * nearness(near)) / DECELERATION
 
@@ -141,10 +139,10 @@ def curves() -> Data:
 
 @functools.cache
 def roughly_rest(engine: Engine, throw: Throw) -> float:
-    """Return the time in s when the ring comes to rest in ``engine``, which determines the sample times.
+    """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    It has the tolerance of the claims. At a smaller tolerance the rest moves relative to the samples by about the
-    error of the sample times, so the change of a measured value includes this error.
+    Its tolerance is that of the claims. At a smaller tolerance the rest moves relative to the samples, so the change
+    of a measured value includes the error of the sample times.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
@@ -170,17 +168,17 @@ def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
 
 
 def approach_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return the times in s when A over the remaining time equals ``NEARNESSES``."""
+    """Return the times (s) when A over the remaining time equals ``NEARNESSES``."""
     return roughly_rest(engine, throw) - expected_approach(throw) / np.array(NEARNESSES)
 
 
 def rest_of(trajectory: Trajectory) -> float:
-    """Return the time in s when the ring comes to rest, NaN if it does not."""
+    """Return the time (s) when the ring comes to rest, NaN if it does not."""
     return trajectory.phases[-1].start if trajectory.phases[-1].kind == "stick" else math.nan
 
 
 def speeds_at(trajectory: Trajectory, times: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return U and W in m/s at ``times``, which must be times of the trajectory."""
+    """Return U and W (m/s) at ``times``, which must be times of the trajectory."""
     states = trajectory.states[[int(np.argmin(np.abs(trajectory.times - time))) for time in np.ravel(times)]]
     return np.hypot(states[:, 3], states[:, 4]), TABLE.contact_radius * np.abs(states[:, 5])
 
@@ -188,5 +186,5 @@ def speeds_at(trajectory: Trajectory, times: ArrayLike) -> tuple[FloatArray, Flo
 def speeds_before_rest(
     engine: Engine, throw: Throw, tolerance: float, left: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return U and W in m/s when the fractions ``left`` of the time to rest remain; they must be sample times."""
+    """Return U and W (m/s) when the fractions ``left`` of the time to rest remain; they must be sample times."""
     return speeds_at(thrown(engine, throw, tolerance), roughly_rest(engine, throw) * (1.0 - np.asarray(left)))

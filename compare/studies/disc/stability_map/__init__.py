@@ -1,4 +1,4 @@
-"""Map of the regions where steady motions of the centred disc are stable, or the modulated cycle replaces them."""
+"""Map of the stability of steady motions of the centred disc."""
 
 # ruff: noqa: I001 - the order of the report
 from compare.studies.disc.stability_map import regions, borders

@@ -1,4 +1,4 @@
-"""Claims on the borders of the map and their dependence on the contact law."""
+"""Claims on the borders of the map."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
-BOTH_LAWS = "(19), (20), (23)"  # equations of claims on both the ring and (23)
+BOTH_LAWS = "(19), (20), (23)"  # for both the ring and (23)
 
 FAR_FROM_KINK = 0.02
 """Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
@@ -38,10 +38,10 @@ UNSTABLE_LOADS = (0.3, 0.7)
 """Shares of the interval of μN from the fold to the Hopf point of (23)."""
 
 BESIDE_LARGEST = ((1.1, 1.0, 1.0, 1.0, 1.1, 1.0), (1.5, 1.0, 1.0, 1.0, 1.5, 1.0))
-"""Factors on the state of the larger whirl at these loads."""
+"""Factors on the state of the larger whirl."""
 
 
-# --- Traced curves against independent eigenvalues, and the borders next to Fig. 11
+# --- Traced curves against eigenvalues, and the borders next to Fig. 11
 
 CURVES = "Curves of the continuous ring and of (23) in the planes " + ", ".join(
     f"({first}, {second})" for first, second in (plane.names for plane in PLANES.values())
@@ -125,7 +125,6 @@ def crosses_line() -> Measured:
 
 
 def _of_rows(rows: Sequence[tuple[float, ...]], components: Sequence[str], **more: Any) -> Measured:
-    """Return predicted and measured numbers and their errors, a row each."""
     predicted, measured, errors = np.transpose(rows)
     return Measured(predicted=predicted, value=measured, error=errors, components=components, **more)
 
@@ -251,7 +250,7 @@ def jumps() -> Measured:
 SIGN = "Sign of the largest real part."
 
 SPEEDS = np.linspace(theory.K * (1.0 + 1e-6), PLANES["load"].upper[0], 40)
-"""ω of the pins in rad/s; their β is between ``LOW`` and ``HIGH`` in N s/m."""
+"""ω of the pins in rad/s."""
 
 
 @STUDY.claim(
@@ -273,7 +272,6 @@ def stable_by_23() -> Measured:
 
 
 def _side(law: str, sign: float) -> Measured:
-    """Check the sign of the largest real part of Fig. 11's whirl by ``law``."""
     (whirl,) = whirls(theory.DISC, LAWS[law])
     values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
     near = theory.nearest(

@@ -31,7 +31,6 @@ from reference_model.systems import FloatArray
 ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), strict=True))
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
 SHRINKING = "v"
-"""Labels and marks of simulated results."""
 
 COLOURS = {"ring": GREEN, "(23)": PURPLE}
 DASHES: dict[str, Any] = {"ring": "-", "(23)": (0.0, (5.0, 2.0))}
@@ -42,7 +41,7 @@ K = FIG11.natural_frequency
 
 
 class Region(NamedTuple):
-    """Name of a region and its position; ``at`` is the tip of an arrow if the name does not fit into the region."""
+    """Name of a region and its position; ``at`` is the tip of an arrow from names outside the region."""
 
     across: float
     up: float
@@ -200,10 +199,7 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
 
 
 def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
-    """Draw an engine's results: growth of deviations on the left of their points, ends on the right.
-
-    ``rank`` is the number of engines already drawn.
-    """
+    """Draw growth of deviations on the left of their points and ends on the right, after ``rank`` other engines."""
     none = np.empty((0, 3))
     sides, ends = found.get(f"sides/{name}", none), found.get(f"ends/{name}", none)
     groups = [
@@ -218,7 +214,7 @@ def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> Non
 
 
 def curves(theory: Data, plane: str, law: str, kind: str) -> Iterator[FloatArray]:
-    """Yield the points and α of the curves of one kind, each of shape (n, 3)."""
+    """Yield the points and α of the curves of one kind, shape (n, 3) each."""
     for name, found in theory.items():
         if name.startswith(f"{plane}/{law}/{kind}/"):
             yield found
@@ -231,7 +227,7 @@ def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def hopf_curve(theory: Data, plane: str, x: FloatArray, side: float) -> FloatArray:
-    """Return the second coordinate over ``x`` of the ring's Hopf curve on one side of U = W, NaN outside its range.
+    """Return the second coordinate over ``x`` of the ring's Hopf curve, NaN outside its range.
 
     ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large ones.
     """

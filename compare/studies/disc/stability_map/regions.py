@@ -34,10 +34,10 @@ ASIDE = 0.01  # relative distance from the curves
 DEVIATION = 0.02
 """Initial deviation from the whirl over the distance to U = W, where a point of the ring comes to rest."""
 
-FLOW_TOLERANCE = 100 * WORKING  # tolerance of simulations whose small differences are evaluated
+FLOW_TOLERANCE = 100 * WORKING  # for small differences
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
-"""x, y, angle, vx, vy, spin close to the largest radius of the modulated cycle."""
+"""x, y, angle, vx, vy, spin near the largest radius of the modulated cycle."""
 
 LOADS = (
     *(0.0195, 0.0208, 0.0211, 0.0214, 0.0217, 0.0221, 0.0225),
@@ -46,7 +46,7 @@ LOADS = (
 """μN in N in the bifurcation diagram."""
 
 
-# --- Small deviations from the whirl next to the Hopf curves
+# --- Small deviations next to the Hopf curves
 
 Lines = Sequence[tuple[str, str, float]]
 """Plane, fixed parameter and its value."""
@@ -58,7 +58,7 @@ BESIDE_CURVES = (
 
 
 class Deviation(NamedTuple):
-    """A disc in a plane, and λ in 1/s of its whirl's slow pair: by the Jacobian, as measured, and the error."""
+    """A disc in a plane, and λ (1/s) of its whirl's slow pair: by the Jacobian, as measured, and the error."""
 
     plane: str
     disc: DiscOnDisc
@@ -112,7 +112,6 @@ def _place(one: Deviation) -> str:
 
 @functools.lru_cache(maxsize=4)
 def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
-    """Simulate small deviations on both sides of the Hopf curves that ``lines`` cross."""
     found = []
     for plane, disc in discs_beside(lines):
         whirl = min(whirls(disc), key=lambda whirl: abs(whirl.eigenvalues[1].real))
@@ -131,10 +130,10 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
 
 
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
-    """Return the growth rate λ in 1/s of a small deviation in the plane of the slow pair, and its error.
+    """Return the growth rate λ (1/s) of a small deviation in the plane of the slow pair, and its error.
 
-    Half the difference of two motions that start on either side of the whirl, in axes that turn with it and projected
-    by the left eigenvector, grows by exp(λt).
+    Half the difference of two motions on either side of the whirl, projected by the left eigenvector in axes that
+    turn with it, grows by exp(λt).
     """
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
     which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
@@ -178,7 +177,7 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
 def coexist(
     engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = LOADS
 ) -> Measured:
-    """Draw motions at ``loads`` in N in the bifurcation diagram."""
+    """Draw motions at ``loads`` (N) in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 
@@ -210,7 +209,7 @@ def starts_in_regions() -> tuple[theory.Start, ...]:
 def coexisting() -> tuple[theory.Start, ...]:
     """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off.
 
-    The modulated cycle coexists with the whirl 0.3 % outside the curves, but not 2 % outside.
+    The cycle coexists with the whirl 0.3 % outside, but not 2 % outside.
     """
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
     starts = []
@@ -238,10 +237,10 @@ def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
 
 
 def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
-    """Return μN in N and smallest and largest final radius in m, shape (n, 3)."""
+    """Return μN (N) and smallest and largest final radius (m), shape (n, 3)."""
     rows = []
     for load in loads:
-        slow = load in (0.0208, 0.0211)  # the whirl is stable, but disturbances decay slowly
+        slow = load in (0.0208, 0.0211)  # disturbances of the stable whirl decay slowly
         duration = theory.SLOWLY_SETTLED if slow else theory.SETTLED
         start = theory.Start(theory.at(friction_force=load), ON_CYCLE, "", duration)
         rows.append((load, *theory.kind_of_end(engine.simulate, start)[1:]))

@@ -1,4 +1,4 @@
-"""Curves of the stability map, eigenvalues that check them, and data for the figures."""
+"""Curves of the stability map, and eigenvalues that check them."""
 
 from __future__ import annotations
 
@@ -58,10 +58,9 @@ def state_at(disc: DiscOnDisc, alpha: float, law: IsotropicContact) -> FloatArra
 def critical_eigenvalues(
     disc: DiscOnDisc, state: FloatArray, law: IsotropicContact
 ) -> tuple[ComplexArray, float]:
-    """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error in 1/s.
+    """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    The error includes the effect of the state: if U and W are nearly equal, the slopes of friction depend on their
-    small difference.
+    It includes the effect of the state's: if U and W are nearly equal, friction's slopes depend on their difference.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -97,7 +96,7 @@ def crossed(curves: Sequence[Boundary], value: float) -> FloatArray:
 
 
 def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -> float:
-    """Return the largest real part in 1/s of the eigenvalues of the centred rotation."""
+    """Return the largest real part (1/s) of the eigenvalues of the centred rotation."""
     against = disc.disc_speed - disc.shaft_speed
     # The shaft overcomes friction.
     slip = against - math.copysign(disc.friction_force * disc.contact_radius / disc.shaft_damping, against)
@@ -140,7 +139,7 @@ def curves() -> Data:
 
 
 def section() -> Data:
-    """Return μN in N, radius in m and growth rate in 1/s of Fig. 11's whirls over α, for each law."""
+    """Return μN (N), radius (m) and growth rate (1/s) of Fig. 11's whirls over α, for each law."""
     data: Data = {}
     alphas = np.linspace(0.45, np.pi / 2.0 - 1e-3, 240)
     for name, law in LAWS.items():
@@ -157,10 +156,10 @@ def section() -> Data:
 
 SETTLED = 600.0
 WATCHED = 350.0
-"""Time in s until motions have settled, and length in s of the evaluated end."""
+"""Time until motions have settled, and length of the evaluated end, in s."""
 
 SLOWLY_SETTLED = 2400.0
-"""Settling time in s just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
+"""Settling time (s) just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
 
 SETTLING_TOLERANCE = 1e-5
 
@@ -175,7 +174,7 @@ ENDS = ("rotation", "whirl", "modulated cycle", "sticking")
 
 
 class Start(NamedTuple):
-    """A disc, its initial state, the expected final motion (in ``ENDS``) and the duration in s."""
+    """A disc, its initial state, the expected final motion (in ``ENDS``) and the duration (s)."""
 
     disc: DiscOnDisc
     state: tuple[float, ...]
@@ -186,7 +185,7 @@ class Start(NamedTuple):
 def kind_of_end(
     simulate: Simulate, start: Start, tolerance: float = SETTLING_TOLERANCE
 ) -> tuple[str, float, float]:
-    """Return the kind of final motion, and its smallest and largest radius in m."""
+    """Return the kind of final motion, and its smallest and largest radius (m)."""
     times = [0.0, *np.linspace(max(start.duration - WATCHED, 0.5 * start.duration), start.duration, 801)]
     run = simulate(start.disc, start.state, times, tolerance=tolerance)
     radius = run.radius[1:]
@@ -199,7 +198,7 @@ def kind_of_end(
 
 
 def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
-    """Return the kinds of final motion, and answers whether they are the expected ones."""
+    """Return the kinds of final motion, and answers whether they are as expected."""
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:

@@ -1,4 +1,4 @@
-"""Four rotors and three clutches, Modelica's example, compared with exact solutions between events."""
+"""Four rotors and three clutches, Modelica's example."""
 
 from compare.studies.drivetrain.coupled_clutches.study import STUDY
 

@@ -50,7 +50,6 @@ from reference_model.systems import FloatArray
 
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]
-"""Steps in s of the runs to the end."""
 
 EVENTS = tuple(
     f"clutch {clutch + 1} {'sticks' if mode == STUCK else 'releases'} at {time:.4f} s"
@@ -88,7 +87,6 @@ def _is_native(engine: Engine) -> bool:
 
 @functools.lru_cache(maxsize=2)
 def _runs(engine: Engine) -> list[Run]:
-    """Return runs with Exudyn's connector or with explicit steps, each twice as coarse as the previous one."""
     if _is_native(engine):
         return [with_bristles(*of_one) for of_one in BRISTLES]
     return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
@@ -117,7 +115,6 @@ HALVED = (
 
 
 def _finest(runs: list[FloatArray]) -> tuple[FloatArray, float]:
-    """Return the first of ``runs`` and its error; each run is twice as coarse as the previous one."""
     return runs[0], 2.0 * float(np.max(np.abs(runs[0] - runs[1])))
 
 
@@ -314,10 +311,8 @@ def published_switches() -> Measured:
     return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
 
 
-# --- Figure
-
 EXACT = 1e-7
-"""Lower end of the axis of errors in rad/s."""
+"""Lower end of the axis in rad/s."""
 
 
 def draw(data: ByEngine) -> Figures:

@@ -26,7 +26,7 @@ SPEED = 10.0
 """Initial speed of the first rotor in rad/s; the others rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
-"""Amplitude in N m and frequency in Hz of the torque on the first rotor."""
+"""Torque on the first rotor in N m and Hz."""
 
 RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
 """Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load of a clutch in N."""
@@ -36,37 +36,37 @@ OPENS = 0.2
 
 OPEN_FROM = 0.25 / OPENS
 ENGAGED_FROM = (0.4, 0.9)
-"""Times in s when the second and the third clutch receive the whole load at once."""
+"""In s, when the second and the third clutch receive the whole load at once."""
 
 BREAKS = (*ENGAGED_FROM, OPEN_FROM)
 UNTIL = 1.5
-"""End of the motion in s."""
+"""In s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
-"""Times of compared speeds in s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
+"""In s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
 
 EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
 """In m/s, which equals rad/s at the radius of 1 m."""
 
 TOLERANCE = 1e-9
-"""Tolerance of explicit steps in rad/s, a millionth of the effect of the smallest ε."""
+"""For explicit steps, in rad/s; a millionth of the effect of the smallest ε."""
 
 SMALL_EPSILON = 1e-5
 """ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest of ``STEPS``."""
 
 STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""Steps of implicit runs in s."""
+"""For implicit runs, in s."""
 
 ALL_SLIP_UNTIL = 0.7
 """In s, one of ``SHOWN``; until then all closed clutches slip."""
 
 LETS_GO_FROM = 0.82
-"""In s, before the first clutch releases; the first and the second stick."""
+"""In s, before the first release; the first and second clutches stick."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
 """Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
 
-The damping of the bristle in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
+The bristle's damping in N m s/rad is twice the root of its stiffness, critical for a rotor of 1 kg m².
 """
 
 DECAY = 1e-4
@@ -88,11 +88,11 @@ def _engaged_from(begin: float) -> Callable[[float], float]:
 
 
 LOADS = (first_load, *map(_engaged_from, ENGAGED_FROM))
-"""Loads of the clutches in N."""
+"""In N."""
 
 
 def torque(time: float) -> float:
-    """Return the torque on the first rotor in N m."""
+    """Return the torque on the first rotor (N m)."""
     return TORQUE * math.sin(2.0 * math.pi * FREQUENCY * time)
 
 
@@ -135,7 +135,7 @@ def switches() -> list[tuple[float, int, int]]:
 
 @dataclass(frozen=True)
 class Published:
-    """Published times in s, modes, and speeds (rad/s) and angles (rad) of the first rotor and of each slip."""
+    """Published times (s), modes, and speeds (rad/s) and angles (rad) of the first rotor and of each slip."""
 
     times: FloatArray
     speeds: FloatArray
@@ -175,7 +175,7 @@ def first_and_slips(values: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Run:
-    """Speeds of the rotors in rad/s, shape (n, 4), at the ``times`` in s of all steps."""
+    """Speeds of the rotors (rad/s), shape (n, 4), at the ``times`` (s) of all steps."""
 
     times: FloatArray
     speeds: FloatArray
@@ -186,7 +186,7 @@ class Run:
 
     @property
     def slips(self) -> FloatArray:
-        """Slips of the clutches in rad/s, shape (n, 3)."""
+        """Slips of the clutches (rad/s), shape (n, 3)."""
         return np.diff(self.speeds, axis=1)
 
 
@@ -200,10 +200,10 @@ def _rotors() -> Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε in m/s.
+    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s).
 
-    It takes implicit steps of ``step`` (s), or explicit steps without ``step``. It stops at the times ``SHOWN``, so
-    speeds there are not interpolated.
+    Steps are implicit with ``step`` (s), and explicit without. The run stops at ``SHOWN``, so speeds there are not
+    interpolated.
     """
     from exudyn_models import add_ring_friction
 
@@ -231,8 +231,8 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
 def with_bristles(step: float, stiffness: float) -> Run:
     """Return the run with Exudyn's own connector, for a bristle ``stiffness`` (N m/rad) and a ``step`` (s).
 
-    The connector has no input for the load, so a function sets its torques before each step; the resulting slip is of
-    second order in the step. A clutch without load is switched off, because its bristle would hold on.
+    The connector has no input for the load. A function sets its torques before each step, and the resulting slip is
+    of second order in the step. Without load the clutch is switched off, because its bristle would hold on.
     """
     rotors = _rotors()
     mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS

@@ -1,4 +1,4 @@
-"""The car's drivetrain at frozen speeds: onset, self-centring, whirl on the stop, and modulation of a whirl."""
+"""The car's drivetrain at frozen speeds."""
 
 from compare.studies.drivetrain.frozen import steady, whirls
 from compare.studies.drivetrain.frozen.pictures import draw

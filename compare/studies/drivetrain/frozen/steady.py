@@ -1,4 +1,4 @@
-"""Claims: steady motion of the drivetrain and onset of its vibrations."""
+"""Claims on steady motions of the drivetrain and the onset of its vibrations."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ NOTE = (
 class Steady(NamedTuple):
     """A steady motion on the bench at ``speed`` (rpm), measured and predicted by the reference, shape (3,) each.
 
-    The values are x, y (m) and slip (rad/s), or for a whirl radius (m), frequency and slip (rad/s).
+    The values are x, y (m) and slip (rad/s), or radius (m), frequency and slip (rad/s) of a whirl.
     """
 
     speed: float
@@ -207,7 +207,6 @@ def _measured(
     components: Sequence[str] = (),
     data: Mapping[str, ArrayLike] | None = None,
 ) -> Measured:
-    """Compare the values at index ``place`` for a disc with ``offset`` (m)."""
     predicted = np.array([one.predicted.value[place] for one in motions])
     return Measured(
         predicted=predicted,
@@ -234,7 +233,6 @@ def _shown(motions: Sequence[Steady]) -> FloatArray:
 
 @functools.lru_cache(maxsize=4)
 def _motions(engine: Engine, speeds: tuple[float, ...], whirling: bool) -> tuple[Steady, ...]:
-    """Return whirls at ``speeds`` (rpm) without offset, or states of rest with the car's offset."""
     return tuple(_motion(speed, whirling) for speed in speeds)
 
 
@@ -257,10 +255,7 @@ def _motion(speed: float, whirling: bool) -> Steady:
 
 
 def _settled(car: Drivetrain, operation: Operation, rate: float, *, whirling: bool) -> Measurement:
-    """Return x, y and slip, or for a whirl radius, frequency and slip, after all transients.
-
-    ``rate`` is the decay rate (1/s) of the slowest mode.
-    """
+    """Return the values after all transients, with the decay rate (1/s) of the slowest mode."""
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
         model = operation.build(car)

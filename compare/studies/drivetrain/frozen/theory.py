@@ -1,9 +1,9 @@
-"""Predictions of the reference for the clutch: rest, whirl, and small motions of the whole drivetrain about a whirl.
+"""Predictions of the reference for the clutch, and small motions of the whole drivetrain about a whirl.
 
-The small motions have five coordinates: x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the
-vehicle. The slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The
-transpose of this map applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes
-that turn with the whirl, its stability is an eigenvalue problem.
+Their five coordinates are x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the vehicle. The
+slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The transpose of this map
+applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes that turn with the whirl,
+its stability is an eigenvalue problem.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel
 
 
-# --- Speeds, torques and loads of the car's clutch, and accuracy
+# --- Parameters
 
 
 FINER = 24
@@ -55,16 +55,16 @@ TORQUE, SLIPPING = 80.0, 12.0
 """Torque in N m and slip in rad/s on the bench, similar to the run-up."""
 
 BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
-"""Speeds of the bench in rpm, below and above the onset."""
+"""Speeds in rpm below and above the onset."""
 
 DECAYS, SEEN = 20.0, 5.0
 """Length of a run in decay times of its slowest mode, and how many of them show the remaining transient."""
 
 START = 3e-4
-"""Initial position in m of a whirl, at rest and within the play."""
+"""Initial position of a whirl in m, within the play."""
 
 SAMPLE = 5e-4
-"""Sampling interval on the bench in s."""
+"""Sampling interval in s."""
 
 MODULATED = (6000.0, 0.6, 0.1)
 """Speed in rpm, torque in N m, and relative surplus of the load over the load that this torque needs."""
@@ -85,16 +85,16 @@ DEVIATION = 3e-3
 """Initial deviation over the radius."""
 
 TOLERANCE = 20 * WORKING
-"""Tolerance of the runs whose difference is taken."""
+"""For runs whose difference is taken."""
 
 PUSH, UNTIL = 0.2, 6.0
 """Modulated motion: initial deviation over the radius, and end in s."""
 
 ROUGHER = 80.0
-"""Tolerance of the modulated motion over the usual one."""
+"""Its tolerance over the usual one."""
 
 CYCLE_SAMPLE = 2e-3
-"""Sampling interval of the modulated motion in s."""
+"""Its sampling interval in s."""
 
 SPEEDS = np.linspace(2900.0, 6500.0, 32)
 """In rpm, from just above the natural frequency."""
@@ -116,10 +116,10 @@ CENTRE = slice(2, 4)
 
 @dataclass(frozen=True)
 class CarWhirl:
-    """A steady whirl of the clutch disc in a car whose engine and load have constant torques in N m.
+    """A steady whirl of the clutch disc in a car whose engine and load have constant torques (N m).
 
     ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
-    ρ·βκρ of friction about its axis.
+    ρ·βκρ of friction.
     """
 
     engine_speed: float
@@ -136,9 +136,9 @@ def whirl_under_surplus(
 ) -> CarWhirl | None:
     """Return the whirl of a clutch whose load exceeds the needed one by the fraction ``surplus``, or None.
 
-    A centred disc would lock up under this load. The whirl reduces the friction moment: M(U, S) equals the torque at
-    a certain ratio of the slips U of the centre and S of the rim. This ratio determines the force, and the force the
-    radius, ρ·β·κ(ρ) = μN·F. S is (ω − κ)ρ over the ratio.
+    A centred disc would lock up. The whirl reduces the friction moment: M(U, S) equals the torque at a certain ratio
+    of the slips U of the centre and S of the rim. This ratio determines the force, and the force the radius, ρ·β·κ(ρ)
+    = μN·F. S is (ω − κ)ρ over the ratio.
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)
@@ -161,7 +161,6 @@ def whirl_under_surplus(
 
 @functools.lru_cache(maxsize=64)
 def _ratio_of_moment(law: Annulus, needed: float) -> float:
-    """Return the ratio U/S (m) for the moment ``needed`` per unit of friction force (m)."""
     widest = 10.0 * law.outer_radius
     return float(brentq(lambda ratio: law.shares(ratio, 1.0).moment - needed, 0.0, widest, xtol=1e-15))
 
@@ -202,7 +201,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
 def in_turning_axes(matrix: FloatArray, frequency: float) -> FloatArray:
     """Return the matrix of small motions in axes that turn with ``frequency`` (rad/s), shape (8, 8).
 
-    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ; only the twist of the angles has an effect.
+    The state is x, y, the twist φ − ψ and the rates of θ, ψ, x, y, φ.
     """
     turned = matrix.copy()
     for first in (2, 7):
@@ -230,8 +229,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 def curves(every: int = 1) -> Data:
     """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
 
-    Over the speed (rpm): x, y at rest, and radius and frequency of a whirl. Over (torque, speed) and over (torque,
-    surplus): :func:`whirl_growth`.
+    Lines are x, y at rest, and radius and frequency of a whirl; :func:`whirl_growth` explains the maps.
     """
     car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM

@@ -1,4 +1,4 @@
-"""The modulated whirl of the clutch disc: eigenvalues of the whole drivetrain, growth and the resulting cycle.
+"""The modulated whirl of the clutch disc: eigenvalues, growth and the resulting cycle.
 
 A whirl reduces the friction moment, so a clutch may slip although its load exceeds the load that its torque needs.
 Slip and radius of this whirl oscillate together; the map shows where the oscillation grows.
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
 
 Matrix = Callable[[theory.CarWhirl], FloatArray]
-"""State matrix of small motions about a whirl, see ``state_matrix_of``."""
+"""State matrix of small motions, see ``state_matrix_of``."""
 
 
 def _by_exudyn(car: Drivetrain) -> Matrix:
@@ -107,7 +107,7 @@ def border(engine: Engine, between: tuple[float, float] = theory.BETWEEN) -> Mea
 def _border(
     car: Drivetrain, matrix: Matrix, torque: float, between: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return the speed (rpm) and its error from rounding of the eigenvalue; NaN if there is none."""
+    """Return the speed (rpm) and its rounding error; NaN if there is none."""
 
     def growth(speed: float) -> tuple[float, float]:
         whirl = theory.whirl_under_surplus(car, speed * RPM, torque, theory.BORDER_SURPLUS)
@@ -162,7 +162,7 @@ def growth(engine: Engine) -> Measured:
 
 
 def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
-    """Return the initial and the final state in axes that turn with the whirl, ordered as in ``in_turning_axes``."""
+    """Return the first and last state in axes that turn with the whirl, ordered as in ``in_turning_axes``."""
     motion = build(car, whirl, deviation=deviation).run(
         theory.TIME, sample_every=theory.TIME, tolerance=tolerance
     )

@@ -32,19 +32,19 @@ MM = 1e3
 CYAN = "#58e0ff"
 
 OPEN = 0.7
-"""Angle in rad that turns the cut of the cover towards the viewer."""
+"""In rad, turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
 """Magnification of radial motion."""
 
 SHOWN = (2000.0, 3100.0, 5000.0)
-"""Speeds of the pictures in rpm."""
+"""Speeds in rpm."""
 
 FRAMES = 15
 """Frames of each slow motion."""
 
 SIZE = (330, 280)
-"""Size of the drivetrain in a frame, in pixels."""
+"""In pixels."""
 
 STEP = math.radians(48.0)
 """Rotation of the engine per frame in rad."""
@@ -183,7 +183,7 @@ def time_of(found: Data, turns: float) -> float:
 
 
 def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
-    """Return the engine's angle and the disc's x, y and angle at a time."""
+    """Return the engine's angle and the disc's x, y and angle."""
     near = slice(*np.searchsorted(found["times"], [time - 0.01, time + 0.01]))
     times = found["times"][near]
     angle = float(CubicSpline(times, found["engine"][near, 0])(time))

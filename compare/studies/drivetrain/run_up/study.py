@@ -33,10 +33,8 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
     from exudyn_models.drivetrain.model import DrivetrainMotion
 
-# --- The run-up
-
 IDLE, TOP = 800.0, 6000.0
-"""Speeds in rpm."""
+"""In rpm."""
 
 TORQUE, RIPPLE = 100.0, 1.0
 """Mean torque of the engine in N m, and amplitude of its firing order over the mean."""
@@ -51,30 +49,30 @@ LINES_APART = 0.06
 """Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
 
 SAMPLE = 5e-4
-"""Sampling interval in s; 20 samples per turn at 6000 rpm."""
+"""In s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
 """Window of the spectrum in turns of the engine, and samples per turn."""
 
 
 def duration(car: Drivetrain, top: float) -> float:
-    """Return the time (s) until the mean torque has accelerated engine and vehicle from idle to ``top`` (rpm)."""
+    """Return the time (s) until the mean torque has accelerated engine and vehicle to ``top`` (rpm)."""
     inertia = car.engine_inertia + car.disc_inertia + car.vehicle_inertia
     return (top - IDLE) * RPM * inertia / TORQUE
 
 
 def transmitted(car: Drivetrain) -> float:
-    """Return the part of the mean torque that the clutch transmits, in N m."""
+    """Return the mean torque (N m) that the clutch transmits."""
     behind = car.disc_inertia + car.vehicle_inertia
     return TORQUE * behind / (car.engine_inertia + behind)
 
 
-# --- Predictions of the reference for the reduced disc at frozen speeds
+# --- The reduced disc at frozen speeds, by the reference
 
 
 @functools.lru_cache(maxsize=2)
 def whirls_above_onset(car: Drivetrain) -> FloatArray:
-    """Return speed (rad/s), radius (m) and frequency (rad/s) of the reference's whirl, shape (30, 3)."""
+    """Return speed (rad/s), radius (m) and frequency (rad/s) of the whirl, shape (30, 3)."""
     torque = transmitted(car)
     speeds = np.linspace(onset_speed(car, SLIP, torque), TOP * RPM, 31)[1:]
     circles = [whirl_of(car, Operation(speed, SLIP, torque)) for speed in speeds]
@@ -82,7 +80,7 @@ def whirls_above_onset(car: Drivetrain) -> FloatArray:
 
 
 def curves(count: int = 120) -> Data:
-    """Return the reference's predictions for the reduced disc at frozen speeds, ``count`` below the onset."""
+    """Return the reference's predictions, ``count`` below the onset."""
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
@@ -122,7 +120,7 @@ def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion
     return model.run(duration(car, top), sample_every=SAMPLE, tolerance=tolerance)
 
 
-# --- Order-tracked spectrum of the disc's motion
+# --- Order-tracked spectrum
 
 HOP = 2 * SAMPLES
 """Samples from one window to the next."""
@@ -152,8 +150,8 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    Orders below one half are excluded, so a disc almost at rest does not count. A parabola through three logarithms
-    locates the maximum between the lines.
+    Orders below one half are excluded, so a disc almost at rest does not count. A parabola locates the maximum
+    between the lines.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))

@@ -1,4 +1,4 @@
-"""Convergence of the engines with the tolerance, the step, and the slip speed that regularises friction."""
+"""Convergence of the engines with tolerance, step and regularisation."""
 
 from compare.studies.engines.engine_convergence.pictures import draw
 from compare.studies.engines.engine_convergence.study import STUDY

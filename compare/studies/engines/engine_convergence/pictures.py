@@ -28,7 +28,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _power(panel: Axes, x: ArrayLike, through: tuple[float, float], power: int, label: str) -> None:
-    """Draw the line ~ x^power through a point, with ``label`` below its right end."""
     x = np.asarray(x, dtype=float)
     y = through[1] * (x / through[0]) ** power
     panel.plot(x, y, **curve("theory", ""))

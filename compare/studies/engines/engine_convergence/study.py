@@ -127,7 +127,7 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
 def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
     if engine.name != "exudyn":
         return None
-    import exudyn_models  # deferred, because the command line must start without it
+    import exudyn_models  # deferred: the command line must start without it
 
     run = exudyn_models.simulate_fixed_step
     rows = np.array([theory.of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
@@ -273,7 +273,6 @@ def smoothing(simulate_smoothed: theory.Simulate) -> Smoothing:
         ]  # without the first stick, whose error falls faster
 
     by_epsilon = np.array([errors(epsilon, theory.TOLERANCE) for epsilon in theory.REGULARISATIONS.tolist()])
-    # The tolerance has the largest effect at the smallest ε.
     noise = np.abs(errors(float(theory.REGULARISATIONS[-1]), COARSENING * theory.TOLERANCE) - by_epsilon[-1])
     exponents, numerical, model = np.transpose(
         [

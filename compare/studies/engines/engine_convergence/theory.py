@@ -19,7 +19,7 @@ from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
 
-# --- Starts, tolerances, steps and slip speeds of the measurements
+# --- Parameters
 
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
 """Near the whirl, and a third farther out; the pin always slides (our choice)."""
@@ -28,10 +28,10 @@ SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
 """In s, multiples of every step, so the samples are not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""Starts like those of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
+"""Like Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
-"""Duration in s."""
+"""In s."""
 
 
 def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
@@ -42,8 +42,8 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 class Scan:
     """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Error and error estimate have the same ``order`` in the step, so the step is ~ tolerance^(1/order). The next term
-    is smaller by one power of the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
+    Errors have the ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
+    the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
     """
 
     order: int
@@ -72,7 +72,7 @@ SCANS = {
 
 
 REGULARISATIONS = np.geomspace(1e-4, 10**-6.5, 6)
-"""ε in m/s for the motion with three stick phases."""
+"""ε in m/s for three stick phases."""
 
 FIRST_REGULARISATIONS = np.geomspace(1e-3, 10**-5.5, 11)
 """ε in m/s for the first stick phase."""
@@ -87,11 +87,11 @@ STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
 """In s, until after the last of nine stick phases on the way to the whirl."""
 
 WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
-"""Fixed steps in s through stick phases, where ε must be proportional to the step."""
+"""In s, through stick phases, where ε must be proportional to the step."""
 
 
 def smallest_regularisation(step: float) -> float:
-    """Return ε in m/s such that RK44, stable up to 2.8·mε/μN, resolves stick at this ``step`` in s."""
+    """Return ε (m/s) such that RK44, stable up to 2.8·mε/μN, resolves stick."""
     return step * FIG5.friction_force / FIG5.mass / 1.5
 
 
@@ -127,9 +127,9 @@ def stick_slip_truth() -> FloatArray:
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     """Return the shift of the end of a stick phase by creep, in s per m/s of ε.
 
-    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force that friction must balance (eq. 6) and g
-    = μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is
-    linear in z = z₀·exp(iωt). The release occurs at |a| = g (eq. 7), so the shift is −d|a|/dε over d|a|/dt.
+    A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force (6) that friction must balance and g =
+    μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is linear
+    in z = z₀·exp(iωt). The release (7) occurs at |a| = g, so the shift is −d|a|/dε over d|a|/dt.
     """
     omega = 1j * pin.disc_speed
     spring = pin.stiffness / pin.mass
@@ -150,7 +150,7 @@ Simulate = Callable[..., Trajectory]
 
 
 def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
-    """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time in s."""
+    """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time (s)."""
     return _cost(run, SLIDING_STARTS, SLIDING_TIMES, sliding_truth()[0], **how)
 
 
@@ -162,7 +162,7 @@ def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
 def _cost(
     run: Simulate, starts: Iterable[tuple[float, ...]], times: FloatArray, truth: FloatArray, **how: Any
 ) -> tuple[float, float, float]:
-    began = time.process_time()  # in contrast to wall time, independent of other processes
+    began = time.process_time()  # independent of other processes, unlike wall time
     trajectories = [run(FIG5, start, times, **how) for start in starts]
     spent = time.process_time() - began
     error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)
@@ -170,7 +170,7 @@ def _cost(
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
-    """Return the errors of the events, or NaN if their number differs from the exact one."""
+    """Return the errors of the events, NaN if their number differs from the exact one."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
 
 
@@ -179,7 +179,7 @@ def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Solver:
-    """A solver at fixed steps in s; if ``sticks``, the figure also shows its work with stick phases."""
+    """A solver at fixed steps (s); if ``sticks``, the figure also shows its work with stick phases."""
 
     name: str
     order: int

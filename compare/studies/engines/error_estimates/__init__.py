@@ -1,4 +1,4 @@
-"""Reliability of the error bars of all claims: true errors of random motions compared with their estimates."""
+"""Reliability of error bars: true errors of random motions compared with their estimates."""
 
 from compare.studies.engines.error_estimates.study import STUDY
 

@@ -78,7 +78,7 @@ def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> M
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
-    """Return the calibration of one kind of problem; all kinds that can be simulated share ``motions``."""
+    """Return the calibration for one kind of problem; all kinds that can be simulated share ``motions``."""
     each = -(-motions // len(simulated(engine)))
     return theory.calibrated(engine, drawn(kind, each))
 
@@ -86,9 +86,7 @@ def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def drawn(kind: str, motions: int) -> tuple[tuple[theory.Problem, float], ...]:
     """Return ``motions`` problems of a kind with their tolerances, the same for every engine."""
-    random = np.random.default_rng(
-        [theory.SEED, list(theory.PROBLEMS).index(kind)]
-    )  # a separate stream for each kind
+    random = np.random.default_rng([theory.SEED, list(theory.PROBLEMS).index(kind)])  # one stream per kind
     return tuple((theory.PROBLEMS[kind](random), between(random, *theory.TOLERANCES)) for _ in range(motions))
 
 
@@ -101,10 +99,8 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     )
 
 
-# --- Figures
-
 SMALLEST, LARGEST = 0.3, 3e3
-"""Range of the ratios in the figure; an arrow stands for larger ones."""
+"""Range of the ratios; an arrow stands for larger ones."""
 
 COLUMNS = 3
 

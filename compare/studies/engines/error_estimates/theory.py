@@ -1,4 +1,4 @@
-"""Random motions with an exact solution, in closed form or by the reference at a far tighter tolerance."""
+"""Random motions with an exact solution, or solved by the reference at a far tighter tolerance."""
 
 from __future__ import annotations
 
@@ -35,13 +35,12 @@ from reference_model.formulas.pin import (
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-# --- Number and distribution of the motions, and requirements for the error bars
+# --- Parameters
 
 MOTIONS = 360
-"""Random motions per engine, shared equally by the kinds of problem that the engine can simulate."""
+"""Motions per engine, shared equally by the kinds of problem that it can simulate."""
 
 TOLERANCES = (1e-7, 1e-5)
-"""Range of the random tolerance of a motion."""
 
 SEED = 20
 
@@ -60,7 +59,7 @@ A smaller true error is a coincidence of two roundings, so its ratio to an estim
 """
 
 EXACT = 100.0 * TRUTH
-"""Tolerance of the reference without a closed form, a thousandth of the smallest tolerance of a motion."""
+"""For the reference, a thousandth of the smallest tolerance of a motion."""
 
 SMALL_OFFSET = 1e-7
 """X0/ρ_c in the response. Terms of second order are smaller by this factor, and errors are ~ tolerance/X0."""
@@ -75,14 +74,14 @@ J/(mR²) is not 1, because the integrals then end like exp(−A/t), with errors 
 """
 
 
-# --- Calibration of error estimates with the true errors of exactly known motions
+# --- Calibration of error estimates with true errors
 
 
 @dataclass(frozen=True, eq=False)
 class Problem:
     """A motion with numbers whose ``exact`` values are known, shape (m,).
 
-    ``quantity`` returns the numbers of a trajectory, or fewer if the trajectory lacks some.
+    ``quantity`` returns the numbers of a trajectory, or fewer if some are missing.
     """
 
     system: System
@@ -92,7 +91,7 @@ class Problem:
     exact: FloatArray
 
     def measured(self, engine: Engine, tolerance: float) -> FloatArray:
-        """Return the numbers from ``engine``, shape (m,), all NaN if one of them is missing."""
+        """Return the numbers from ``engine``, shape (m,), all NaN if one is missing."""
         found = self.quantity(engine.simulate(self.system, self.start, self.times, tolerance=tolerance))
         return found if found.shape == self.exact.shape else np.full(self.exact.shape, math.nan)
 
@@ -115,18 +114,17 @@ class Calibration:
 
     @functools.cached_property
     def _covered(self) -> FloatArray:
-        """Fraction of the numbers of each motion whose true error lies within the estimate."""
         within = np.bincount(self.motion, self.errors <= self.estimates)  # False for NaN
         return np.asarray(within / np.bincount(self.motion))
 
     @property
     def coverage(self) -> float:
-        """Fraction of numbers whose true error lies within the estimate; all motions have equal weight."""
+        """Share of numbers whose true error lies within the estimate; all motions have equal weight."""
         return float(np.mean(self._covered))
 
     @property
     def coverage_noise(self) -> float:
-        """Standard error of the coverage as a mean over motions, because the numbers of a motion are correlated."""
+        """Standard error of the coverage as a mean over motions, whose numbers are correlated."""
         return float(np.std(self._covered, ddof=1) / math.sqrt(self.motions))
 
     @property
@@ -160,7 +158,6 @@ def _at_end(trajectory: Trajectory) -> FloatArray:
 
 
 def _duration(random: Generator, system: System) -> float:
-    """Draw a duration in s of one to two natural periods of the support."""
     return between(random, 2.0 * math.pi, 4.0 * math.pi) / system.natural_frequency
 
 
@@ -219,7 +216,7 @@ def stick(random: Generator) -> Problem:
 
 
 def _on_the_way_and_release(trajectory: Trajectory) -> FloatArray:
-    """Return position, velocity and release time in units of the radius and the disc speed, all of order 1.
+    """Return position, velocity and release time in units of the radius and the disc speed.
 
     In metres and seconds, the rounding of the time would exceed the errors of the positions.
     """
@@ -238,7 +235,7 @@ def whirl(random: Generator) -> Problem:
 
 
 def response(random: Generator) -> Problem:
-    """Draw a whirl with a small offset; its mean divided by the offset is the exact first-order response."""
+    """Draw a whirl with a small offset; its mean over the offset is the exact first-order response."""
     pin = any_pin(random)
     pin = replace(pin, offset=SMALL_OFFSET * whirl_radius(pin))
     found, turning = first_order_whirl_response(pin), 1j * whirl_frequency(pin)
@@ -290,7 +287,7 @@ def free_ring(random: Generator) -> Problem:
 
 @functools.cache
 def _unit_stop(inertia: float, degrees: float) -> tuple[float, float, float]:
-    """Return time and distances to rest for an initial √(U² + W²) of 1 m/s and μN/m = 1 m/s²."""
+    """Return time and distances to rest for √(U² + W²) = 1 m/s and μN/m = 1 m/s²."""
     angle = math.radians(degrees)
     return Slowing(inertia).stop(math.cos(angle), math.sin(angle))[:3]
 
@@ -327,4 +324,3 @@ PROBLEMS: Mapping[str, Callable[[Generator], Problem]] = {
     "any motion of a ring": ring,
     "any motion of points": points,
 }
-"""Functions that draw a problem, by kind."""

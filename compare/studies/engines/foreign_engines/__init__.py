@@ -1,4 +1,4 @@
-"""Foreign engines in the systems of the paper, from recorded data: friction laws, orders and errors over time."""
+"""Recorded foreign engines: friction laws, orders and errors over time."""
 
 from compare.studies.engines.foreign_engines.study import STUDY
 

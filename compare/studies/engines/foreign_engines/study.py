@@ -65,12 +65,10 @@ STUDY = Study.beside(
 
 
 _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
-"""Declares a claim about the order of convergence."""
 
 _of_law = functools.partial(
     STUDY.claim, kind="trajectory", basis="independent", unit="m", resolution=2e-3, note=LAW
 )
-"""Declares a claim about the deviation from the exact motion under another friction law."""
 
 
 @_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
@@ -114,7 +112,6 @@ def disc_stays_off() -> Measured:
 def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
-    """Compare the observed orders of the ``wanted`` settings in each of ``cases`` with ``predicted``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     runs = {(name, case): halvings(by_name[name].runs[case]) for case in cases for name in wanted}
     found = [
@@ -173,7 +170,6 @@ def pyramid_releases() -> Measured:
 
 
 def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
-    """Compare the deviations of the ``wanted`` settings, of order 1, with the deviation by ``law``."""
     by_name = {recording.name: recording for recording in ladders.recorded()}
     errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
@@ -243,8 +239,6 @@ def creeps() -> Measured:
     )
 
 
-# --- Figures
-
 ROWS = (
     *(("Bullet",), ("DART",), ("Drake",), ("MuJoCo",)),
     *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
@@ -252,7 +246,6 @@ ROWS = (
 """Engines of the rows; those of the last two rows have two settings each."""
 
 LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
-"""Colours and markers of an engine's settings."""
 
 OURS = {"reference": "-", "exudyn": "--", "exudyn-native": ":"}
 """Line styles of our own engines, which every panel shows in grey."""
@@ -269,7 +262,6 @@ def draw(data: ByEngine) -> Figures:
 
 
 def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
-    """Draw a row for each engine and a column for each motion, with shared axes."""
     columns = len(titles)
     figure, axes = new_figure(
         columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True

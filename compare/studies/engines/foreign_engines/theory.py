@@ -20,7 +20,7 @@ from compare.report.numbers import error_text
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 
-# --- Groups of recorded settings by friction law and order, and parameters of the tables
+# --- Groups of recorded settings by friction law and order
 
 FIRST_ORDER = (
     "MuJoCo, elliptic cone",
@@ -61,16 +61,13 @@ TANGENTS = (
     *("Bullet, cone", "Bullet, box", "DART, NSGS", "DART, FBF", "DART, Dantzig", "DART, PGS"),
     *("Chipmunk, pivot joint", "Box2D, friction joint"),
 )
-"""Settings that leave no slip at the end of a step during stick, and whose rounding is negligible."""
+"""Settings without slip at the end of a step during stick, and with negligible rounding."""
 
 WANTED = 1e-3
 """Error in m whose computing time the table lists, the largest that is invisible in the paper's figures."""
 
 HALVED = 0.02
 """Allowed deviation of the ratio of step numbers from 2, because steps divide the interval between output times."""
-
-
-# --- Recorded series of runs with decreasing tolerance
 
 
 @functools.cache
@@ -91,11 +88,11 @@ def halvings(runs: FloatArray) -> FloatArray:
 # --- Friction laws other than Coulomb's
 
 Law = Callable[[complex, float], complex]
-"""Friction over μN as a function of the slip and the smoothing slip speed ε in m/s."""
+"""Friction over μN as a function of the slip and the smoothing slip speed ε (m/s)."""
 
 
 def box(slip: complex, epsilon: float) -> complex:
-    """Return friction that is bounded along each axis separately, which is up to √2 times too large."""
+    """Return friction that is bounded along each axis separately, up to √2 times too large."""
     x, y = slip.real, slip.imag
     return -complex(x / max(abs(x), epsilon), y / max(abs(y), epsilon))
 
@@ -108,7 +105,7 @@ def pyramid(slip: complex, epsilon: float) -> complex:
 
 
 def creep(steps: int) -> float:
-    """Return the largest deviation in m of a stuck pin that moves in ``steps`` along tangents of its circle."""
+    """Return the largest deviation (m) of a stuck pin that moves in ``steps`` along tangents of its circle."""
     case = CASES["stuck"]
     i = np.linspace(0, steps, len(case.times))
     h = float(case.times[-1]) / steps
@@ -116,7 +113,6 @@ def creep(steps: int) -> float:
 
 
 def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
-    """Integrate ``case`` under ``law``, smoothed over the slip ``epsilon`` in m/s."""
     pin = case.system
 
     def friction(slip_x: float, slip_y: float, *_: float) -> tuple[float, float, float]:
@@ -133,7 +129,7 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 
 
 def release_by(law: Law) -> tuple[float, float]:
-    """Return the time in s when ``law`` releases a stuck pin, and its error, see ``refined``.
+    """Return the time (s) when ``law`` releases a stuck pin, and its error.
 
     A held pin creeps along each axis of the world with a slip below ε; it is released when the slip reaches ε.
     """
@@ -154,9 +150,9 @@ def release_by(law: Law) -> tuple[float, float]:
 
 
 def release_where(held: Callable[[complex], float]) -> float:
-    """Return the time in s when a stuck pin is released, in closed form.
+    """Return the time (s) when a stuck pin is released, in closed form.
 
-    ``held`` maps the force (6) over μN to the used share of the friction law's limit. The pin is released above 1.
+    ``held`` maps the force (6) over μN to the used share of the friction law's limit.
     """
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])
@@ -173,10 +169,7 @@ def release_where(held: Callable[[complex], float]) -> float:
 
 
 def error_of(law: Law, name: str) -> tuple[float, float]:
-    """Return the deviation in m of a pin under ``law`` from the exact motion of the case ``name``, and its error.
-
-    The error is the change at smaller ε and tolerance, see ``refined``.
-    """
+    """Return the deviation (m) of a pin under ``law`` from the exact motion of the case ``name``, and its error."""
     case = CASES[name]
     pin = case.system
 
@@ -195,7 +188,6 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
 # --- Claims of each recorded engine and case
 
 OUR_FORCE = "our force"
-"""Setting with our force instead of the engine's own friction."""
 
 PROGRAM = "examples/exec_contact.js"
 ADAPTERS = {
@@ -221,7 +213,7 @@ def recorded_settings() -> tuple[Recorded, ...]:
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    """Return the claims of one setting of an engine, one per simulated case, from the finest run."""
+    """Return the claims of one setting, one per case, from the finest run."""
     claims = []
     for name, runs in recording.runs.items():
         case = CASES[name]
@@ -263,7 +255,7 @@ def recorded_claims(recording: Recording) -> Recorded:
 
 
 def _advice(recording: Recording) -> str:
-    """Return the refinement for an error of ``WANTED`` in converging motions, or the error of the finest run."""
+    """Return the refinement for an error of ``WANTED``, or the error of the finest run."""
     runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
     if not runs or recording.engine == "reference":
         return ""
@@ -306,11 +298,7 @@ def _at(wanted: float, runs: FloatArray, column: int) -> float:
     return math.exp(np.interp(math.log(wanted), error[::-1], values[::-1]))
 
 
-# --- Tables of all recorded settings
-
-
 def _finest(runs: FloatArray) -> str:
-    """Return as text the error in m of the finest of ``runs``, its estimate and, for several runs, the order."""
     steps, error = runs[:, STEPS], runs[:, ERROR]
     if len(runs) == 1 or not np.all(error[-2:] > 0.0):
         return f"{error[-1]:.1g}"
@@ -319,7 +307,7 @@ def _finest(runs: FloatArray) -> str:
 
 
 def time_to(wanted: float, runs: FloatArray) -> str:
-    """Return as text the processor time in ms for the error ``wanted``."""
+    """Return as text the processor time (ms) for the error ``wanted``."""
     if math.isnan(seconds := _at(wanted, runs, SECONDS)):
         return "not reached"
     return f"{'≤ ' * bool(runs[0, ERROR] <= wanted)}{1e3 * seconds:.3g}"

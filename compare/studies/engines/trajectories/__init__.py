@@ -1,4 +1,4 @@
-"""Simple motions: all states compared with the reference, and integrals of velocities and forces along them."""
+"""Simple motions: states, and integrals of velocities and forces."""
 
 from compare.studies.engines.trajectories.pictures import draw
 from compare.studies.engines.trajectories.study import STUDY

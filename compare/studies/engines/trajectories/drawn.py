@@ -1,4 +1,4 @@
-"""Random motions from the whole parameter range of the studies, redrawn until they suit the claims."""
+"""Random motions from the whole parameter range, redrawn until they suit the claims."""
 
 from __future__ import annotations
 
@@ -36,7 +36,6 @@ def _pin(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stiffening(random: Generator, disc_speed: float) -> PinOnDisc:
-    """Draw a pin on a hardening support, with a stop along which a body that swings far out rolls."""
     pin = _pin(random, disc_speed)
     size = abs(pin.offset)
     return replace(
@@ -84,7 +83,7 @@ def _sliding(random: Generator, system: System) -> tuple[float, ...]:
 
 
 def _slides(motion: Motion) -> bool:
-    """Return whether everything slips clearly, and the stop is touched always or never, so forces are smooth."""
+    """Return whether forces are smooth: everything slips clearly, and the stop is touched always or never."""
     system, run = motion.system, by_reference(motion)
     speed = run.slip_speed
     if isinstance(system, DiscOnDisc):
@@ -103,7 +102,6 @@ def _sticking(random: Generator, disc_speed: float) -> PinOnDisc:
 
 
 def _stuck(random: Generator, pin: PinOnDisc) -> tuple[float, ...]:
-    """Draw a start that turns with the disc, at a radius where friction may or may not hold the pin by (7)."""
     z = cmath.rect(min(farthest(pin), 1.0) * random.uniform(0.1, 1.0), random.uniform(-math.pi, math.pi))
     v = 1j * pin.disc_speed * z
     return (z.real, z.imag, v.real, v.imag)
@@ -132,7 +130,7 @@ def _sticks(motion: Motion) -> bool:
 class Drawn:
     """Random motions of one kind, drawn on demand: at all ``SPEEDS``, in both senses.
 
-    ``number`` is part of the seed and differs between kinds.
+    ``number`` is part of the seed.
     """
 
     number: int

@@ -41,8 +41,6 @@ from compare.studies.engines.trajectories.theory import (
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.systems import FloatArray
 
-# --- One claim about several motions
-
 Motions = Iterable[Motion]
 
 Measure = Callable[[Engine, Motion], "Measured | None"]
@@ -66,7 +64,7 @@ def together(measure: Measure) -> MeasureAll:
 
 
 def pooled(parts: Sequence[Measured]) -> Measured:
-    """Return the results of several systems of one kind as one, with all numbers and their error bars."""
+    """Return the results of several systems of one kind as one."""
     first, *others = parts
     if not others:
         return first
@@ -95,7 +93,7 @@ def _sizes(part: Measured) -> FloatArray:
 
 
 def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float | str]:
-    """Return the common value of each parameter, or its smallest and largest value as text."""
+    """Return the common value of each parameter, or its range as text."""
     found: dict[str, float | str] = {}
     for name, value in parameters[0].items():
         values = [one[name] for one in parameters]
@@ -104,8 +102,6 @@ def _ranges(parameters: Sequence[Mapping[str, float | str]]) -> dict[str, float 
         found[name] = f"{min(numbers):.3g} … {max(numbers):.3g}" if spread else value
     return found
 
-
-# --- The study
 
 STUDY = Study.beside(
     __file__,
@@ -137,7 +133,6 @@ OF_DISCS = {
     "(19), (20)": by_name(RINGS, "rings"),
     "(19), (21)": by_name(POINTS, "points"),
 }
-"""Motions of discs by their equations."""
 
 
 def of_bodies(
@@ -163,12 +158,9 @@ def of_bodies(
     return declare
 
 
-# --- The claims
-
-
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
 def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    """Return the motion at ``times_of(motion)``, which all claims about it share."""
+    """Return the motion at ``times_of(motion)``."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
@@ -332,7 +324,7 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
     return Measured(
         predicted=predicted,
         value=found.value,
-        # A single error may be small by chance, but an error of the tolerance affects all numbers.
+        # An error of the tolerance affects all numbers.
         error=found.largest + motion.tolerance * motion.until,
         size=1.0 / motion.system.natural_frequency,
         components=[f"{kind[i % len(kind)]} {i // len(kind) + 1}" for i in range(len(predicted))],
@@ -344,9 +336,6 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
 
 def started(motion: Motion) -> str:
     return f"To t = {motion.until:g} s from {motion.start}."
-
-
-# --- Other motions
 
 
 def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:

@@ -1,8 +1,8 @@
-"""Motions with given parameters, ranges of the random motions, and integrals of rates over panels of time.
+"""Motions, ranges of the random ones, and integrals over panels of time.
 
-The paper's parameters m, J and C are all one, so an engine that confuses two of them still moves correctly. Here no
-two parameters are equal. A mistake may also occur only for certain parameters, such as a slow disc or one that turns
-the other way, so random motions cover the whole range.
+The paper's m, J and C are all one, so an engine that confuses them still moves correctly. Here no two parameters are
+equal. A mistake may also occur only for certain parameters, such as a slow disc, so random motions cover the whole
+range.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ OTHER_WAY = replace(DISC, damping=0.15, disc_speed=-1.9, shaft_speed=-1.6)
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion to ``until`` in s; the resolution of its claims is in SI units."""
+    """A motion to ``until`` (s), with the resolution of its claims in SI units."""
 
     system: System
     start: tuple[float, ...]
@@ -100,17 +100,17 @@ MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
 """Only in the pin that sticks does a point of the contact come to rest, where friction has a kink."""
 
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
-"""Motions for an engine that differs from another one only in its contact."""
+"""For an engine that differs from another one only in its contact."""
 
 # --- Drawn from the whole range
 
 SEED = 8
 
 SPEEDS = ((0.1, 0.3), (0.4, 3.0), (4.1, 6.0))
-"""Ranges of |ω| in rad/s: slow, near the natural frequency, and fast. The other studies use 0.15 to 5."""
+"""|ω| in rad/s: slow, near the natural frequency, and fast; the other studies use 0.15 to 5."""
 
 UNTIL = 3.0
-"""Duration in s."""
+"""In s."""
 
 LEAST_SLIP = 0.15
 """Smallest slip over the largest, so nothing almost rests where forces are integrated."""
@@ -119,7 +119,7 @@ MOST_TURN = 2.0
 """Largest rotation in rad of a disc on points during a ``PANEL``, because its forces turn with it."""
 
 STICKS_FOR = (0.2, 2.0)
-"""Range of the duration in s of the initial stick phase."""
+"""Duration of the initial stick phase in s."""
 
 MOST_PHASES = 6
 
@@ -153,7 +153,7 @@ def at_bounds(states: FloatArray) -> FloatArray:
 
 
 def at_nodes(states: FloatArray) -> FloatArray:
-    """Return the states at the nodes of each panel, shape (panels, nodes, 4 or 6)."""
+    """Return the states at the nodes, shape (panels, nodes, 4 or 6)."""
     return states[:-1].reshape(-1, len(NODES) + 1, states.shape[1])[:, 1:]
 
 
@@ -161,8 +161,8 @@ def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
 
     The rule with n nodes misses the Legendre coefficients from 2n on. The error estimate assumes that they decay at
-    the mean rate between the middle and the last of the first n coefficients. It contains SAFETY, because they decay
-    more slowly if a point of the contact comes to rest.
+    the mean rate between the middle and the last of the first n, times SAFETY, because they decay more slowly if a
+    point of the contact comes to rest.
     """
     n = len(NODES)
     project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)
@@ -174,7 +174,7 @@ def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def forces(body: System, states: FloatArray) -> FloatArray:
-    """Return the force in N, and for a disc the moment in N m, in slipping ``states`` of shape (..., 4 or 6)."""
+    """Return the force (N), and for a disc the moment (N m), in slipping ``states`` of shape (..., 4 or 6)."""
     law, support = contact_of(body), Support.of(body)
     half, omega = body.state_size // 2, body.disc_speed
 
@@ -203,7 +203,7 @@ def equation_of(motion: Motion) -> str:
 
 
 def samples_in_stick(run: Trajectory) -> list[int]:
-    """Return the index of the sample in the middle of each stick phase that ends by release."""
+    """Return the index of the middle sample of each stick phase that ends by release."""
     found = []
     for phase in run.stick_phases:
         inside = np.flatnonzero((run.times > phase.start) & (run.times < phase.end))
@@ -213,7 +213,7 @@ def samples_in_stick(run: Trajectory) -> list[int]:
 
 
 def stick_times(run: Trajectory) -> FloatArray:
-    """Return start and end in s of all stick phases longer than ``STICK_RESOLUTION``, in order.
+    """Return start and end (s) of all stick phases longer than ``STICK_RESOLUTION``.
 
     Shorter phases, such as 1e-7 s of stick before a release, do not change the motion.
     """
@@ -222,12 +222,12 @@ def stick_times(run: Trajectory) -> FloatArray:
 
 
 def as_many(found: FloatArray, as_in: FloatArray) -> FloatArray:
-    """Return ``found``, or NaN if the number of elements differs from ``as_in``."""
+    """Return ``found``, or NaN if its shape differs from that of ``as_in``."""
     return found if found.shape == as_in.shape else np.full(as_in.shape, math.nan)
 
 
 def late(run: Trajectory, pin: PinOnDisc, samples: list[int]) -> FloatArray:
-    """Return the delay in s of the end of each phase after (7) at a sample in it; NaN without such a phase."""
+    """Return the delay (s) of the end of each phase after (7) at a sample in it; NaN without such a phase."""
     result = []
     for i in samples:
         time = float(run.times[i])

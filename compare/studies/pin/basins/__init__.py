@@ -1,4 +1,4 @@
-"""Basins of equilibrium and whirl in Fig. 5: their boundary, and their change with the speed."""
+"""Basins of equilibrium and whirl in Fig. 5."""
 
 from compare.studies.pin.basins.pictures import draw
 from compare.studies.pin.basins.study import STUDY, curves

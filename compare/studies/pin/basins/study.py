@@ -1,4 +1,4 @@
-"""Ends of many starts, and the boundary between them: the stable set of a saddle-type stick–slip orbit."""
+"""Ends of many starts, and the boundary between them: the stable set of a stick–slip orbit."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ CELLS, ON_BOUNDARY = 8, 1e-5
 """Resolution and tolerance of the boundary; splines between its points are 1.2e-3 off, half a step of the grid."""
 
 ASKED, BARELY = 64, 1e-6
-"""Largest number of starts for shooting, and smallest distance from the saddle in rad that decides their side."""
+"""Largest number of starts for shooting, and smallest distance (rad) from the saddle that decides their side."""
 
 UNTIL = 3000.0  # duration in s
-SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # in rad/s
 STARTS, SEED = 2000, 5  # random starts, the same at every speed
-RECOMPUTED = 16  # starts that the plain reference recomputes, half of them near the boundary
-SETTLED = 250.0  # duration in s until the plain reference has reached one of the two ends from these starts
-STEP = 5e-3  # distance in rad of other releases from the saddle's, for an engine's multiplier
+RECOMPUTED = 16  # starts for the plain reference, half of them near the boundary
+SETTLED = 250.0  # in s until these starts have reached one of the two ends
+STEP = 5e-3  # distance (rad) of other releases, for an engine's multiplier
 
 PLACES, ASIDE = 4, 5e-3
 """Starts on the boundary, and distance of simulated starts from it in m and m/s."""
@@ -59,7 +59,7 @@ WITHIN, REACH = (0.05, -0.1), 0.4
 """A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
-"""Duration in s until the engines' motions have left the saddle, and tolerance."""
+"""In s until the engines' motions have left the saddle, and tolerance."""
 
 
 def curves(
@@ -92,14 +92,14 @@ def sought_from(pin: PinOnDisc) -> StickSlipOrbit:
 
 @functools.cache
 def boundary(pin: PinOnDisc, cells: int) -> FloatArray:
-    """Return the closed boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
+    """Return the boundary in the plane of x0 and vx0, shape (n, 2); the last point is the first."""
     (curve,) = basin_boundary(sought_from(pin), ranges=WHERE[pin], cells=cells)
     points = np.asarray(curve.points)
     return points if np.array_equal(points[0], points[-1]) else np.vstack((points, points[:1]))
 
 
 def smooth(points: FloatArray, samples: int = 1000) -> FloatArray:
-    """Return a closed curve through ``points`` (n, 2) by periodic cubic splines, shape (samples + 1, 2)."""
+    """Return a closed curve through ``points`` (n, 2) by cubic splines, shape (samples + 1, 2)."""
     length = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
     curve = CubicSpline(length, points, bc_type="periodic")
     return np.asarray(curve(np.linspace(0.0, length[-1], samples + 1)))
@@ -236,7 +236,7 @@ def returns(engine: Engine) -> Measured:
         return np.array([middle.time, middle.stick_time, multiplier(STEP, tolerance)])
 
     found = refined(one_turn)
-    # The change is 15 times the error, because twice the step multiplies an error of fourth order by 16.
+    # The change is 15 times the error: twice the step multiplies an error of fourth order by 16.
     bent = abs(multiplier(2.0 * STEP, WORKING) - found.value[2]) / 7.5
     return Measured(
         predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
@@ -288,7 +288,7 @@ def divides(side: int = SIDE, cells: int = CELLS) -> Measured:
     beyond, whirled = places[other], ends.ravel()[other] == EndState.WHIRL
     off, _ = cKDTree(curve).query(beyond)
     farthest = np.argsort(off)[: -ASKED - 1 : -1]
-    sides = Separatrix.of(saddle(FIG5))  # far tighter than the required margin
+    sides = Separatrix.of(saddle(FIG5))  # far tighter than required
     misses = np.array([sides.miss(start) for start in starts_at(*beyond[farthest].T)])
     before, behind = sides.ends
     as_it_ended = np.where(whirled[farthest] == (behind > before), misses, -misses)

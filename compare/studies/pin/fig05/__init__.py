@@ -1,4 +1,4 @@
-"""Fig. 5: equilibrium and whirl side by side, the stick phases before them, and the critical start."""
+"""Fig. 5: equilibrium and whirl, stick phases, and the critical start."""
 
 from compare.studies.pin.fig05.pictures import animate, draw
 from compare.studies.pin.fig05.study import STUDY

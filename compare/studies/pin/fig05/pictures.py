@@ -31,7 +31,7 @@ BARS: dict[str, dict[str, Any]] = {
     "equilibrium": {"linestyle": "--", "linewidth": 0.9},
     "whirl": {"linestyle": "-.", "linewidth": 0.9},
 }
-"""Errors of stick and release times, and their error bars."""
+"""For the errors of event times, and their error bars."""
 
 STUCK = PURPLE
 

@@ -24,19 +24,19 @@ from reference_model.systems import FloatArray
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
-"""Duration in s, which the paper omits; the slowest transients then have decayed to 1e-8."""
+"""In s, which the paper omits; the slowest transients then have decayed to 1e-8."""
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # near the whirl, with permanent slip (our choice)
+FURTHER_TURNS = 20  # after a run; the last turn is averaged
+SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # permanent slip near the whirl (our choice)
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 
 CAPTURE = 1e-6  # required accuracy of the critical velocity in m/s
 
 AFTERWARDS = 220.0
-"""Duration in s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
+"""In s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
 
 SIDES_TOLERANCE = 1e-7
 
@@ -44,7 +44,6 @@ BESIDE = 2e-5
 """Half width in m/s of the search for the critical velocity, about its value at ``SIDES_TOLERANCE``."""
 
 RUNS_TOLERANCE = 5.0 * WORKING
-"""Tolerance of the runs of Fig. 5."""
 
 CRITICAL_TOLERANCE = WORKING / 5.0
 """The critical velocity of a regularised law has an error about a hundred times larger."""
@@ -57,7 +56,7 @@ deviated by up to 1.2e-6 of the resolution.
 """
 
 STICK_RESOLUTIONS = {"first": 1e-3, "all": 1e-2}
-"""In s, of the first stick phase and of all."""
+"""In s."""
 
 
 @functools.cache
@@ -113,7 +112,7 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 
 @functools.lru_cache(maxsize=8)
 def critical_velocity(engine: Engine, tolerance: float) -> float:
-    """Return vx(0) in m/s that puts the second stick phase as far from the axis as the first.
+    """Return vx(0) (m/s) that puts the second stick phase as far from the axis as the first.
 
     It is NaN if a pin does not stick twice, or moves in the same direction from both starts. At small tolerances, the
     search begins near the result of a larger tolerance.
@@ -152,7 +151,7 @@ def run_of(engine: Engine, name: str, tolerance: float) -> Trajectory:
     kind="trajectory",
     unit="m, m/s",
     resolution=1e-7,
-    basis="independent",  # (10) has separate equations and a separate integration
+    basis="independent",  # separate equations and integration
     named={"slip for 100 s": None},
 )
 def slides(engine: Engine) -> Measured:
@@ -169,7 +168,7 @@ def slides(engine: Engine) -> Measured:
     return Measured(
         predicted=predicted,
         value=found.value,
-        error=found.plus(np.abs(rougher - predicted)).largest,  # a single error may be small by chance
+        error=found.plus(np.abs(rougher - predicted)).largest,
         components=[f"t = {t:g} s, {name}" for t in SLIDING_TIMES for name in components_of(FIG5)],
         source="Fig. 5; start (0.9, 0, 0, 0.9) near the whirl and without stick is our choice",
     )
@@ -281,8 +280,6 @@ def all_sticks(engine: Engine, name: str) -> Measured:
 
 
 def _events(engine: Engine, name: str, which: str, size: int) -> Measurement:
-    """Return the ``size`` "first" or "all" stick and release times (s) of a run."""
-
     def times(tolerance: float) -> FloatArray:
         found = run_of(engine, name, tolerance).stick_times
         events = found[:size] if which == "first" else found
@@ -327,7 +324,7 @@ def _critical(engine: Engine) -> Measurement:
 )
 def sides(engine: Engine) -> Measured:
     margins, errors = asked(functools.partial(_parted, engine), SIDES_TOLERANCE)
-    if _critical(engine).largest > CAPTURE:  # the motions may then divide at another start
+    if _critical(engine).largest > CAPTURE:  # the motions may divide at another start
         errors = np.full_like(margins, math.inf)
     return answers_of(margins, errors, parameters={"tolerance": SIDES_TOLERANCE})
 

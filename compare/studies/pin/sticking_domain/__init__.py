@@ -1,4 +1,4 @@
-"""Eqs. (6) to (9): where the pin sticks permanently, when it is released elsewhere, and the resonance of both."""
+"""Eqs. (6) to (9): permanent stick, release, and their resonance."""
 
 from compare.studies.pin.sticking_domain.pictures import draw
 from compare.studies.pin.sticking_domain.study import STUDY, curves

@@ -1,4 +1,4 @@
-"""The radius (9) and the turn until release (7) over the disc speed, and the speed of the largest radius."""
+"""The radius (9) and the turn until release (7) over the disc speed."""
 
 from __future__ import annotations
 
@@ -25,26 +25,22 @@ from reference_model.formulas.pin import (
 )
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- The pin of Fig. 4, and starts of stick and of release
-
 PIN = FIG4
 SOURCE = "Fig. 4, whose friction force is above C·X0; the values of ω are our choice"
 RESONANCE = resonant_disc_speed(PIN)
 
-SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s of the starts
+SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s
 
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Radii of the starts over (9)."""
-CREEP = 1e-2  # relative displacement above which stick is uncertain
+"""Radii over (9)."""
+CREEP = 1e-2  # relative displacement that leaves stick uncertain
 
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
-"""Such a displacement just outside (9), where creep by this fraction of the distance to the edge may hold a pin too
-long.
-"""
+"""Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
 LATEST = 1.1  # duration for a pin outside, over the time (7)
-REVOLUTIONS = 2.0  # duration for a pin inside; the holding force has the period of one revolution
+REVOLUTIONS = 2.0  # for a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
@@ -57,7 +53,7 @@ PRECISION = 6e-5  # relative accuracy of this search
 SEARCH_TOLERANCE = 1e-7
 
 TOLERANCE = 3e-8  # moderate, because regularised laws close to Coulomb's make stick expensive
-DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m for the search of the largest radius (9)
+DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m
 FAST = (10.0, 30.0, 100.0)  # ω in rad/s far above the resonance
 
 
@@ -66,7 +62,7 @@ def pin_at(speed: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the radius (9) in m, and the turns in rad until release, over ω in rad/s."""
+    """Return the radius (9) in m, and the turns (rad) until release, over ω (rad/s)."""
     speeds = np.unique(np.concatenate((np.linspace(0.15, 2.6, 200), RESONANCE + np.linspace(-0.2, 0.2, 81))))
     return {
         "speed": speeds,
@@ -76,7 +72,7 @@ def curves() -> Data:
 
 
 def predicted_turns(speeds: ArrayLike) -> FloatArray:
-    """Return the turns in rad that (7) predicts, shape (n, 2), for ``speeds`` in rad/s, shape (n,)."""
+    """Return the turns (rad) that (7) predicts, shape (n, 2), for ``speeds`` (rad/s), shape (n,)."""
     return np.array(
         [
             [turn_until_release(pin, share * sticking_radius(pin), safest_angle(pin)) for share in OUTSIDE]
@@ -88,8 +84,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. If a radius is missing, the vertex is missing; it is open if the errors
-    of all missing radii are infinite.
+    ``relative_error`` is that of the radii A. Without one of them the vertex is missing, and open if the errors of
+    all missing radii are infinite.
     """
 
     def found(values: FloatArray) -> float:
@@ -126,10 +122,7 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return the displacements on the disc of pins inside the radius (9), shape (n, 2), and which pins always stick.
-
-    Displacements are relative to the distance from the axis.
-    """
+    """Return the displacements of pins inside the radius (9) over it, shape (n, 2), and which pins always stick."""
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
     starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]

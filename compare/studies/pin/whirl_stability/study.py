@@ -32,7 +32,7 @@ K = CENTRED.natural_frequency
 
 SPEEDS = (1.1, 1.5, 4.0)
 DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
-"""Long simulations: ω in rad/s, initial radius over (11), duration in s, and its final part in s, which yields the
+"""Long simulations: ω in rad/s, initial radius over (11), duration in s, and its final part, which yields the
 remaining transient. The slowest deviation falls to 1e-10.
 """
 
@@ -42,7 +42,7 @@ CAUGHT = 18.0
 
 POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
 FLOW_DURATION = 0.5
-"""Eigenvalues: ω in rad/s and β in N s/m, and duration of the simulations in s."""
+"""Eigenvalues: ω in rad/s and β in N s/m, and duration in s."""
 
 DEVIATION = 1e-3
 DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
@@ -50,7 +50,7 @@ DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)
-"""ω/k, also below 1, and β/(mk) of the grid for the comparison of (14) to (16) with eigenvalues."""
+"""ω/k, also below 1, and β/(mk), to compare (14) to (16) with eigenvalues."""
 
 
 def pin_at(speed: float, damping: float = CENTRED.damping) -> PinOnDisc:
@@ -125,7 +125,7 @@ def same_eigenvalues() -> Measured:
 
 
 def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
-    """Return the answers of a statement for all points of the grid; one in a thousand may be open."""
+    """Return the answers for all points of the grid; one in a thousand may be open."""
     return answers_of(
         margins,
         errors,
@@ -185,7 +185,7 @@ SETTLING = (
 
 
 def turning_speed(states: FloatArray) -> FloatArray:
-    """Return ψ̇ in rad/s of ``states``, shape (..., 4)."""
+    """Return ψ̇ (rad/s), shape (...), of ``states``, shape (..., 4)."""
     x, y, vx, vy = np.moveaxis(states, -1, 0)
     return np.asarray((x * vy - y * vx) / (x**2 + y**2))
 
@@ -204,7 +204,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=DURATION,
             delay=DELAY,
-            period=np.pi / K,  # approximate period of deviations in axes that turn with the whirl
+            period=np.pi / K,  # approximate, of deviations in axes that turn with the whirl
             rate=-whirl_eigenvalues(pin_at(speed))[1].real,
             tolerance=WORKING / 5,  # for a resolution of 1e-9
         )
@@ -262,7 +262,7 @@ def _at_end(engine: Engine, speeds: Sequence[float], which: int, predicted: floa
 def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     if engine.contact_only:
         return None
-    interval = 0.01  # between the states, in s
+    interval = 0.01  # in s
     fourth_order = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
     pins = [pin_at(speed) for speed in starts]
 

@@ -26,19 +26,19 @@ BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc
 
 FRICTION = BLOCK.friction_force
 DECELERATION = FRICTION / BLOCK.mass
-"""Deceleration g in m/s²."""
+"""g in m/s²."""
 
 HEADINGS = (0.0, 22.5, 45.0, 67.5)
-"""Headings in degrees from the x axis: sides, corners and neither of squares and octagons in any orientation."""
+"""In degrees: sides, corners and neither of squares and octagons in any orientation."""
 
 SPEED = 1.0
-"""Initial speed v₀ in m/s."""
+"""v₀ in m/s."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times over the time to rest."""
 
 AT_REST = 1.5
-"""Sample time over the time to rest, late enough for regularised laws."""
+"""Such a time, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
 """A stretch of 10 m pulls with μN, so the pull changes slowly."""
@@ -47,35 +47,31 @@ LOADS = (0.1, 0.5, 0.9, 0.99)
 """Pulls over μN that friction holds."""
 
 BEYOND = 1.01
-"""Pull over μN that friction does not hold."""
+"""Pull over μN that exceeds friction."""
 
 HELD = 10.0
-"""Duration in s of a hold, and of a slide under the pull ``BEYOND``."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
-"""Smallest displacement in m that counts as motion: half of the slide under the pull ``BEYOND``."""
+"""Smallest displacement (m) that counts as motion: half of the slide under ``BEYOND``."""
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
-"""Position of release over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
+"""Over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
-"""Half swings to rest."""
 
 DIAGONAL = 45.0
-"""Heading of the swings in degrees."""
 
 PULL = 1.5
 """Initial pull over μN on a block thrown along it."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
-"""The spring is stretched by 150 m at the start. A larger distance would leave too few digits of the position."""
+"""Initially stretched by 150 m; a larger distance would cost digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
-"""Sample times in s."""
 
 ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
-"""A block at the origin is pulled with μN along x; the pull is constant to about 1e-6."""
+"""The spring pulls a block at the origin with μN along x, constant to about 1e-6."""
 
 TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
 """Sample times in s; in the end the block moves almost along the pull."""
@@ -85,8 +81,7 @@ def direction(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
-# --- Closed forms, from Newton's law and friction μN against the slip
-# Lengths are in m, speeds in m/s, times in s; s is the distance along a line, and v = ds/dt.
+# --- Closed forms, from Newton's law with friction μN; s (m) is the distance along a line, and v = ds/dt
 
 STOPPING_TIME = SPEED / DECELERATION
 STOPPING_DISTANCE = 0.5 * SPEED**2 / DECELERATION
@@ -99,7 +94,7 @@ def thrown(times: ArrayLike) -> FloatArray:
 
 
 def half_swings(pin: PinOnDisc, start: float, times: ArrayLike) -> FloatArray:
-    """Return s and v, shape (n, 2), after release at s = ``start`` > f = μN/C, with the spring relaxed at 0.
+    """Return s and v, shape (n, 2), after release at s = ``start`` > f = μN/C from a spring relaxed at 0.
 
     In half swing n (from 0) the block oscillates like cos kt about (−1)^n·f with the amplitude start − (2n + 1)·f. It
     rests when the next amplitude would not be positive.
@@ -126,25 +121,25 @@ def pulled(pin: PinOnDisc, speed: float, stretch: float, times: ArrayLike) -> Fl
 def across(times: ArrayLike) -> FloatArray:
     """Return the velocity along and across a constant pull μN of a block thrown across it, shape (n, 2).
 
-    The sum of the speed and the velocity along the pull is constant, because pull and friction change them at
-    opposite rates. With the angle θ between pull and velocity and w = tan²(θ/2), they are v₀(1 ± w)/2, and the
-    velocity across is v₀√w. Newton's law for θ becomes w + ln w = 1 − 4gt/v₀.
+    Pull and friction change the speed and the velocity along the pull at opposite rates, so their sum is constant.
+    With the angle θ between pull and velocity and w = tan²(θ/2), they are v₀(1 ± w)/2, and the velocity across is
+    v₀√w. Newton's law becomes w + ln w = 1 − 4gt/v₀.
     """
     w = lambertw(np.exp(1.0 - 4.0 * DECELERATION * np.asarray(times, dtype=float) / SPEED)).real
     return np.column_stack((0.5 * SPEED * (1.0 - w), SPEED * np.sqrt(w)))
 
 
 def bend_by_spring(times: FloatArray) -> float:
-    """Return the largest error in m/s of ``across`` due to the change of the spring's pull along the path.
+    """Return the largest error (m/s) of ``across`` due to the change of the spring's pull.
 
-    The pull changes by C·r after a distance r ≤ v₀t. Friction is monotone in the slip, so the difference of two
-    velocities grows at most at the rate C·r/m.
+    The pull changes by C·r after a distance r ≤ v₀t. Friction is monotone in the slip, so two velocities diverge at
+    most at the rate C·r/m.
     """
     return float(0.5 * ACROSS.stiffness / ACROSS.mass * SPEED * times[-1] ** 2)
 
 
 def curves() -> Data:
-    """Return swings in units of μN/C over kt/π, and the velocity of ``across`` over time."""
+    """Return swings in units of μN/C over kt/π, and ``across`` over time."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     swings, times = np.linspace(0.0, SWINGS + 1.0, 401), np.linspace(0.0, 2.0, 201)
     return {
@@ -178,8 +173,7 @@ def moved(
 ) -> Measurement:
     """Return the states after the first of ``times``, along and across each heading, shape (headings, n, 4).
 
-    ``start`` is position and velocity, along + i·across. Positions are relative to (X0, 0), where the spring is
-    relaxed.
+    ``start`` is position and velocity, along + i·across, relative to (X0, 0), where the spring is relaxed.
     """
 
     def states(tolerance: float) -> FloatArray:
@@ -206,14 +200,14 @@ def on_a_line(motion: FloatArray, headings: Sequence[float]) -> FloatArray:
 
 
 def largest_by_component(found: Measurement) -> FloatArray:
-    """Return the largest error of each component, because a single error may be small by chance."""
+    """Return one error for each component, because single errors may be small by chance."""
     return np.asarray(np.max(found.error, axis=tuple(range(found.error.ndim - 1))))
 
 
 def along(
     found: Measurement, way: FloatArray, headings: Sequence[float], times: FloatArray, **more: Any
 ) -> Measured:
-    """Compare the states ``found`` with ``way``, s and v of shape (n, 2), along all headings."""
+    """Compare the states ``found`` with ``way``, s and v of shape (n, 2)."""
     return Measured(
         predicted=on_a_line(way, headings),
         value=found.value,

@@ -1,9 +1,9 @@
 """Pushes simulated forward: the hand follows its measured path, and the body slides on its feet.
 
-The hand is a point that pushes an edge of the triangle with friction and without adhesion. Two independent codes
-simulate it. The quasi-static code has exact friction and no inertia: the body takes the motion of least friction
-power that the hand allows (Moreau's principle of maximum dissipation). The Exudyn model has inertia, a stiff edge and
-regularised friction, and moves at the measured speed.
+The hand is a point that pushes an edge of the triangle with friction. Two independent codes simulate it. The
+quasi-static code has exact friction and no inertia: the body takes the motion of least friction power that the hand
+allows (Moreau's principle of maximum dissipation). The Exudyn model has inertia, a stiff edge and regularised
+friction.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from reference_model.systems import FloatArray
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.
 
-Three quarters of the measured forces lean less than 26 degrees from the edge's normal; a sliding hand would always
-lean by 26.6 degrees with this coefficient. The median error of the final position is 0.9 to 1.3 mm for coefficients
-from 0.2 to 0.6, and 2 mm for 0.1 and 0.8.
+Three quarters of the measured forces lean less than 26 degrees from the edge's normal; this coefficient allows 26.6
+degrees. The median error of the final position is 0.9 to 1.3 mm for coefficients from 0.2 to 0.6, and 2 mm for 0.1
+and 0.8.
 """
 
 SPEED = 2.45e-3
@@ -41,9 +41,9 @@ EDGES = {  # points on the edges in mm, and directions into the triangle
 
 @dataclass(frozen=True)
 class Path:
-    """Path of the hand in m, relative to the centre of mass in the body's first pose.
+    """Path of the hand (m) relative to the centre of mass, in the body's first pose.
 
-    ``normal`` points into the body, and ``depth`` is the distance of the edge from the centre of mass.
+    ``normal`` points into the body; ``depth`` is the distance from the edge to the centre of mass.
     """
 
     start: complex
@@ -53,7 +53,7 @@ class Path:
 
     @classmethod
     def of(cls, push: Push) -> Path:
-        """Return the path of a push against the edge that the hand is farthest outside of at the start."""
+        """Return the path of a push against the edge that the hand is initially farthest outside of."""
         start = complex(push.start_x, push.start_y)
         half = cmath.exp(0.5j * push.turn)
         end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
@@ -63,11 +63,11 @@ class Path:
 
     @property
     def way(self) -> complex:
-        """Displacement of the hand in m."""
+        """Displacement of the hand (m)."""
         return self.end - self.start
 
     def gap(self, hand: complex, position: complex, angle: float) -> float:
-        """Return the distance in m from the hand to the edge of the moved body."""
+        """Return the distance (m) from the hand to the edge of the moved body."""
         outside = (hand - position) * (cmath.exp(1j * angle) * self.normal).conjugate()
         return -outside.real - self.depth
 
@@ -123,7 +123,7 @@ class QuasiStatic:
         return slip / back, spin
 
     def _sticking(self, arm: complex, velocity: complex) -> tuple[complex, float, complex]:
-        """Return slip, spin and the hand's force for a hand that sticks to the body."""
+        """Return slip, spin and the force of a hand that sticks."""
         size = abs(velocity) / (LEGS * MM)
 
         def power(spin: float) -> float:
@@ -135,7 +135,7 @@ class QuasiStatic:
         return velocity - 1j * spin * arm, spin, force
 
     def _sliding(self, arm: complex, velocity: complex, force: complex) -> tuple[complex, float]:
-        """Return slip and spin for a hand that slides along the edge and pushes in the direction of ``force``."""
+        """Return slip and spin for a hand that slides and pushes in the direction of ``force``."""
         lever = LEGS * MM
 
         def power(free: FloatArray) -> tuple[float, FloatArray]:
@@ -157,7 +157,7 @@ class QuasiStatic:
 
 
 def measured_motion(push: Push) -> tuple[complex, float]:
-    """Return the measured displacement of the centre of mass in m, in the axes of the first pose, and the turn."""
+    """Return the measured displacement of the centre of mass (m), in the axes of the first pose, and the turn."""
     half = cmath.exp(0.5j * push.turn)
     return (half * complex(push.x, push.y) + (half**2 - 1.0) * CENTRE) * MM, push.turn
 
@@ -165,7 +165,7 @@ def measured_motion(push: Push) -> tuple[complex, float]:
 # --- The Exudyn model
 
 STIFFNESS = 1e6
-"""Stiffness of the edge in N/m; 4 N press the hand in by 4 µm."""
+"""In N/m; 4 N press the hand in by 4 µm."""
 
 STEPS = 300
 
@@ -173,7 +173,7 @@ STEPS = 300
 def by_exudyn(push: Push, epsilon: float) -> tuple[complex, float]:
     """Return the displacement of the centre of mass (m) and the turn (rad) of an Exudyn model.
 
-    ``epsilon`` is the regularisation in m/s of all friction.
+    ``epsilon`` regularises all friction (m/s).
     """
     import exudyn as exu
     import exudyn.itemInterface
@@ -181,7 +181,7 @@ def by_exudyn(push: Push, epsilon: float) -> tuple[complex, float]:
     from exudyn_models import add_ring_friction, solve_dynamic
     from exudyn_models.solver.solver_run import quiet
 
-    items: Any = exudyn.itemInterface  # its type hints do not fit its own calls
+    items: Any = exudyn.itemInterface  # its type hints do not fit its calls
     path, contact = Path.of(push), contact_of(push.series)
     duration = abs(path.way) / SPEED
     mbs = exu.SystemContainer().AddSystem()

@@ -57,7 +57,7 @@ def _forces() -> Figure:
 
 
 LENGTH = 6.0
-"""Length of an arrow in mm per N."""
+"""Length of arrows in mm/N."""
 
 
 def _limit_surface(panel: Axes, series: str) -> None:

@@ -1,21 +1,21 @@
 """Reduction of the logs of measured planar pushes to one row per push.
 
 The logs come from the repository robinzhoucmu/MLab_EXP, commit 4d86db94, folder PushExp/sensor_log (J. Zhou, Carnegie
-Mellon University, 2015, Apache-2.0) and are not part of this project. ``reduced.csv`` contains all numbers that the
-study uses. ``friction-discs report pushes --data FOLDER`` reduces logs again.
+Mellon University, 2015, Apache-2.0) and are not part of this project. ``reduced.csv`` contains the rows;
+``friction-discs report pushes --data FOLDER`` compares them with the logs.
 
-Choices, and how they change the median error of the force's direction in a series, which is 5 to 9 degrees:
+Choices, and their effect on a series' median error of the force's direction, which is 5 to 9 degrees:
 
-- Only the first and last poses of a push are recorded, so a body is assumed to move straight and turn uniformly.
-  Displacement and force are in the body's axes halfway between both poses. The axes of the first pose, with a
-  linearised displacement, raise the median by up to 8.3 degrees.
+- Only the first and last poses are recorded, so a body is assumed to move straight and turn uniformly. Displacement
+  and force are in its axes halfway. The axes of the first pose, with a linearised displacement, raise the median by
+  up to 8.3 degrees.
 - The mean force excludes the first 30 % of the samples (``SETTLING``), while the pusher closes a gap of 2.5 mm and
   the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. A
   start 0.2 s after the force exceeds 1 N changes them by at most 0.4 degrees and 2 %.
 - The first sample is the sensor's offset, as in the authors' work. The mean of 20 samples changes the median by at
   most 0.5 degrees.
-- The force acts where the hand is at the end of the push. The position at the start changes the median error of the
-  wrench by at most 2 degrees, and the work by at most 4 %.
+- The force acts at the hand's final position. Its initial position changes the median error of the wrench by at most
+  2 degrees, and the work by at most 4 %.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ SETTLING = 0.3
 """Share of a push's samples that the mean force excludes."""
 
 AT_REST = 20
-"""Number of samples before the pusher touches the body; their scatter is the sensor's noise."""
+"""Samples before contact; their scatter is the sensor's noise."""
 
 SENSOR = np.array([[1.0, 1.0], [1.0, -1.0]]) / math.sqrt(2.0)
-"""Minus the map from the sensor's components to the force on the body, in the axes of the hand."""
+"""Minus the map from the sensor's components to the force on the body, in the hand's axes."""
 
 NAMES = re.compile(r"((?:wood_)?(?:\d+(?:_\d+){5}|patch))-exp_.*\.txt(?:\.xz)?")
-"""File names of logs; the first group is the name of the series."""
+"""File names of logs; the first group names the series."""
 
 TOLERANCE = 1e-6
 """Largest difference between the table and a log, in mm, rad or N."""
@@ -56,14 +56,11 @@ class Push:
 
     - ``series``: "wood" or nothing for the board, then the positions of three feet or "patch".
     - ``samples``: number of force samples.
-    - ``x``, ``y``, ``turn``: displacement in mm of the origin of the body's frame, in the axes halfway, and rotation
-      in rad.
-    - ``lift``, ``tilt_x``, ``tilt_y``: changes of the measured height in mm and of the tilts in rad; a flat surface
-      allows none, so they are errors of the poses.
-    - ``force_x``, ``force_y``: mean force of the pusher on the body in N, in the axes halfway.
-    - ``noise``: standard deviation in N of a force component before contact.
-    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: positions of the hand in mm in the body's frame, before and
-      after.
+    - ``x``, ``y``, ``turn``: displacement (mm) of the body's origin, in the axes halfway, and rotation (rad).
+    - ``lift``, ``tilt_x``, ``tilt_y``: changes of height (mm) and tilts (rad), which are errors on a flat surface.
+    - ``force_x``, ``force_y``: mean force of the pusher on the body (N), in the axes halfway.
+    - ``noise``: standard deviation (N) of a force component before contact.
+    - ``start_x``, ``start_y``, ``end_x``, ``end_y``: first and last position of the hand (mm) in the body's frame.
     """
 
     series: str
@@ -87,8 +84,7 @@ class Push:
 def reduce_log(path: Path) -> list[Push]:
     """Return the pushes of a log, a text file that may be compressed by xz.
 
-    Raise ``ValueError`` if the file's name or content does not follow the format, and ``OSError`` if the file cannot
-    be read.
+    Raise ``ValueError`` if its name or content is invalid, and ``OSError`` if it cannot be read.
     """
     name = NAMES.fullmatch(path.name)
     if name is None:
@@ -168,13 +164,13 @@ def _components(name: str, vector: FloatArray) -> dict[str, Any]:
 
 
 def heading(pose: FloatArray) -> float:
-    """Return the rotation in rad about the vertical of a pose: x, y, z in mm and a quaternion."""
+    """Return the rotation (rad) about the vertical of a pose: x, y, z (mm) and a quaternion."""
     w, x, y, z = pose[3:]
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def tilt(pose: FloatArray) -> FloatArray:
-    """Return the small rotations in rad about the horizontal axes of a pose, shape (2,)."""
+    """Return the small rotations (rad) about the horizontal axes, shape (2,)."""
     w, x, y, z = pose[3:]
     return 2.0 * np.array([w * x + y * z, w * y - x * z])
 
@@ -218,8 +214,8 @@ def reduced_pushes() -> tuple[Push, ...]:
 def check_table(folder: Path) -> tuple[list[str], list[Push]]:
     """Compare the table with the logs in ``folder``.
 
-    Return the names of the series that agree, and the pushes of logs whose series is not in the table. Raise
-    ``ValueError`` if there are no logs, a log is invalid or a number differs.
+    Return the names of the series that agree, and the pushes of other series. Raise ``ValueError`` if there are no
+    logs, a log is invalid or a number differs.
     """
     logs = sorted(path for path in folder.iterdir() if NAMES.fullmatch(path.name)) if folder.is_dir() else []
     if not logs:

@@ -1,4 +1,4 @@
-"""Measured pushes of a triangle on three feet, or on its whole face, against Coulomb's law: a validation."""
+"""Claims on the pushes, and their validation."""
 
 from __future__ import annotations
 
@@ -101,10 +101,10 @@ def on_limit_surface() -> Measured:
 # --- Pushes simulated forward
 
 EVERY = 10
-"""Interval between the pushes of a series that are simulated forward."""
+"""Stride of the simulated pushes of a series."""
 
 EPSILON = 2e-5
-"""Regularisation in m/s of the Exudyn model; the hand moves at 2.45 mm/s."""
+"""Regularisation in m/s; the hand moves at 2.45 mm/s."""
 
 
 def simulated(every: int = EVERY) -> list[Push]:
@@ -113,7 +113,7 @@ def simulated(every: int = EVERY) -> list[Push]:
 
 @cache
 def quasi_static(steps: int = 5, hand: float = forward.HAND, every: int = EVERY) -> FloatArray:
-    """Return displacements x, y and turns times ``theory.PUSHER``, all in m, without inertia; shape (n, 3)."""
+    """Return displacements x, y and turns times ``theory.PUSHER`` (m) without inertia, shape (n, 3)."""
     return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated(every)])
 
 
@@ -138,7 +138,7 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
     deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
     return Measured(
         predicted=predicted,
-        value=2.0 * fine - coarse,  # the error of the regularisation is of first order
+        value=2.0 * fine - coarse,  # the error is of first order
         error=np.abs(fine - coarse) + np.abs(predicted - quasi_static(every=every)) + deformed,
         at={"push": [f"{push.series} {push.number}" for push in simulated(every)]},
         components=("x in m", "y in m", "turn times 50 mm in m"),

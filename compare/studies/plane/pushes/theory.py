@@ -1,7 +1,7 @@
-"""Coulomb friction in measured pushes: predicted forces, their errors, and other explanations of these errors.
+"""Predicted forces of measured pushes, their errors, and explanations of these errors.
 
 A push is quasi-static, so the pusher balances friction: a foot that moves by d carries its share of the sliding force
-against d. Mass, centre of mass, feet and sliding force are the authors' values; nothing is fitted.
+against d. All parameters are the authors' values; nothing is fitted.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ MASS, GRAVITY = 1.518, 9.81
 """Mass of the body in kg, and g in m/s²."""
 
 CENTRE = 50.0 + 50.0j
-"""Centre of mass in mm in the frame of the body."""
+"""In mm, in the frame of the body."""
 
 LEGS = 150.0
-"""Length of both legs of the triangle in mm; the origin is the corner between them."""
+"""Both legs of the triangle in mm; the origin is the corner between them."""
 
 PUSHER = 0.05
-"""The authors' unit of length in m for moments."""
+"""The authors' unit of length (m) for moments."""
 
 SLIDING_FORCES = {"board": 4.2, "wood": 5.0}
-"""Sliding force in N by surface."""
+"""In N, by surface."""
 
 DIVISIONS = 8
 """Divisions of a side of the patch for its quadrature."""
@@ -46,7 +46,7 @@ def surface(series: str) -> str:
 
 
 def feet(series: str) -> list[complex]:
-    """Return the positions of the feet in mm in the frame of the body, or none for the patch."""
+    """Return the positions of the feet (mm), or none for the patch."""
     numbers = [float(number) for number in series.removeprefix("wood_").split("_") if number != "patch"]
     return [complex(x, y) for x, y in zip(numbers[:3], numbers[3:], strict=True)]
 
@@ -80,7 +80,7 @@ class Wrench:
 
     @property
     def components(self) -> FloatArray:
-        """Both force components, and the moment over ``PUSHER``, all in N."""
+        """Both force components, and the moment over ``PUSHER`` (N)."""
         return np.array([self.force.real, self.force.imag, self.moment / PUSHER])
 
 
@@ -99,7 +99,7 @@ class Motion:
 
 
 def measured(push: Push) -> Wrench:
-    """Return the measured wrench of the pusher; its force acts where the hand is at the end of the push."""
+    """Return the wrench of the pusher, whose force acts at the hand's final position."""
     force, arm = complex(push.force_x, push.force_y), (complex(push.end_x, push.end_y) - CENTRE) * MM
     return Wrench(force, (arm.conjugate() * force).imag)
 
@@ -118,7 +118,7 @@ def coulomb(
 ) -> Wrench:
     """Return the wrench of Coulomb friction with the authors' parameters.
 
-    ``centre`` moves the centre of pressure of three feet (mm), ``factor`` multiplies the sliding force, and
+    ``centre`` (mm) moves the centre of pressure of three feet, ``factor`` multiplies the sliding force, and
     ``divisions`` refines the patch.
     """
     contact = contact_of(push.series, centre, divisions)
@@ -126,7 +126,7 @@ def coulomb(
 
 
 def force_error(push: Push, law: Law) -> float:
-    """Return the angle in degrees from the measured to the predicted force."""
+    """Return the angle (degrees) from the measured to the predicted force."""
     return float(np.degrees(np.angle(law(push).force * measured(push).force.conjugate())))
 
 
@@ -144,7 +144,7 @@ def wrench_error(push: Push, law: Law) -> float:
 
 
 def work_ratio(push: Push, law: Law) -> float:
-    """Return the work of the measured wrench over that of the predicted one."""
+    """Return the measured over the predicted work."""
     motion = Motion.of(push)
     along = np.array([motion.shift.real, motion.shift.imag, motion.spin * PUSHER])
     return float((measured(push).components @ along) / (law(push).components @ along))
@@ -185,9 +185,9 @@ class Uncertainties:
 
 
 def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
-    """Return the standard uncertainties of a displacement (mm) and of a turn (rad).
+    """Return the standard uncertainties of a displacement (mm) and a turn (rad).
 
-    On a flat surface height and tilt are constant, so their changes are errors of the poses. Errors in the plane are
+    Height and tilt are constant on a flat surface, so their changes are errors of the poses. Errors in the plane are
     assumed to be as large.
     """
     lift = NORMAL * float(np.median([abs(push.lift) for push in pushes]))
@@ -251,7 +251,7 @@ def pushed_above(push: Push, height: float) -> Wrench:
 def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrench:
     """Return the wrench as a sum over contact points, with the share ``at_edges`` of a patch's load on its edges.
 
-    μ is proportional to the speed to the power ``exponent``; the mean μ does not change.
+    μ is proportional to the speed to the power ``exponent``, with the same mean.
     """
     contact, motion = contact_of(push.series), Motion.of(push)
     arms, shares = np.array(contact.arms(0.0)), np.array(contact.shares)
@@ -267,7 +267,6 @@ def summed(push: Push, *, exponent: float = 0.0, at_edges: float = 0.0) -> Wrenc
 
 
 def _edges(count: int = 60) -> NDArray[np.complex128]:
-    """Return equidistant points on the edges of the triangle, in m relative to the centre of mass."""
     corners = np.array([0.0, LEGS, 1j * LEGS, 0.0])
     lengths = abs(np.diff(corners))
     along = (np.arange(count) + 0.5) / count * lengths.sum()
