@@ -19,7 +19,7 @@ MOST_POINTS = 1000
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest positive parameter and largest size of any: products of several stay finite."""
+"""Smallest positive parameter, and largest size of any: products of several then stay finite."""
 
 MOST_RATIO = 1e25
 """Largest rate in 1/s and largest m·R²/J: powers stay finite, and no integrator could follow faster rates."""
@@ -27,8 +27,6 @@ MOST_RATIO = 1e25
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """A mass on springs and dampers, pressed on a disc that turns at constant speed."""
-
     mass: float
     stiffness: float
     damping: float

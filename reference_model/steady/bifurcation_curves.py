@@ -165,7 +165,6 @@ def crossings(
 
 
 def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
-    """Yield the equations on both sides of U = W and for both signs of ω − Ω."""
     if kind not in get_args(Kind):
         raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
     law = isotropic_contact_of(plane.disc, contact, "the boundaries")

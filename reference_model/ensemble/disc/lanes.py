@@ -91,7 +91,7 @@ LEAST_SLIP = 1e-13
 """Scaled slip speed that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest scaled time of slip that is followed from rest."""
+"""Longest scaled time of slip followed from rest."""
 
 SUDDEN = 0.05
 """Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
@@ -253,7 +253,7 @@ def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
 
 @scalar
 def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it does."""
+    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it rests."""
     trial = lanes.trial
     state = state_at(trial, lane)
     x, y, ux, uy, r, angle, t, way = state
