@@ -116,9 +116,8 @@ class ParameterPlane:
 class Boundary:
     """A curve in a plane.
 
-    ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the
-    angle of (24) of the whirl in rad, tan α = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve
-    equals the first one.
+    ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the angle of (24) of the whirl in rad, tan α
+    = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve equals the first one.
     """
 
     kind: Kind

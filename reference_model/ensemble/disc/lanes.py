@@ -63,7 +63,7 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""Degrees of watching: flags where x is largest, where the radius is extreme, or both."""
+"""Degrees of watching: no flags; flags where x is largest; also where the radius is extreme; only the latter."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up, as for a pin."""
