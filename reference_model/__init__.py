@@ -6,7 +6,7 @@
 - ``contact``: friction laws and their limit surfaces;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
 - ``motion``: the event-driven simulation of slip and stick;
-- ``steady``: steady motions, their stability, and stability boundaries in planes of two parameters;
+- ``steady``: steady motions, their stability, and its boundaries;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
 - ``ensemble``: compiled simulation of one trajectory or many;
 - ``numerics``: roots, continuation, collocation, and curves where a function changes sign.

@@ -22,11 +22,7 @@ ROUNDED_UP = 1.0 + 1e-14
 
 @dataclass(frozen=True)
 class Support:
-    """Spring, hardening and stop, in N and m or in any consistent scaled units.
-
-    ``stiffness`` is C in N/m, ``offset`` X0 in m, ``hardening`` C₃ in N/m³, ``stop_gap`` the clearance in m, and
-    ``stop_stiffness`` C_s in N/m.
-    """
+    """Spring, hardening and stop, with parameters of :class:`reference_model.PinOnDisc` in any consistent units."""
 
     stiffness: float
     offset: float

@@ -19,7 +19,7 @@ MOST_POINTS = 1000
 
 
 LEAST, MOST = 1e-50, 1e50
-"""Smallest positive parameter and largest size of any: products of several stay finite."""
+"""Smallest positive parameter, and largest size of any: products of several then stay finite."""
 
 MOST_RATIO = 1e25
 """Largest rate in 1/s and largest m·R²/J: powers stay finite, and no integrator could follow faster rates."""
@@ -27,8 +27,6 @@ MOST_RATIO = 1e25
 
 @dataclass(frozen=True, kw_only=True)
 class _SupportedMass:
-    """A mass on springs and dampers, pressed on a disc that turns at constant speed."""
-
     mass: float
     stiffness: float
     damping: float
@@ -152,8 +150,8 @@ class DiscOnDisc(_SupportedMass):
     """A friction disc on springs and dampers, in contact with a turning master disc along a ring (Fig. 7).
 
     A torsional damper connects it to a shaft that turns at constant speed (19). The state is x, y in m, the angle in
-    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are those of :class:`PinOnDisc`; ω is the
-    speed of the master disc.
+    rad, vx, vy in m/s and the spin in rad/s. Errors and other parameters are those of :class:`PinOnDisc`, with μN of
+    the whole ring and ω of the master disc.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ def _checked_corners(corners: Iterable[tuple[float, float]]) -> list[complex]:
 
 
 def _triangles(around: list[complex]) -> list[tuple[complex, ...]]:
-    """Cut off ears: triangles of neighbours that turn left and contain no other corner."""
+    """Cut ears off the polygon: triangles of neighbours that turn left and contain no other corner."""
     left = list(around)
     result: list[tuple[complex, ...]] = []
     while len(left) > 2:

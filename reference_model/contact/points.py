@@ -49,7 +49,7 @@ class Points:
 
     @cached_property
     def _seen_from(self) -> dict[int | None, tuple[_Friction, ...]]:
-        """All other points, seen from each point requested so far; for None all points, seen from the centre."""
+        """All other points relative to each point requested so far; for None all points relative to the centre."""
         return {None: tuple((arm, arm.conjugate(), share) for arm, share in self._loaded)}
 
     @property

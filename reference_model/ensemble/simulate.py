@@ -49,7 +49,7 @@ def simulate_ensemble(
     initial_states : array-like of shape (n, 4) or (4,), of discs (n, 6) or (6,)
         Initial states, one per trajectory or one for all.
     duration
-        Duration in s, > 0.
+        In s, > 0.
     tolerance
         As in ``reference_model.simulate``. At 1e-9, of 4,000 states each of Figs. 5, 8, 9 and 11 after 100 s, half
         have errors below 4e-9 and 99 % below 1e-8; the largest is 2e-7.

@@ -1,7 +1,7 @@
 """The closed forms of section 4 of the paper, one function per equation, and results of the same balances.
 
-Signs are those of :mod:`reference_model.formulas.pin`: formulas are evaluated for |ω| with the given Ω/ω. If ω < 0, y
-and the spin change sign; if X0 < 0, x and y do.
+Signs are those of :mod:`reference_model.formulas.pin`, with the given Ω/ω. If ω < 0, y and the spin change sign; if
+X0 < 0, x and y do.
 """
 
 from __future__ import annotations

@@ -75,8 +75,7 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     friction, damping and springs are right and the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
-    sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` if there is only one
-    time.
+    sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.
     """
     if len(trajectory.times) < 2:
         raise ValueError("times has one entry: a power balance needs at least two")

@@ -112,8 +112,8 @@ def _body(run: Run, system: System, contact: IsotropicContact | Points, unit: Un
 class _Frame:
     """Conversion between states in SI units and scaled unknowns relative to the master disc.
 
-    ``lengths``, shape (2,) or (3,), are the units of the positions in m, and of the angle in rad. ``speeds`` are
-    those of the relative velocities; for φ̇ − ω the unit of r = κ(φ̇ − ω) in rad/s.
+    ``lengths`` are the units of x, y (m) and the angle (rad), ``speeds`` those of the relative velocities; for φ̇ − ω
+    the unit of r = κ(φ̇ − ω) in rad/s.
     """
 
     disc_speed: float

@@ -1,6 +1,6 @@
 """A disc on single points that turns about one of them, which slips slowly or rests.
 
-The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point. So v keeps its relative
+The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point, which keeps its relative
 accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point accelerates by B +
 Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In slip
 λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, up to gq.

@@ -219,7 +219,7 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
 
 
 def _first_rest(speed: FloatArray, duration: float) -> float:
-    """Return the first zero of the slip speed, a series with the coefficients ``speed``, up to ``duration``, or inf.
+    """Return the first zero of the slip speed with the series ``speed``, up to ``duration``, or inf.
 
     At a release the first coefficient should vanish, and its rounding error adds a root near zero, where slip rises.
     """

@@ -42,7 +42,6 @@ STALLED = 0.3
 """Ratio of successive changes above which Newton's method needs a new Jacobian."""
 
 LARGEST_GROWTH = 2.0
-"""Largest ratio of successive steps."""
 
 SETTLED = 5
 """Number of successive steps with little growth that count as settled."""

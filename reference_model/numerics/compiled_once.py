@@ -63,7 +63,7 @@ class CompiledOnce:
 def compiled_for(
     kind: tuple[Any, ...], function: Callable[..., Any], package: Path, nogil: bool = False
 ) -> Any:
-    """Return numba's dispatcher of a function for these types; others wait for it."""
+    """Return numba's dispatcher of a function for these types; other threads and processes wait for it."""
     with _one_at_a_time, ExitStack() as stack:
         folder = folder_of(package)
         if folder:

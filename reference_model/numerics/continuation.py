@@ -66,7 +66,7 @@ def follow(
         Takes the unknowns, shape (d,), and returns d − 1 residuals that are zero on the curve.
     limits
         Takes the unknowns and returns numbers, shape (m,), that are positive in the region of interest. Both
-        functions must be defined a little beyond it.
+        functions are also called a little beyond it.
     start, scales : array of shape (d,)
         A point near the curve, and changes of the unknowns that count as equally large.
     step

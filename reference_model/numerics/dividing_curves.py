@@ -23,13 +23,13 @@ ComplexArray = NDArray[np.complex128]
 Function = Callable[[FloatArray], float]
 
 TURN = 0.35
-"""Largest angle in rad between neighbouring chords of equal length; where a curve bends more they become shorter."""
+"""Largest angle in rad between neighbouring chords of equal length, which become shorter where a curve bends more."""
 
 SHORTEST = 1e-7
 """Smallest step of a search, as a fraction of the rectangle."""
 
 MOST_POINTS = 10_000
-"""Largest number of points of a curve that neither closes nor leaves the rectangle."""
+"""Largest number of points of a curve that neither closes nor leaves."""
 
 EXACT = 1e-13
 
@@ -84,7 +84,10 @@ class _Square:
     def zero(
         self, place: Callable[[float], complex], left: float, right: float, scale: float = 1.0
     ) -> float | None:
-        """Return the zero on a path of length ``scale`` per parameter; None if both ends have the same sign."""
+        """Return the zero on a path, or None if both ends have the same sign.
+
+        ``scale`` is the length of the path per unit of its parameter.
+        """
 
         def value(parameter: float) -> float:
             return self.function(self.point(place(parameter)))

@@ -73,8 +73,7 @@ def last_whirl(
     """Return the whirl at the smallest load with a whirl: the fold, where it meets the unstable whirl.
 
     The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the crossing
-    x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before it
-    folds.
+    x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

@@ -220,9 +220,9 @@ def stick_slip_orbits(
 ) -> tuple[StickSlipOrbit, ...]:
     """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
-    The stable ones are stick-slip cycles. One with a multiplier > 1 is a saddle, whose stable set separates the
-    starts that lead to two other motions. There are none without offset or friction, or on a disc at rest. Raises
-    ``ValueError`` if an argument is invalid, or the support is not linear.
+    Stable orbits are stick-slip cycles. An orbit with a multiplier > 1 is a saddle, whose stable set separates the
+    starts that lead to two other motions. There are no orbits without offset or friction, or on a disc at rest.
+    Raises ``ValueError`` if an argument is invalid, or the support is not linear.
     """
     require_system(pin, PinOnDisc)
     require_linear_support(pin)

@@ -22,10 +22,10 @@ from reference_model.systems import FloatArray, PinOnDisc
 BoolArray = NDArray[np.bool_]
 
 DIRECTIONS = 64
-"""Number of directions that are tried first."""
+"""Number of directions tried first."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Sizes of the shocks that are tried first, over the speed of the disc at the whirl or at the offset."""
+"""Sizes of the shocks tried first, over the speed of the disc at the whirl or at the offset."""
 
 PERIODS = 500.0
 """Longest time to an end state, in free periods, unless the start lies on the boundary."""
@@ -96,7 +96,7 @@ def smallest_shock(pin: PinOnDisc, *, tolerance: float = 1e-9) -> Shock:
 
 
 def by_bisection(shock: Shock) -> float:
-    """Return the smallest size in m/s of shocks in the same direction that lead to the whirl, by their end states.
+    """Return the smallest shock in m/s in the same direction that leads to the whirl, by bisection of end states.
 
     The relative error is ``FINE``. Raises ``ValueError`` if the end state does not change between 0.9 and 1.15 times
     the size of ``shock``.

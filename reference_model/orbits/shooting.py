@@ -139,8 +139,8 @@ class Orbit:
     """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
     ``state``, shape (4,) or (6,), is the initial state, with the angle zero. ``period`` is in s. ``residual`` is the
-    distance between start and end, relative to the size of the orbit. ``turn`` is the rotation about the axis in a
-    period, in rad, including whole turns; 0 if the motion recurs without rotation.
+    distance between start and end over the size of the orbit. ``turn`` is the rotation about the axis in a period, in
+    rad, including whole turns; 0 if the motion recurs without rotation.
     """
 
     system: System

@@ -116,9 +116,8 @@ class ParameterPlane:
 class Boundary:
     """A curve in a plane.
 
-    ``kind`` is "Hopf", "fold" or "onset". ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the
-    angle of (24) of the whirl in rad, tan α = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve
-    equals the first one.
+    ``parameters``, shape (n, 2), are points, and ``alpha``, shape (n,), the angle of (24) of the whirl in rad, tan α
+    = R|ω − φ̇|/U, π/2 at zero radius. The last point of a ``closed`` curve equals the first one.
     """
 
     kind: Kind
@@ -165,7 +164,6 @@ def crossings(
 
 
 def _conditions(plane: ParameterPlane, kind: Kind, contact: IsotropicContact | None) -> Iterator[_Condition]:
-    """Yield the equations on both sides of U = W and for both signs of ω − Ω."""
     if kind not in get_args(Kind):
         raise ValueError(f"kind = {kind!r}: it must be one of {', '.join(get_args(Kind))}")
     law = isotropic_contact_of(plane.disc, contact, "the boundaries")

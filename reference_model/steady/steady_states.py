@@ -95,7 +95,7 @@ def resting(x: float, y: float, spin: float) -> FloatArray:
 
 
 def circling(radius: float, frequency: float, spin: float) -> FloatArray:
-    """Return the state of a disc whose centre circles, on the x axis."""
+    """Return the state of a disc whose centre circles the axis, at a point on the x axis."""
     return np.array([radius, 0.0, 0.0, 0.0, frequency * radius, spin])
 
 

@@ -28,7 +28,7 @@ LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
 
 @dataclass
 class StepCount:
-    """Count the steps of a motion from time 0 to ``end``, in any unit; all engines share the limit."""
+    """Count the steps of a motion from time 0 to ``end``; all engines share the limit."""
 
     end: float
     steps: int = 0

@@ -2,8 +2,7 @@
 
 Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
 inlined functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events
-(rest, release, the end) a lane raises a flag, which scalar code handles. Results are the same bit by bit in every
-lane.
+(rest, release, the end) it raises a flag, which scalar code handles. Results are the same bit by bit in every lane.
 """
 
 from __future__ import annotations

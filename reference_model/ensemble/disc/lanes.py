@@ -63,7 +63,7 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 """Returns the distance from where friction is not smooth, as :func:`reference_model.ensemble.disc.slip.ring_edge`."""
 
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
-"""Degrees of watching: flags where x is largest, where the radius is extreme, or both."""
+"""Degrees of watching: no flags; flags where x is largest; also where the radius is extreme; only the latter."""
 
 REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
 """Flags, which add up, as for a pin."""
@@ -91,7 +91,7 @@ LEAST_SLIP = 1e-13
 """Scaled slip speed that counts as zero."""
 
 LONGEST_GROWTH = 10.0
-"""Longest scaled time of slip that is followed from rest."""
+"""Longest scaled time of slip followed from rest."""
 
 SUDDEN = 0.05
 """Smallest excess of the pull, as a share of friction, for slip that grows like time: not stiff."""
@@ -253,7 +253,7 @@ def slip_left(lanes: DiscLanes, lane: int) -> tuple[float, float]:
 
 @scalar
 def comes_to_rest(lanes: DiscLanes, lane: int, law: DiscLaw) -> bool:
-    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it does."""
+    """Bring slip to rest if it ends linearly within a moment or is only rounding; return whether it rests."""
     trial = lanes.trial
     state = state_at(trial, lane)
     x, y, ux, uy, r, angle, t, way = state

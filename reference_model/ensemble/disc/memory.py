@@ -1,4 +1,4 @@
-"""Scalar data of each lane of discs, and settings."""
+"""Scalar data of each lane of discs."""
 
 from __future__ import annotations
 

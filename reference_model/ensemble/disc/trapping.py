@@ -26,10 +26,10 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 DIRECTIONS, LEVELS = 4000, 60
 SMALLEST, LARGEST = 1e-4, 30.0
-"""Smallest and largest deviations that are tried, in units of the motion."""
+"""Smallest and largest deviations tried, in units of the motion."""
 
 APART = 1e-6
-"""Differences for the linearisation, in these units."""
+"""Differences for the linearisation, in units of the motion."""
 
 INNER = 0.3
 """Share of a region's size where a disc on points finally remains."""

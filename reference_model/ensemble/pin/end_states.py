@@ -26,8 +26,6 @@ Whirl
 
 Stick-slip
     The distance from the axis at a release determines the state, so its change is judged like the crossings above.
-
-A motion that meets none of these criteria stays undecided.
 """
 
 from __future__ import annotations

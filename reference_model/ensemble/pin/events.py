@@ -84,7 +84,7 @@ REVERSAL_SLIP = 1e-13
 """Scaled slip below which slip that friction cannot hold counts as reversed."""
 
 AFTER_START = 1e-3
-"""Earliest scaled time of a crossing; an earlier one is the start itself."""
+"""Earliest scaled time of a crossing; an earlier one is the start."""
 
 
 @written_out

@@ -52,7 +52,7 @@ TICK_TURNS = 4.0
 """Number of free periods without a crossing before a check."""
 
 LAST_TICKS = 4.0
-"""Number of final ticks that are watched in a motion without early end."""
+"""Number of final ticks watched in a motion without early end."""
 
 
 PARAMETERS = ("mass", "stiffness", "damping", "friction_force", "disc_speed", "offset")

@@ -34,8 +34,8 @@ class Moment(Record):
 class PinLanes(Record):
     """All lanes: the motion now and after the trial step, and the law.
 
-    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, and ``short`` the
-    number of successive short steps.
+    ``slow`` is the slip speed below which rest may be near, ``due`` the time of the next check, ``short`` the number
+    of successive short steps.
     """
 
     now: Moment
@@ -60,7 +60,7 @@ the number of steps is out of bounds; an implicit step may be worthwhile.
 """
 
 STEPS_TO_SPARE, STEPS_A_TIME = 50_000.0, 2000.0
-"""Largest number of steps of a motion, which is then undecided: a constant plus a number per unit of time."""
+"""Largest number of steps of a motion before it is undecided: a constant plus a number per unit of time."""
 
 SHORT_STEP, MANY = 5e-3, 40.0
 """Scaled duration of a short step, and the number of successive short steps that indicates stiffness.

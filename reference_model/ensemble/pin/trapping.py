@@ -28,7 +28,7 @@ Map = Callable[[FloatArray], FloatArray]
 """Takes points (n, d) and returns their images after a turn, NaN if the motion is of another kind."""
 
 TOLERANCE = 1e-10
-"""Tolerance of the maps, which are differentiated."""
+"""Tolerance of the maps, tight because they are differentiated."""
 
 DIRECTIONS = 128
 """Number of points on an ellipsoid."""
@@ -39,7 +39,7 @@ GROWTH = 1.25
 FIRST = 1e-2
 
 REQUIRED_SHARE = 0.25
-"""Share of the contraction of small deviations that all points on an ellipsoid must show."""
+"""Share of the contraction of small deviations that all points on an ellipsoid must reach."""
 
 MOST_ELLIPSOIDS = 40
 

@@ -90,9 +90,8 @@ class Coordinates:
     def tolerated(self, run: Run, unknowns: int, polar: int = 0, implicit: bool = False) -> Tolerated:
         """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
-        ``polar`` more unknowns may follow: the ``slip`` components of a direction, ln s and so on, with absolute
-        tolerances. An implicit step bounds the error of s instead of ln s, because long decay would otherwise need
-        many steps.
+        ``polar`` more may follow: the ``slip`` components of a direction, ln s and so on, with absolute tolerances.
+        An implicit step bounds the error of s instead of ln s, because long decay would otherwise need many steps.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
@@ -215,4 +214,4 @@ def grip_lost(
 
 
 CHECKS_OF_GRIP = 8
-"""Checks of the grip per step; steps are short compared with its changes."""
+"""Number of checks of the grip per step, which is short compared with its changes."""

@@ -1,4 +1,4 @@
-"""Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once, as in ``breakaway``.
+"""Implicit steps of slip for compiled code: Radau IIA, solved for all nodes of a step at once.
 
 The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a disc. The derivative −g·P'' of friction
 is symmetric and zero along the slip, because P is of degree one, so its rounding error along the slip is removed.
@@ -213,8 +213,8 @@ def stride_with(
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
-    ``start`` (2 or 3,) is the initial slip, ``guess`` an estimate of it soon after. Returns position, slip, angle,
-    duration (zero if the step is not worthwhile), slip distance and the proposed next step.
+    ``start`` (2 or 3,) is the initial slip, ``guess`` that soon after. Returns position, slip, angle, duration (zero
+    if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)
     w, f = zeros(NODES * d).reshape(NODES, d), zeros(NODES * d).reshape(NODES, d)
