@@ -95,8 +95,7 @@ def test_equal_pushes_scatter_by_the_errors_of_each():
     push = obeying(theory.by_series()["patch"][0], 4.2)
     quantiles = norm.ppf((np.arange(200) + 0.5) / 200)  # in degrees
     turned = [
-        cmath.rect(1.0, math.radians(angle)) * complex(push.force_x, push.force_y)
-        for angle in quantiles
+        cmath.rect(1.0, math.radians(angle)) * complex(push.force_x, push.force_y) for angle in quantiles
     ]
     pushes = [replace(push, force_x=force.real, force_y=force.imag) for force in turned]
     found, pairs = theory.scatter([*pushes, replace(push, start_x=push.start_x + 6.0)])
