@@ -131,7 +131,7 @@ STUDY = Study.beside(
 def at_clutch(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray, tolerance: float
 ) -> Trajectory:
-    """Return the motion at the scale of a clutch; ``system``, ``start`` and ``times`` (s) have the paper's scale."""
+    """Return the motion at the scale of a clutch, from arguments at the paper's scale."""
     return engine.simulate(scaled(system), CLUTCH.states(start), CLUTCH.time * times, tolerance=tolerance)
 
 

@@ -56,7 +56,6 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the positions of rest (m) and their eigenvalues (1/s) over μN (N)."""
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 181))[:-1]  # equal steps along the semicircle
     eigenvalues = [along_and_across(equilibrium_eigenvalues(with_load(load))) for load in loads[1:]]
     return {
@@ -72,7 +71,7 @@ def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Sort the four eigenvalues; motion along the circumference, with those of the support alone, comes first."""
+    """Sort the eigenvalues; motion along the circumference, with those of the support alone, comes first."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [

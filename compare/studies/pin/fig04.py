@@ -44,7 +44,6 @@ def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return both formulas over ω (rad/s)."""
     speeds = np.geomspace(1.08, 5.0, 200)
     return {
         "speeds": speeds,

@@ -55,9 +55,9 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Return the branch of whirls through its folds by the reference, and (3) and (9) over the friction force.
+    """Return the branch of whirls through its folds, and (3) and (9) over the friction force.
 
-    The branch ends at the crossing ``innermost`` (m); its relative steps are ``step``.
+    The branch ends at the crossing ``innermost`` (m), with relative steps ``step``.
     """
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))

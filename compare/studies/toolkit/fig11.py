@@ -52,7 +52,7 @@ def integrated(
     return np.asarray(run.y.T)
 
 
-# --- Parameter planes, and the curves that bound the motions in them
+# --- Parameter planes and their curves
 
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),

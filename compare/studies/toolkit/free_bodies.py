@@ -63,10 +63,7 @@ class Slowing:
         return float(brentq(self.unevenness, -LARGEST, LARGEST, xtol=1e-15))
 
     def stop(self, sliding: float, rim: float, near: float = NEAR) -> Stop:
-        """Return the stopping time and distances, from initial U > 0 and W > 0 (m/s).
-
-        ``near`` is the |δ − δ*| below which δ counts as constant.
-        """
+        """Return the stopping time and distances, from initial U > 0 and W > 0 (m/s)."""
         begin = math.log(sliding / rim)
         side = math.copysign(1.0, begin - self.terminal)
         first, last = math.log(abs(begin - self.terminal)), math.log(near)

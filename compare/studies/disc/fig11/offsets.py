@@ -30,7 +30,7 @@ LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
 ENDS_TOLERANCE = 1e-4  # of the long simulations
 
 SWING = 0.005
-"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
+"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of that at X0 = 0."""
 
 ORBITS_EXTENT = 1e-4  # smallest swing (m) of a whirl's radius
 

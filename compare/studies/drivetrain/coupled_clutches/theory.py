@@ -92,7 +92,6 @@ LOADS = (first_load, *map(_engaged_from, ENGAGED_FROM))
 
 
 def torque(time: float) -> float:
-    """Return the torque on the first rotor (N m)."""
     return TORQUE * math.sin(2.0 * math.pi * FREQUENCY * time)
 
 
@@ -166,7 +165,7 @@ def published() -> Published:
 
 
 def first_and_slips(values: FloatArray) -> FloatArray:
-    """Return values of the first rotor and differences between neighbours, shape (n, 4) like ``values``."""
+    """Return values of the first rotor and differences between neighbours, shape (n, 4)."""
     return np.column_stack((values[:, 0], np.diff(values, axis=1)))
 
 

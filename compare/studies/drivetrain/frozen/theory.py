@@ -42,9 +42,6 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel
 
 
-# --- Parameters
-
-
 FINER = 24
 """Rings of the reference's annulus instead of 16, to estimate their error."""
 
@@ -58,7 +55,7 @@ BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""
 
 DECAYS, SEEN = 20.0, 5.0
-"""Length of a run in decay times of its slowest mode, and how many of them show the remaining transient."""
+"""Length of a run in decay times of its slowest mode, and those that show the remaining transient."""
 
 START = 3e-4
 """Initial position of a whirl in m, within the play."""
@@ -227,10 +224,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
-
-    Lines are x, y at rest, and radius and frequency of a whirl; :func:`whirl_growth` explains the maps.
-    """
+    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
     car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]

@@ -80,7 +80,6 @@ def whirls_above_onset(car: Drivetrain) -> FloatArray:
 
 
 def curves(count: int = 120) -> Data:
-    """Return the reference's predictions, ``count`` below the onset."""
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)

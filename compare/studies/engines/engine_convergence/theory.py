@@ -19,8 +19,6 @@ from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
 
-# --- Parameters
-
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
 """Near the whirl, and a third farther out; the pin always slides (our choice)."""
 
@@ -84,7 +82,7 @@ TOLERANCE = WORKING / 10
 """So small that ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
-"""In s, until after the last of nine stick phases on the way to the whirl."""
+"""In s, until after the last of nine stick phases."""
 
 WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
 """In s, through stick phases, where ε must be proportional to the step."""

@@ -35,8 +35,6 @@ from reference_model.formulas.pin import (
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-# --- Parameters
-
 MOTIONS = 360
 """Motions per engine, shared equally by the kinds of problem that it can simulate."""
 

@@ -64,7 +64,6 @@ def together(measure: Measure) -> MeasureAll:
 
 
 def pooled(parts: Sequence[Measured]) -> Measured:
-    """Return the results of several systems of one kind as one."""
     first, *others = parts
     if not others:
         return first
@@ -160,7 +159,6 @@ def of_bodies(
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
 def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    """Return the motion at ``times_of(motion)``."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 

@@ -116,7 +116,7 @@ LEAST_SLIP = 0.15
 """Smallest slip over the largest, so nothing almost rests where forces are integrated."""
 
 MOST_TURN = 2.0
-"""Largest rotation in rad of a disc on points during a ``PANEL``, because its forces turn with it."""
+"""Largest rotation in rad of a disc on points in a ``PANEL``, because its forces turn with it."""
 
 STICKS_FOR = (0.2, 2.0)
 """Duration of the initial stick phase in s."""
@@ -136,7 +136,7 @@ SLOWEST_FALL = 0.9
 
 
 def times_of(motion: Motion) -> FloatArray:
-    """Return the bounds and Gauss nodes of all panels in their order; each panel begins with its bound."""
+    """Return the bounds and Gauss nodes of all panels; each panel begins with its bound."""
     bounds = np.linspace(0.0, motion.until, round(motion.until / PANEL) + 1)
     places = np.concatenate(([0.0], 0.5 + 0.5 * NODES))
     return np.append(bounds[:-1, np.newaxis] + PANEL * places, motion.until)
@@ -193,7 +193,6 @@ def forces(body: System, states: FloatArray) -> FloatArray:
 
 
 def equation_of(motion: Motion) -> str:
-    """Return the numbers of the paper's equations of motion for the body."""
     if isinstance(motion.system, PinOnDisc):
         return "(1)"
     return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"

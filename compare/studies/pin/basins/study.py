@@ -80,7 +80,6 @@ def curves(
 
 @functools.cache
 def saddle(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the orbit whose stable set is the boundary."""
     (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=TIGHTEST) if not orbit.stable)
     return orbit
 
@@ -162,7 +161,7 @@ def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
 
 @functools.lru_cache(maxsize=1)
 def shares_over_speed(speeds: tuple[float, ...], starts: int) -> dict[EndState, FloatArray]:
-    """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
+    """Return the share of each end and its 95 % interval, shape (speeds, 3)."""
     places, _ = random_places(starts)
     all_starts = np.tile(starts_at(*places.T), (len(speeds), 1))
     found = ensemble_of(all_starts, disc_speed=np.repeat(speeds, starts)).end

@@ -46,7 +46,7 @@ BESIDE = 2e-5
 RUNS_TOLERANCE = 5.0 * WORKING
 
 CRITICAL_TOLERANCE = WORKING / 5.0
-"""The critical velocity of a regularised law has an error about a hundred times larger."""
+"""For the critical velocity, whose error under a regularised law is about a hundred times larger."""
 
 LEAST_SHARE = 1e-5
 """Smallest error of stick times over their resolution.

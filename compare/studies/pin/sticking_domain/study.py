@@ -43,7 +43,7 @@ LATEST = 1.1  # duration for a pin outside, over the time (7)
 REVOLUTIONS = 2.0  # for a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
-"""ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
+"""ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
 
 BRACKET = (0.03, 4.0)
 """Initial bracket of the search over X0, independent of (9)."""
@@ -62,7 +62,6 @@ def pin_at(speed: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the radius (9) in m, and the turns (rad) until release, over ω (rad/s)."""
     speeds = np.unique(np.concatenate((np.linspace(0.15, 2.6, 200), RESONANCE + np.linspace(-0.2, 0.2, 81))))
     return {
         "speed": speeds,
@@ -105,7 +104,7 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
 
 
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
-    """Return ω (rad/s) at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
+    """Return ω (rad/s) at the vertex of a parabola through the radius (9) at three speeds."""
     step = width * speed
     # The nodes are not symmetric, so the result does not contain its own prediction.
     nodes = speed + step * np.array([-0.6, 0.4, 1.4])

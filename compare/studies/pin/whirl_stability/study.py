@@ -38,7 +38,7 @@ remaining transient. The slowest deviation falls to 1e-10.
 
 STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
 CAUGHT = 18.0
-"""Starts on the circle (11): ω in rad/s below and above k, and the duration in s until a pin sticks if ω < k."""
+"""Starts on the circle (11): ω in rad/s below and above k, and the time in s until a pin sticks if ω < k."""
 
 POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
 FLOW_DURATION = 0.5
@@ -136,7 +136,6 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
 
 
 def holds(margin: Callable[[PinOnDisc], float]) -> NDArray[np.bool_]:
-    """Return whether ``margin`` is positive at each point of the grid."""
     return np.array([margin(pin) > 0.0 for pin in grid()])
 
 

@@ -50,6 +50,7 @@ BEYOND = 1.01
 """Pull over μN that exceeds friction."""
 
 HELD = 10.0
+"""Duration in s."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
 """Smallest displacement (m) that counts as motion: half of the slide under ``BEYOND``."""
@@ -61,6 +62,7 @@ RELEASED = 8.5
 SWINGS = 4
 
 DIAGONAL = 45.0
+"""In degrees."""
 
 PULL = 1.5
 """Initial pull over μN on a block thrown along it."""
@@ -139,7 +141,6 @@ def bend_by_spring(times: FloatArray) -> float:
 
 
 def curves() -> Data:
-    """Return swings in units of μN/C over kt/π, and ``across`` over time."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     swings, times = np.linspace(0.0, SWINGS + 1.0, 401), np.linspace(0.0, 2.0, 201)
     return {

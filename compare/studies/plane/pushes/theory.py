@@ -252,7 +252,6 @@ def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = 
 
 
 def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:
-    """Return the median and its bootstrap standard error."""
     generator = np.random.default_rng(1)
     medians = np.median(generator.choice(values, (draws, len(values))), axis=1)
     return float(np.median(values)), float(medians.std())
