@@ -36,7 +36,7 @@ GROWN = 15.0
 """Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
-"""Error of an answer (margin 1 or −1) for an undecided motion."""
+"""Error of an undecided motion, larger than the margins ±1 of the answers."""
 
 
 def on_plane(quantity: Callable[[DiscOnDisc], float], stride: slice = slice(None)) -> FloatArray:

@@ -176,7 +176,7 @@ def limit(engine: Engine, speed: float) -> Measured:
 
 
 def towards_zero(values: FloatArray) -> FloatArray:
-    """Return the limits of ``values``, shape (n, ...), at successively halved offsets, from each two neighbours.
+    """Return the limits of ``values``, shape (n, ...), at successively halved offsets, from pairs of neighbours.
 
     The next term is of the order X0².
     """

@@ -69,7 +69,7 @@ class Slowing:
         first, last = math.log(abs(begin - self.terminal)), math.log(near)
 
         def at(u: float) -> tuple[float, float]:
-            """Return ε and −g·dt/W : du."""
+            """Return ε and −(g/W)·dt/du."""
             away = side * math.exp(u)
             delta = self.terminal + away
             return math.exp(delta), away / self.unevenness(delta)

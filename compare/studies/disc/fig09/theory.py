@@ -79,7 +79,7 @@ BRANCH_STEP = 0.24
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""μN slightly above the fold's, over C·X0, and its smallest value in N."""
+"""μN over C·X0 slightly above the fold, and its smallest value in N."""
 
 FOLD_STEP = 0.12  # relative step of the branch to the fold
 
@@ -155,7 +155,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls by falling size, from that of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls by falling size, from the whirl of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 

@@ -1,4 +1,4 @@
-"""Claims with an offset, and on six points."""
+"""Claims on motions with an offset, and on six points."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
 
 ROUND = np.linspace(0.0, 300.0, 1201)  # in s, longer than a period of the modulation
-OF_RESTS = 200 * WORKING  # for motions on six points, which come to rest singly
+OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last is that of the other figures."""
@@ -130,7 +130,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, which come to rest singly
+# --- The modulated motion on six points, where single points rest
 
 NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 

@@ -26,7 +26,7 @@ SPEED = 10.0
 """Initial speed of the first rotor in rad/s; the others rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
-"""Torque on the first rotor in N m and Hz."""
+"""Amplitude in N m and frequency in Hz of the torque on the first rotor."""
 
 RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
 """Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load of a clutch in N."""
@@ -52,7 +52,7 @@ TOLERANCE = 1e-9
 """For explicit steps, in rad/s; a millionth of the effect of the smallest ε."""
 
 SMALL_EPSILON = 1e-5
-"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest of ``STEPS``."""
+"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest step."""
 
 STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
 """For implicit runs, in s."""

@@ -55,7 +55,7 @@ BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""
 
 DECAYS, SEEN = 20.0, 5.0
-"""Length of a run in decay times of its slowest mode, and those that show the remaining transient."""
+"""Length of a run in decay times of its slowest mode; the last ``SEEN`` show the remaining transient."""
 
 START = 3e-4
 """Initial position of a whirl in m, within the play."""

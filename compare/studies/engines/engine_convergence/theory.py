@@ -40,7 +40,7 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 class Scan:
     """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Errors have the ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
+    Errors are of this ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
     the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
     """
 

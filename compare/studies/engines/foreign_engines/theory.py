@@ -254,7 +254,6 @@ def recorded_claims(recording: Recording) -> Recorded:
 
 
 def _advice(recording: Recording) -> str:
-    """Return the refinement for an error of ``WANTED``, or the error of the finest run."""
     runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
     if not runs or recording.engine == "reference":
         return ""

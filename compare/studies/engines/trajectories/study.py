@@ -308,7 +308,6 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
 )
 @together
 def release(engine: Engine, motion: Motion) -> Measured | None:
-    """Return None if the reference contains no stick phase."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None

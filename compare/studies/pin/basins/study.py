@@ -125,7 +125,6 @@ def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatAr
 
 
 def places_on_grid(side: int) -> FloatArray:
-    """Return x0 and vx0 of the grid, shape (side², 2)."""
     x, vx = (np.linspace(low, high, side) for low, high in PLANE)
     return np.column_stack([each.ravel() for each in np.meshgrid(x, vx)])
 

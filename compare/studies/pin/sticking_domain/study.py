@@ -83,7 +83,7 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. Without one of them the vertex is missing, and open if the errors of
+    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if the errors of
     all missing radii are infinite.
     """
 
@@ -121,7 +121,7 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return the displacements of pins inside the radius (9) over it, shape (n, 2), and which pins always stick."""
+    """Return displacements over the radius of pins inside (9), shape (n, 2), and which pins always stick."""
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
     starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]

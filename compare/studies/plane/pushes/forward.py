@@ -53,7 +53,7 @@ class Path:
 
     @classmethod
     def of(cls, push: Push) -> Path:
-        """Return the path of a push against the edge that the hand is initially farthest outside of."""
+        """Return the path of a push against the edge that faces the hand."""
         start = complex(push.start_x, push.start_y)
         half = cmath.exp(0.5j * push.turn)
         end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
