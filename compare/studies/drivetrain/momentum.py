@@ -67,7 +67,7 @@ SPRING = {"stiffness": 0.5, "damping": 0.02}
 """Friction in N and m, ε in m/s, shaft in N/m and N s/m, eccentricity in m, spring in N m/rad and N m s/rad."""
 
 UNTIL, SAMPLES = 5.0, 50
-"""In s, two turns of the engine; and the number of recorded momenta."""
+"""Duration in s, two turns of the engine; and the number of recorded momenta."""
 
 
 class Solver(NamedTuple):

@@ -36,7 +36,7 @@ WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N; the paper omits the range, and up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102  # in N, between C·X0 and the end of the stick–slip cycle
+CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
 
 CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 """Relative distance of the starts from the cycle, and number of turns."""

@@ -29,7 +29,7 @@ SPEED = 1.0
 """Initial speed (m/s) of the centre, the rim or both."""
 
 HEADING = 0.7
-"""In rad from the x axis."""
+"""Direction in rad from the x axis."""
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,7 @@ SEEN = (
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""From a throw, times and a tolerance to states."""
+"""Function of a throw, times and a tolerance that returns states."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:

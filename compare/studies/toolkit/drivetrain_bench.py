@@ -166,8 +166,6 @@ def centre(disc: FloatArray) -> ComplexArray:
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
 
-# --- The reference's equivalent disc
-
 RINGS = 16
 """Rings of the reference's annulus."""
 

@@ -11,8 +11,6 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Stuck pins
-
 
 def safest_angle(pin: PinOnDisc) -> float:
     """Return the angle (rad) of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
@@ -38,8 +36,6 @@ def first_release(run: Trajectory) -> float:
         return math.nan
     return first.end if len(run.phases) > 1 else math.inf
 
-
-# --- The pin's whirl
 
 SAMPLES = 64
 """States per revolution."""

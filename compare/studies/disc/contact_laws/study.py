@@ -30,7 +30,7 @@ SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
 """Position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
 
-STEP = 2e-3  # in s
+STEP = 2e-3  # time step in s
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
@@ -45,9 +45,9 @@ RESTING = (INNER, 0.75 * R, R)
 """Radii (m) of a point at rest on the annulus."""
 
 RINGS = (8, 9, 10, 11, 12)
-"""On either side of that radius, few enough for errors above rounding."""
+"""Numbers of rings on either side of that radius, few enough for errors above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # of thin annuli over their mean radius
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli over their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)

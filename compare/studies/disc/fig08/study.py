@@ -58,9 +58,9 @@ STICKING_TIME = 80.0
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
 
-TOLERANCE = WORKING / 10  # of motions to rest, which the claims resolve to 1e-9
+TOLERANCE = WORKING / 10  # for motions to rest, which the claims resolve to 1e-9
 BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
-RESOLUTION = 1e-9  # of positions (m) and spins (rad/s) on the continuous ring
+RESOLUTION = 1e-9  # positions in m, spins in rad/s
 
 
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:

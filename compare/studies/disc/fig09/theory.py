@@ -62,7 +62,7 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4  # initial deviation over the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
-"""For periodic motions of engines; the reference's have a hundredth of it."""
+"""For periodic motions of engines; the reference has a hundredth of it."""
 
 TOLERANCE = 3e-8
 """For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
@@ -165,9 +165,6 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
     orbits = to_inner_orbits(disc)
     next(orbits)
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
-
-
-# --- Ends of the motions
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:

@@ -19,7 +19,7 @@ from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
 
-ROUND = np.linspace(0.0, 300.0, 1201)  # in s, longer than a period of the modulation
+ROUND = np.linspace(0.0, 300.0, 1201)  # times in s, longer than a period of the modulation
 OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
@@ -27,7 +27,7 @@ OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 
 ENDS_UNTIL = 720.0  # duration in s
 LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
-ENDS_TOLERANCE = 1e-4  # of the long simulations
+ENDS_TOLERANCE = 1e-4  # for the long simulations
 
 SWING = 0.005
 """Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of that at X0 = 0."""

@@ -30,7 +30,7 @@ CENTRED = f"{SOURCE}: 0 here"
 
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
-UNTIL = 700.0  # in s, three periods of the modulation
+UNTIL = 700.0  # duration in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 

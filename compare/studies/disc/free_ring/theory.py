@@ -39,7 +39,7 @@ TABLE = replace(
 
 DECELERATION = TABLE.friction_force / TABLE.mass  # g in m/s²
 SPEED = 0.3  # initial √(U² + W²) in m/s, with U of the centre and W of the rim
-HEADING = 0.7  # of the throw, in rad from the x axis
+HEADING = 0.7  # direction of the throw in rad from the x axis
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ INTEGRATED = (*RINGS, *OTHERS)
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Throws with J/(mR²) outside 1/2 to 2."""
 
-INTERVALS = 400  # of the time to rest
+INTERVALS = 400  # samples until rest
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 """Remaining times of samples over the time to rest."""

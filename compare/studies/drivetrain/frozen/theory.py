@@ -94,10 +94,10 @@ CYCLE_SAMPLE = 2e-3
 """Its sampling interval in s."""
 
 SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""In rpm, from just above the natural frequency."""
+"""Speeds in rpm, from just above the natural frequency."""
 
 TORQUES = np.geomspace(0.2, 60.0, 32)
-"""In N m."""
+"""Torques in N m."""
 
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 

@@ -32,7 +32,7 @@ MM = 1e3
 CYAN = "#58e0ff"
 
 OPEN = 0.7
-"""In rad, turns the cut of the cover towards the viewer."""
+"""Angle in rad that turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
 """Magnification of radial motion."""
@@ -44,7 +44,7 @@ FRAMES = 15
 """Frames of each slow motion."""
 
 SIZE = (330, 280)
-"""In pixels."""
+"""Size in pixels."""
 
 STEP = math.radians(48.0)
 """Rotation of the engine per frame in rad."""

@@ -20,8 +20,6 @@ from compare.report.numbers import error_text
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 
-# --- Groups of recorded settings by friction law and order
-
 FIRST_ORDER = (
     "MuJoCo, elliptic cone",
     "Bullet, cone",
@@ -184,8 +182,6 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
     value, error = refined(off, 1e-5)
     return float(value), float(error)
 
-
-# --- Claims of each recorded engine and case
 
 OUR_FORCE = "our force"
 

@@ -46,11 +46,11 @@ ASKED, BARELY = 64, 1e-6
 """Largest number of starts for shooting, and smallest distance (rad) from the saddle that decides their side."""
 
 UNTIL = 3000.0  # duration in s
-SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # in rad/s
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
 STARTS, SEED = 2000, 5  # random starts, the same at every speed
 RECOMPUTED = 16  # starts for the plain reference, half of them near the boundary
-SETTLED = 250.0  # in s until these starts have reached one of the two ends
-STEP = 5e-3  # distance (rad) of other releases, for an engine's multiplier
+SETTLED = 250.0  # duration in s until these starts have reached one of the two ends
+STEP = 5e-3  # distance (rad) of neighbouring releases, whose differences give the multiplier
 
 PLACES, ASIDE = 4, 5e-3
 """Starts on the boundary, and distance of simulated starts from it in m and m/s."""
@@ -59,7 +59,7 @@ WITHIN, REACH = (0.05, -0.1), 0.4
 """A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
-"""In s until the engines' motions have left the saddle, and tolerance."""
+"""Duration in s until the engines' motions have left the saddle, and tolerance."""
 
 
 def curves(

@@ -40,7 +40,7 @@ CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
 LATEST = 1.1  # duration for a pin outside, over the time (7)
-REVOLUTIONS = 2.0  # for a pin inside; the holding force has the period of one revolution
+REVOLUTIONS = 2.0  # turns of a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""

@@ -203,7 +203,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=DURATION,
             delay=DELAY,
-            period=np.pi / K,  # approximate, of deviations in axes that turn with the whirl
+            period=np.pi / K,  # approximate period of deviations in the rotating axes
             rate=-whirl_eigenvalues(pin_at(speed))[1].real,
             tolerance=WORKING / 5,  # for a resolution of 1e-9
         )
@@ -261,7 +261,7 @@ def _at_end(engine: Engine, speeds: Sequence[float], which: int, predicted: floa
 def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     if engine.contact_only:
         return None
-    interval = 0.01  # in s
+    interval = 0.01  # s
     fourth_order = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
     pins = [pin_at(speed) for speed in starts]
 

@@ -18,8 +18,6 @@ from compare.engines import Engine
 from compare.studies.toolkit.random_systems import state_of
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- Parameters
-
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
 BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
@@ -29,7 +27,7 @@ DECELERATION = FRICTION / BLOCK.mass
 """g in m/s²."""
 
 HEADINGS = (0.0, 22.5, 45.0, 67.5)
-"""In degrees: sides, corners and neither of squares and octagons in any orientation."""
+"""Headings in degrees: sides, corners and neither of squares and octagons in any orientation."""
 
 SPEED = 1.0
 """v₀ in m/s."""
@@ -57,18 +55,18 @@ MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
-"""Over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
+"""Position over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
 
 DIAGONAL = 45.0
-"""In degrees."""
+"""Heading in degrees."""
 
 PULL = 1.5
 """Initial pull over μN on a block thrown along it."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
-"""Initially stretched by 150 m; a larger distance would cost digits of the position."""
+"""The spring is initially stretched by 150 m; a larger distance would cost digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
 

@@ -162,10 +162,8 @@ def measured_motion(push: Push) -> tuple[complex, float]:
     return (half * complex(push.x, push.y) + (half**2 - 1.0) * CENTRE) * MM, push.turn
 
 
-# --- The Exudyn model
-
 STIFFNESS = 1e6
-"""In N/m; 4 N press the hand in by 4 µm."""
+"""Stiffness in N/m; 4 N press the hand in by 4 µm."""
 
 STEPS = 300
 

@@ -180,8 +180,6 @@ def turned(vector: FloatArray, angle: float) -> FloatArray:
     return np.array([[cosine, -sine], [sine, cosine]]) @ vector
 
 
-# --- The table
-
 SOURCE = """\
 # Measured planar pushes, reduced by compare/studies/plane/pushes/reduction.py from the logs of the repository
 # robinzhoucmu/MLab_EXP, commit 4d86db94, folder PushExp/sensor_log (J. Zhou, Carnegie Mellon University, 2015).

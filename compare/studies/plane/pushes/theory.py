@@ -25,16 +25,16 @@ MASS, GRAVITY = 1.518, 9.81
 """Mass of the body in kg, and g in m/s²."""
 
 CENTRE = 50.0 + 50.0j
-"""In mm, in the frame of the body."""
+"""Centre of mass in mm, in the frame of the body."""
 
 LEGS = 150.0
-"""Both legs of the triangle in mm; the origin is the corner between them."""
+"""Length of both legs of the triangle in mm; the origin is the corner between them."""
 
 PUSHER = 0.05
 """The authors' unit of length (m) for moments."""
 
 SLIDING_FORCES = {"board": 4.2, "wood": 5.0}
-"""In N, by surface."""
+"""Sliding force in N, by surface."""
 
 DIVISIONS = 8
 """Divisions of a side of the patch for its quadrature."""
@@ -146,7 +146,7 @@ def work_ratio(push: Push, law: Law) -> float:
 # --- Uncertainties of the force's direction (ASME V&V 20)
 
 GIVEN_TO = 1.0
-"""In mm; the authors state no uncertainty of the centre of mass."""
+"""Last digit in mm of the centre of mass; the authors state no uncertainty."""
 
 NORMAL = 1.4826
 """Standard deviation over the median deviation of a normal distribution."""
@@ -190,7 +190,7 @@ def uncertainties(pushes: tuple[Push, ...]) -> Uncertainties:
             replace(push, turn=push.turn + turn),
         ]
         effects = [_change(force_error(other, coulomb), base) for other in moved]
-        offset = np.degrees(push.noise / abs(measured(push).force))  # of the first sample
+        offset = np.degrees(push.noise / abs(measured(push).force))  # offset of the first sample
         data.append(np.hypot(np.linalg.norm(effects), offset))
         centres = [CENTRE + step * rounding for step in (1.0, 1.0j)] if feet(push.series) else []
         laws = [partial(coulomb, centre=centre) for centre in centres]
