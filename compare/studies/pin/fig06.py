@@ -161,7 +161,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     found = refined(period_and_extent, TOLERANCE)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
-    # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − its slowest multiplier).
+    # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Measured(
         predicted=[[orbit.period, *extent(orbit)] for orbit in others],

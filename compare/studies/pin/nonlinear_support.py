@@ -38,7 +38,7 @@ LOADS = (0.04, 0.1, 0.2)  # μN in N; at the smallest, the pin does not reach th
 
 SHIFTED = [replace(pin, offset=FIG4.offset) for pin in PINS.values()]
 
-SUPPORTS = {"support": tuple(PINS)}  # labels
+SUPPORTS = {"support": tuple(PINS)}  # labels of the elements
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 """X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""

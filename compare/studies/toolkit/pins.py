@@ -13,7 +13,7 @@ from reference_model.trajectory import Trajectory
 
 
 def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle (rad) of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
+    """Return the angle (rad) of the smallest holding force (7) on a stuck pin, the phase of (C − mω²) − iβω."""
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 

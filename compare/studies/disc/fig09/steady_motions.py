@@ -306,9 +306,6 @@ def offset_changes_size(engine: Engine) -> Measured:
     )
 
 
-# --- The self-centred equilibrium
-
-
 @STUDY.claim(
     "Position and spin of the self-centred disc satisfy the balance of forces and moments, stable or not",
     equation="(19), (20)",

@@ -243,8 +243,6 @@ def jumps() -> Measured:
     return answers_of(on_ring, data=data)
 
 
-# --- Stability of the whirl of Fig. 11
-
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 
 SIGN = "Sign of the largest real part."

@@ -34,7 +34,7 @@ ASIDE = 0.01  # relative distance from the curves
 DEVIATION = 0.02
 """Initial deviation from the whirl over the distance to U = W, where a point of the ring comes to rest."""
 
-FLOW_TOLERANCE = 100 * WORKING  # for small differences of motions
+FLOW_TOLERANCE = 100 * WORKING  # for motions whose small differences are evaluated
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
 """x, y, angle, vx, vy, spin near the largest radius of the modulated cycle."""

@@ -150,8 +150,6 @@ def section() -> Data:
     return data
 
 
-# --- Final motions of the centred disc
-
 SETTLED = 600.0
 WATCHED = 350.0
 """Time until motions have settled, and length of the evaluated end, in s."""

@@ -177,7 +177,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
     slip = 1j * (whirl.frequency - omega) * x
     force, _ = law.force_and_moment(slip, whirl.slip, 0.0)
     changes = whirl.friction_force * law.jacobian(slip, whirl.slip, 0.0)[:, :3]
-    # Friction resists S with the moment on the disc, whose generalised force for S is negative.
+    # The moment on the disc resists S, so its generalised force for S is negative.
     put = rate_to_slip.T @ np.diag([1.0, 1.0, -1.0])
     stiffness, damping = -put @ changes @ place_to_slip, -put @ changes @ rate_to_slip
     fx, fy = whirl.friction_force * force.real, whirl.friction_force * force.imag

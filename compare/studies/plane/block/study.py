@@ -36,7 +36,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times over the time to rest."""
 
 AT_REST = 1.5
-"""Such a time, late enough for regularised laws."""
+"""Sample time over the time to rest, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
 """A stretch of 10 m pulls with μN, so the pull changes slowly."""
