@@ -1,6 +1,7 @@
 """Rings that slide and spin freely until they rest.
 
-With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (19) without springs, dampers and shaft is
+Let U be the slip of the centre, W = R|φ̇| the rim speed, g = μN/m and c = J/(mR²). Then (19) without springs, dampers
+and shaft is
 
     U' = −g·F,  W' = −g·G/c,  F = ∂P/∂U, G = ∂P/∂W,
 
