@@ -24,7 +24,7 @@ DAMPING, SHAFT_DAMPING = np.linspace(0.2, 2.0, SIDE), np.linspace(0.004, 0.026, 
 """β in N s/m and b in N m s/rad."""
 
 START = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)  # x, y, angle, vx, vy, spin, close to the axis
-UNTIL = 12000.0  # in s until the slowest motions settle
+UNTIL = 12000.0  # duration in s until the slowest motions settle
 TOLERANCE = 10.0 * WORKING  # sufficient for the kind of final motion
 
 MARGIN = 0.05
@@ -36,7 +36,7 @@ GROWN = 15.0
 """Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
 
 UNDECIDED_IS_OPEN = 2.0
-"""Error of an answer (margin 1 or −1) for an undecided motion."""
+"""Error of an undecided motion, larger than the margins ±1 of the answers."""
 
 
 def on_plane(quantity: Callable[[DiscOnDisc], float], stride: slice = slice(None)) -> FloatArray:

@@ -15,22 +15,22 @@ from reference_model.systems import FloatArray
 # Judder: a drive drags a disc on a torsional spring, and friction falls with the slip speed.
 
 INERTIA, STIFFNESS, DAMPING = 0.02, 300.0, 0.1
-"""Disc in kg m² and its shaft in N m/rad and N m s/rad: 19 Hz, 2 % damping."""
+"""Inertia of the disc in kg m², and its shaft in N m/rad and N m s/rad: 19 Hz, 2 % damping."""
 
 SPEED, DRIVE_INERTIA = 50.0, 1e12
-"""Drive in rad/s and kg m², slowed by only 1e-11 rad/s²."""
+"""Speed in rad/s and inertia in kg m²; friction slows the drive by only 1e-11 rad/s²."""
 
 RADIUS, LOAD, COEFFICIENT = 0.1, 1000.0, 0.5
 """Contact radius in m, load in N, and coefficient at the steady slip speed."""
 
 STEADY_MOMENT, STEADY_SLIP = COEFFICIENT * LOAD * RADIUS, RADIUS * SPEED
-"""In N m and m/s, with the shaft wound up and at rest."""
+"""Friction moment in N m and slip speed in m/s, with the shaft wound up and at rest."""
 
 ONSET = DAMPING / (RADIUS**2 * LOAD)
 """Negative slope of the coefficient (s/m); friction then feeds in the power that the damper dissipates."""
 
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
-"""In s/m."""
+"""Negative slopes in s/m."""
 
 EPSILON = 1e-4
 """ε in m/s, without effect because the disc does not stick."""
@@ -40,12 +40,12 @@ PERTURBED = 0.1
 
 PERIODS = 10
 TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
-"""In s, four per period of the undamped vibration."""
+"""Times in s, four per period of the undamped vibration."""
 
 # Heat: a clutch engages between an engine and a vehicle and warms the linings, whose friction fades.
 
 INERTIAS, SLIP = (0.2, 1.5), 200.0
-"""Engine and vehicle in kg m², and initial slip in rad/s."""
+"""Inertias of engine and vehicle in kg m², and initial slip in rad/s."""
 
 RING, PRESSED = 0.1, 3000.0
 """Contact radius in m and load in N."""
@@ -60,10 +60,10 @@ CREEP = 1e-2
 """ε in m/s; 0.1 rad/s at this radius."""
 
 ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
-"""In s: times during slip, and a time after lock-up."""
+"""Times in s during slip, and a time after lock-up."""
 
 NEARLY_HOLDS = 1.0
-"""In rad/s, the slip that ends the slipping time; ten times the slip at ε."""
+"""Slip in rad/s that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
 """Sustained slip: slip in rad/s, inertias in kg m² and times in s."""

@@ -82,7 +82,7 @@ CYCLE_UNTIL, CYCLE_SAMPLES = 60.0, 13
 """Duration in s of this motion, and number of samples."""
 
 VELOCITIES = (0.0, 0.02, 0.0275, 0.03, 0.06)
-"""vx(0) in m/s; the starts lead to both ends."""
+"""vx(0) in m/s; pins come to rest or reach the whirl."""
 
 ENDS_TOLERANCE, ENDS_UNTIL = 1e-7, 150.0
 
@@ -131,14 +131,14 @@ STUDY = Study.beside(
 def at_clutch(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray, tolerance: float
 ) -> Trajectory:
-    """Return the motion at the scale of a clutch; ``system``, ``start`` and ``times`` (s) have the paper's scale."""
+    """Return the motion at the scale of a clutch, from arguments at the paper's scale."""
     return engine.simulate(scaled(system), CLUTCH.states(start), CLUTCH.time * times, tolerance=tolerance)
 
 
 def states_of(
     engine: Engine, system: System, start: tuple[float, ...], times: FloatArray
 ) -> Callable[[float], FloatArray]:
-    """Return a function of the tolerance for the states after the start, in the paper's units."""
+    """Return a function from a tolerance to the states after the start, in the paper's units."""
 
     def states(tolerance: float) -> FloatArray:
         found = at_clutch(engine, system, start, times, tolerance).states[1:]

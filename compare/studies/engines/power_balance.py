@@ -17,7 +17,7 @@ from reference_model.formulas.pin import whirl_radius
 from reference_model.systems import FloatArray, System
 
 SAMPLE_DISTANCE = 0.02
-"""In s; the quadrature then has an error below 1e-9 through stick phases."""
+"""Interval in s; the quadrature then has an error below 1e-9 through stick phases."""
 
 RESOLUTION = 1e-8
 """Relative to the energy turned over."""

@@ -28,22 +28,22 @@ PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
 LIMIT = largest_load_with_equilibrium(PIN)  # (5), in N
-START = (0.1, 0.05, 0.0, 0.0)  # in m, displaced from every equilibrium
+START = (0.1, 0.05, 0.0, 0.0)  # position in m, displaced from every equilibrium
 LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # μN in N, within (5)
-DURATION = 520.0  # in s; the slowest transient, exp(−βt/2m), falls to 5e-12
+DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12
 DELAY = 60.0  # final part of a run in s, for the remaining transient
 
 TOLERANCE = 0.03 * WORKING
 """For positions of rest, whose resolution is 1e-9 of X0."""
 
 SHARES = (0.98, 0.999, 1.05, 1.2)  # μN over the limit (5)
-SETTLING = 300.0  # in s from the axis to the equilibrium
+SETTLING = 300.0  # duration in s from the axis to the equilibrium
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
-"""In s. Above the limit the pin sticks at once, so two periods suffice."""
+"""Period of the disc in s. Above the limit the pin sticks at once, so two periods suffice."""
 
 FLOW_DURATION = 0.3
-"""In s, short enough for strongly damped eigenvalues."""
+"""Duration in s, short enough for strongly damped eigenvalues."""
 
 GRID_SHARES = np.array([0.01, *np.linspace(0.05, 0.95, 19), 0.99, 0.999])
 GRID_SPEEDS = np.geomspace(0.05, 5.0, 25)
@@ -56,7 +56,6 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the positions of rest (m) and their eigenvalues (1/s) over μN (N)."""
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 181))[:-1]  # equal steps along the semicircle
     eigenvalues = [along_and_across(equilibrium_eigenvalues(with_load(load))) for load in loads[1:]]
     return {
@@ -72,7 +71,7 @@ def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Sort the four eigenvalues; motion along the circumference, with those of the support alone, comes first."""
+    """Sort the eigenvalues; motion along the circumference, with those of the support alone, comes first."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [

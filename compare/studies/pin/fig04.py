@@ -28,12 +28,12 @@ from reference_model.systems import FloatArray
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
 """ω in rad/s, which the paper omits; below 1.15 rad/s this whirl is close to its fold."""
 
-CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # in rad/s
+CLAIM_SPEEDS = (1.2, 1.5, 3.0)  # ω in rad/s
 
 OFFSETS = (0.02, 0.01, 0.005)
 """X0 in m, each half of the previous one and far below the whirl's radius of 1.2 m."""
 
-SHIFT_TOLERANCE = 1e3 * WORKING  # (18) has an error of a few per cent
+SHIFT_TOLERANCE = 1e3 * WORKING  # loose, because (18) has an error of a few per cent
 
 SOURCE = "Fig. 4; ω is its axis, printed without a range"
 SOURCE_OF_OFFSETS = f"{SOURCE}; X0 = {', '.join(f'{offset:g}' for offset in OFFSETS)} m"
@@ -44,7 +44,6 @@ def pin_at(speed: float, offset: float = FIG4.offset) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return both formulas over ω (rad/s)."""
     speeds = np.geomspace(1.08, 5.0, 200)
     return {
         "speeds": speeds,
@@ -177,7 +176,7 @@ def limit(engine: Engine, speed: float) -> Measured:
 
 
 def towards_zero(values: FloatArray) -> FloatArray:
-    """Return the limits of ``values``, shape (n, ...), at successively halved offsets, from each two neighbours.
+    """Return the limits of ``values``, shape (n, ...), at successively halved offsets, from pairs of neighbours.
 
     The next term is of the order X0².
     """

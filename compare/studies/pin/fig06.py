@@ -36,7 +36,7 @@ WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N; the paper omits the range, and up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102  # in N, between C·X0 and the end of the stick–slip cycle
+CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
 
 CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
 """Relative distance of the starts from the cycle, and number of turns."""
@@ -55,9 +55,9 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Return the branch of whirls through its folds by the reference, and (3) and (9) over the friction force.
+    """Return the branch of whirls through its folds, and (3) and (9) over the friction force.
 
-    The branch ends at the crossing ``innermost`` (m); its relative steps are ``step``.
+    The branch ends at the crossing ``innermost`` (m), with relative steps ``step``.
     """
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
@@ -161,7 +161,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     found = refined(period_and_extent, TOLERANCE)
     others = [_reference_whirl(load) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
-    # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − its slowest multiplier).
+    # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
     return Measured(
         predicted=[[orbit.period, *extent(orbit)] for orbit in others],

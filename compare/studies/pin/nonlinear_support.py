@@ -34,19 +34,19 @@ LAWS = (
 
 SOURCE = "Fig. 4, with β, μN and X0 as stated; C₃, C_s and the gap are our choice, the paper names no law"
 
-LOADS = (0.04, 0.1, 0.2)  # in N; at the smallest, the pin does not reach the stop
+LOADS = (0.04, 0.1, 0.2)  # μN in N; at the smallest, the pin does not reach the stop
 
 SHIFTED = [replace(pin, offset=FIG4.offset) for pin in PINS.values()]
 
-SUPPORTS = {"support": tuple(PINS)}  # labels
+SUPPORTS = {"support": tuple(PINS)}  # labels of the elements
 
 OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 """X0 in m for the order of the harmonic balance; at the largest, the next term is 5 % of the first."""
 
 RESTING = {"offset": 0.8, "friction_force": 0.9}
-"""In m and N, with the equilibrium in the nonlinear range of either law."""
+"""X0 in m and μN in N, with the equilibrium in the nonlinear range of either law."""
 
-BESIDE = 0.005  # in m, of the starts from the equilibrium
+BESIDE = 0.005  # distance in m of the starts from the equilibrium
 
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
 SLIDING_TIMES = np.linspace(0.0, 50.0, 51)

@@ -17,8 +17,6 @@ from reference_model import simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
 
-# --- Parameters
-
 SOURCE = "assumption: a disc of 1 kg and 0.1 m with friction of 1 N"
 
 MASS, RADIUS, FRICTION = 1.0, 0.1, 1.0
@@ -31,7 +29,7 @@ SPEED = 1.0
 """Initial speed (m/s) of the centre, the rim or both."""
 
 HEADING = 0.7
-"""In rad from the x axis."""
+"""Direction in rad from the x axis."""
 
 
 @dataclass(frozen=True)
@@ -171,12 +169,10 @@ SEEN = (
 )
 
 Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""From a throw, times and a tolerance to states."""
+"""Function of a throw, times and a tolerance that returns states."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:
-    """Return the function that simulates throws of a disc on ``points``, or on a ring."""
-
     def follow(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
         return engine.simulate(throw.disc(points), throw.state, times, tolerance=tolerance).states
 
@@ -259,8 +255,6 @@ def on_full_disc(engine: Engine) -> Measured:
     way = way_of(engine)
     return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
 
-
-# --- Figure
 
 TAKEN = {
     "ring": (r"slides: $\mu N$", r"spins: $\mu NR$", r"both: $\frac{2}{\pi}$ of each"),

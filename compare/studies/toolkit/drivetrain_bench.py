@@ -1,8 +1,8 @@
 """Clutch of a passenger car on a bench, and the equivalent disc of the reference.
 
 The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) the vehicle's. In steady motion the torque of the
-torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake. Models with five and with three
-coordinates then agree to rounding error.
+torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake. The drivetrain with five
+coordinates and the disc with three then agree to rounding error.
 """
 
 from __future__ import annotations
@@ -165,8 +165,6 @@ def centre(disc: FloatArray) -> ComplexArray:
     """Return x + iy of coordinates or velocities, shape (n,) from (n, 3)."""
     return np.asarray(disc[:, 0] + 1j * disc[:, 1])
 
-
-# --- The reference's equivalent disc
 
 RINGS = 16
 """Rings of the reference's annulus."""

@@ -52,8 +52,6 @@ def integrated(
     return np.asarray(run.y.T)
 
 
-# --- Parameter planes, and the curves that bound the motions in them
-
 LAWS: dict[str, IsotropicContact] = {
     "ring": Ring(FIG11.contact_radius),
     "(23)": ThreeTermRing(FIG11.contact_radius),

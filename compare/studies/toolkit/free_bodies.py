@@ -1,6 +1,7 @@
 """Rings that slide and spin freely until they rest.
 
-With slip U of the centre, rim speed W = R|φ̇|, g = μN/m and c = J/(mR²), (19) without springs, dampers and shaft is
+Let U be the slip of the centre, W = R|φ̇| the rim speed, g = μN/m and c = J/(mR²). Then (19) without springs, dampers
+and shaft is
 
     U' = −g·F,  W' = −g·G/c,  F = ∂P/∂U, G = ∂P/∂W,
 
@@ -63,16 +64,13 @@ class Slowing:
         return float(brentq(self.unevenness, -LARGEST, LARGEST, xtol=1e-15))
 
     def stop(self, sliding: float, rim: float, near: float = NEAR) -> Stop:
-        """Return the stopping time and distances, from initial U > 0 and W > 0 (m/s).
-
-        ``near`` is the |δ − δ*| below which δ counts as constant.
-        """
+        """Return the stopping time and distances, from initial U > 0 and W > 0 (m/s)."""
         begin = math.log(sliding / rim)
         side = math.copysign(1.0, begin - self.terminal)
         first, last = math.log(abs(begin - self.terminal)), math.log(near)
 
         def at(u: float) -> tuple[float, float]:
-            """Return ε and −g·dt/W : du."""
+            """Return ε and −(g/W)·dt/du."""
             away = side * math.exp(u)
             delta = self.terminal + away
             return math.exp(delta), away / self.unevenness(delta)

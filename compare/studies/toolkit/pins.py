@@ -11,11 +11,9 @@ from reference_model import Orbit, whirl_orbit
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
 
-# --- Stuck pins
-
 
 def safest_angle(pin: PinOnDisc) -> float:
-    """Return the angle (rad) of the smallest holding force on a stuck pin, by (7) that of (C − mω²) − iβω."""
+    """Return the angle (rad) of the smallest holding force (7) on a stuck pin, the phase of (C − mω²) − iβω."""
     return -math.atan2(pin.damping * pin.disc_speed, pin.stiffness - pin.mass * pin.disc_speed**2)
 
 
@@ -38,8 +36,6 @@ def first_release(run: Trajectory) -> float:
         return math.nan
     return first.end if len(run.phases) > 1 else math.inf
 
-
-# --- The pin's whirl
 
 SAMPLES = 64
 """States per revolution."""

@@ -136,8 +136,8 @@ def mode_growth(
 ) -> complex:
     """Return growth rate and frequency (1/s) of the slowest mode of small deviations from a steady motion on a ring.
 
-    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), from the motion; even powers cancel in
-    their difference. The left eigenvector selects the slowest mode other than a free phase.
+    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), so even powers cancel in their
+    difference. The left eigenvector selects the slowest mode other than a free phase.
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):

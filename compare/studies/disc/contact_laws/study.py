@@ -30,7 +30,7 @@ SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
 CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
 """Position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
 
-STEP = 2e-3  # in s
+STEP = 2e-3  # time step in s
 
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
@@ -45,9 +45,9 @@ RESTING = (INNER, 0.75 * R, R)
 """Radii (m) of a point at rest on the annulus."""
 
 RINGS = (8, 9, 10, 11, 12)
-"""On either side of that radius, few enough for errors well above rounding."""
+"""Numbers of rings on either side of that radius, few enough for errors above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # of thin annuli over their mean radius
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli over their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)
@@ -83,7 +83,7 @@ def on_six_points(engine: Engine, ratios: Sequence[float] = RATIOS) -> Measured:
 
 
 def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
-    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the rim's."""
+    """Return the slip u of the centre and R·(ω − φ̇) of the rim (m/s), for all U/W and both signs of the latter."""
     alphas = [math.atan2(1.0, ratio) for ratio in ratios]
     return [
         (cmath.rect(SPEED * math.cos(alpha), DIRECTION), sign * SPEED * math.sin(alpha))
@@ -271,7 +271,6 @@ def slopes_converge() -> Measured:
 
 
 def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]], order: int) -> Measured:
-    """Compare the order of convergence of a ``function`` of an annulus with ``order``."""
     # The error of Gauss's rule on powers and logarithms has even powers of 1/(n + ½).
     fineness = 1.0 / (np.array(RINGS) + 0.5)
     observed = []

@@ -155,7 +155,6 @@ def worst(number: int, part: slice) -> tuple[float, float, float, float]:
 
 
 def curves() -> Data:
-    """Return force along the slip and moment over U/W by law; for points, their range over φ."""
     # Exclude U = W, where a point rests and the error is smaller than nearby.
     near = np.geomspace(1e-5, 0.1, 50)
     ratios = np.unique(np.concatenate((np.geomspace(0.05, 20.0, 240), 1.0 - near, 1.0 + near)))

@@ -17,8 +17,6 @@ from reference_model.systems import DiscOnDisc, FloatArray
 
 
 def curves(count: int = 121) -> Data:
-    """Return spins and positions over ``count`` values of μN, and their ends over X0."""
-
     def balanced(
         loads: FloatArray, disc: DiscOnDisc = RING, law: IsotropicContact | None = None
     ) -> FloatArray:

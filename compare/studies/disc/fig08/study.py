@@ -45,22 +45,22 @@ LOADS = (0.01, 0.035, 0.065, 0.095, 0.104)
 """μN in N, which the paper omits; the equilibrium ends slightly above C·X0 = 0.1 N."""
 
 DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
-"""μN in N, and the time span (s) of the measured decay, late enough for small deviations."""
+"""μN in N, and the time span (s) of the decay, late enough for small deviations."""
 
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """μN in N near the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN over the largest one with an equilibrium
+STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN over the largest μN with an equilibrium
 
 STICKING_TIME = 80.0
-"""Time (s) within which friction can accelerate a disc from 95 % to the speed of the master disc."""
+"""Time (s) within which friction accelerates a disc from 95 % to the speed of the master disc."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
 
-TOLERANCE = WORKING / 10  # of motions to rest, which the claims resolve to 1e-9
+TOLERANCE = WORKING / 10  # for motions to rest, which the claims resolve to 1e-9
 BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
-RESOLUTION = 1e-9  # of positions (m) and spins (rad/s) on the continuous ring
+RESOLUTION = 1e-9  # positions in m, spins in rad/s
 
 
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:
@@ -70,7 +70,6 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    """Return discs with all ``OFFSETS``, and μN up to the largest by (23)."""
     fractions = np.linspace(0.0, 1.0, 13)[1:-1]
     return [
         with_load(disc, fraction * last_load(disc, PAPER_LAW))

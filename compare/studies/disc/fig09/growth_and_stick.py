@@ -116,7 +116,7 @@ def _growth(
 
 # --- Sticking discs
 
-REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # in s, of the force on a sticking disc
+REVOLUTION = 2.0 * math.pi / theory.RING.disc_speed  # period in s of the force on a sticking disc
 
 
 @STUDY.claim(

@@ -29,7 +29,6 @@ Cases = tuple[tuple[float, int | None], ...]
 
 @functools.lru_cache(maxsize=8)
 def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> Measurement:
-    """Return ``means`` of all ``cases``, shape (n, 3)."""
     found = refined(
         lambda tolerance: [means(engine, *case, points, tolerance) for case in cases], theory.ORBIT_TOLERANCE
     )
@@ -58,7 +57,7 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    Two flows may agree to within the tolerance, so it is added, times ``amplified``.
+    The tolerance times ``amplified`` is added, because two flows may agree to within it.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -68,8 +67,7 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
-    The order between neighbours converges like the square of the variable. ``error``, shape (3, 1), is that of the
-    gaps.
+    The order converges like the square of the variable. ``error``, shape (3, 1), is that of the gaps.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
@@ -176,7 +174,6 @@ def _orders(
     components: Sequence[str],
     system: DiscOnDisc,
 ) -> Measured:
-    """Compare the orders of ``gaps`` at a variable that is halved, or doubled if ``orders`` are negative."""
     observed, numerical, model = extrapolated(gaps, noise)
     return Measured(
         predicted=orders,
@@ -307,9 +304,6 @@ def offset_changes_size(engine: Engine) -> Measured:
         note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m, the radius changes by {radius / circle.radius - 1.0:.2g} of "
         f"itself and the spin by {spin - circle.spin:.2g} rad/s.",
     )
-
-
-# --- The self-centred equilibrium
 
 
 @STUDY.claim(

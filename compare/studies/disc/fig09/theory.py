@@ -62,31 +62,30 @@ GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 DISPLACED = 1e-4  # initial deviation over the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
-"""For periodic motions of engines; the reference's have a hundredth of it."""
+"""For periodic motions of engines; the reference has a hundredth of it."""
 
 TOLERANCE = 3e-8
 """For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
-"""End of the axis in N, which the paper omits: twice C·X0, about which sticking begins."""
+"""End of the axis in N, which the paper omits; sticking begins at about half of it, C·X0."""
 
 BRANCH_START = 0.1
 BRANCH_END = 1.0
 BRANCH_STEP = 0.24
-"""First μN of the branch over C·X0, its last crossing of the x axis over X0, and the relative decrease of successive
-crossings.
+"""First μN of the branch over C·X0, its last crossing of the x axis over X0, and the relative decrease of crossings.
 """
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""μN slightly above the fold's, over C·X0, and its smallest value in N."""
+"""μN over C·X0 slightly above the fold, and its smallest value in N."""
 
 FOLD_STEP = 0.12  # relative step of the branch to the fold
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
-"""X0 in m for the fold of the whirl and the ends of the other motions."""
+"""X0 in m for the fold of the whirl and the ends of other motions."""
 
 DAMPINGS = FIG9.damping / 2.0 ** np.arange(3, 7)
 
@@ -101,7 +100,7 @@ def rest_of(load: float) -> SpinningEquilibrium:
 
 
 def exact_motion(load: float, which: int | None) -> SpinningWhirl | SpinningEquilibrium:
-    """Return the whirl without offset of that number, or for None the equilibrium with the offset."""
+    """Return the whirl without offset of that number, or the equilibrium with the offset for None."""
     return rest_of(load) if which is None else circle_of(load, which)
 
 
@@ -119,7 +118,7 @@ def stuck_at(disc: DiscOnDisc, share: float) -> tuple[FloatArray, float]:
 
 @functools.cache
 def orbit_of_reference(load: float, which: int, offset: float = RING.offset) -> Orbit:
-    """Return the outer whirl with an offset, or if ``which`` is 1 the inner, unstable one."""
+    """Return the outer whirl with an offset, or the inner, unstable one for ``which`` = 1."""
     disc = with_load(replace(RING, offset=offset), load)
     return whirl_orbit(disc, guess=inner_orbit(disc) if which else None, tolerance=TIGHTEST, samples=64)
 
@@ -156,7 +155,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls by falling size, from that of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls by falling size, from the whirl of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
@@ -166,9 +165,6 @@ def inner_orbit(disc: DiscOnDisc) -> Orbit:
     orbits = to_inner_orbits(disc)
     next(orbits)
     return next(orbit for orbit in orbits if orbit.system.friction_force > disc.friction_force)
-
-
-# --- Ends of the motions
 
 
 def last_stable_load(disc: DiscOnDisc) -> float:
@@ -235,7 +231,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return all branches over μN, and their ends over X0, the whirl's at ``fold_offsets``."""
+    """Return all branches over μN, and where they end over X0 (the whirl at ``fold_offsets``)."""
     return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
 
 
@@ -261,7 +257,7 @@ def smooth(found: Sequence[Orbit]) -> Data:
     """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
     Positions are interpolated, because the smallest radius has a kink where the orbit passes the axis. Beyond the
-    last orbit its shape shrinks onto the equilibrium; the square of its size is linear in the load.
+    last orbit, its shape shrinks onto the equilibrium, with the square of its size linear in the load.
     """
     limit = spin_of_large_whirl(RING)
     load = np.array([orbit.system.friction_force for orbit in found])
@@ -314,7 +310,7 @@ def rests_and_sticking() -> Data:
 
 
 def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
-    """Return, over the offset, μN of the equilibrium's end, its loss of stability and the whirl's fold."""
+    """Return the μN where the equilibrium ends, where it loses its stability and where the whirl folds, over X0."""
     discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]

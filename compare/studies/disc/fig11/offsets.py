@@ -1,4 +1,4 @@
-"""Claims with an offset, and on six points."""
+"""Claims on motions with an offset, and on six points."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
 
-ROUND = np.linspace(0.0, 300.0, 1201)  # in s, longer than a period of the modulation
-OF_RESTS = 200 * WORKING  # for motions on six points, which come to rest singly
+ROUND = np.linspace(0.0, 300.0, 1201)  # times in s, longer than a period of the modulation
+OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last is that of the other figures."""
 
 ENDS_UNTIL = 720.0  # duration in s
 LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
-ENDS_TOLERANCE = 1e-4  # of the long simulations
+ENDS_TOLERANCE = 1e-4  # for the long simulations
 
 SWING = 0.005
-"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of the swing at X0 = 0."""
+"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of that at X0 = 0."""
 
 ORBITS_EXTENT = 1e-4  # smallest swing (m) of a whirl's radius
 
@@ -130,7 +130,7 @@ def end_of(
     return found, kind
 
 
-# --- The modulated motion on six points, which come to rest singly
+# --- The modulated motion on six points, where single points rest
 
 NOTE = f"Within {ROUND[-1]:g} s. Predicted: the reference at 1e-11."
 

@@ -49,7 +49,6 @@ X0_AXIS = 0.025
 
 
 def curves(whirling: ArrayLike = BRANCH) -> Data:
-    """Return eigenvalues and cycle of Fig. 11, and the branches over the offset, of whirls at ``whirling`` (m)."""
     found = theory.whirls_by_law()
     return {
         "eigenvalues": np.array([(whirl.eigenvalue.real, whirl.eigenvalue.imag) for whirl in found]),
@@ -62,7 +61,6 @@ def curves(whirling: ArrayLike = BRANCH) -> Data:
 
 
 def branches(whirling: ArrayLike) -> Data:
-    """Return whirl and equilibrium over X0, with the critical X0 added to ``whirling``."""
     critical, last = theory.critical_offset_of_reference(), theory.rest_offset()
     orbits: list[Orbit] = []
     offsets = np.sort(np.append(whirling, critical))

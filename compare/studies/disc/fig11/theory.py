@@ -30,7 +30,7 @@ CENTRED = f"{SOURCE}: 0 here"
 
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
-UNTIL = 700.0  # in s, three periods of the modulation
+UNTIL = 700.0  # duration in s, three periods of the modulation
 
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
@@ -88,7 +88,7 @@ class SteadyWhirl:
 
 @functools.cache
 def steady_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> SteadyWhirl:
-    """Return the whirl without offset; on points, it is the whirl closest to the circle of the ring."""
+    """Return the whirl without offset; on points, that closest to the circle of the ring."""
     ring = replace(disc, contact_points=None)
     circle = whirls(ring, contact)[0]
     if disc.contact_points is not None:
@@ -172,7 +172,7 @@ def modulations(states: FloatArray) -> FloatArray:
 
 
 def last_modulation(states: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the last row of :func:`modulations` and its change from the previous one, NaN without two rows."""
+    """Return the last row of :func:`modulations` and its change from the previous one; NaN without two rows."""
     found = modulations(states)
     if len(found) < 2:
         return np.full(6, np.nan), np.full(6, np.nan)

@@ -51,7 +51,7 @@ def end_together(
         return np.array(found)
 
     found = refined(apart, theory.TOLERANCE)
-    # Three errors of a speed over its slope, which is above 0.4·g.
+    # Three errors of a speed over its slope, which exceeds 0.4·g.
     noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
@@ -292,7 +292,6 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
 def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
 
     def imbalance(tolerance: float) -> FloatArray:
-        """Return the largest difference over the initial energy, by all samples and by every second one."""
         found = []
         for throw in throws:
             times = theory.uniform_times(engine, throw)
@@ -350,7 +349,6 @@ def published_ratio() -> Measured:
     face = Annulus(0.0, 1.0, rings=16)
 
     def unevenness(ratio: float) -> float:
-        """Return the difference of both relative decelerations."""
         resistance, moment = face.shares(ratio, 1.0)
         return resistance / ratio - moment / 0.5
 

@@ -39,7 +39,7 @@ TABLE = replace(
 
 DECELERATION = TABLE.friction_force / TABLE.mass  # g in m/s²
 SPEED = 0.3  # initial √(U² + W²) in m/s, with U of the centre and W of the rim
-HEADING = 0.7  # of the throw, in rad from the x axis
+HEADING = 0.7  # direction of the throw in rad from the x axis
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ INTEGRATED = (*RINGS, *OTHERS)
 LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees in (30.0, 60.0))
 """Throws with J/(mR²) outside 1/2 to 2."""
 
-INTERVALS = 400  # of the time to rest
+INTERVALS = 400  # samples until rest
 
 REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 """Remaining times of samples over the time to rest."""
@@ -98,7 +98,7 @@ REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 NEARNESSES = (7.0, 9.0)  # A/t of the samples
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times for the fit of a power law, over the time to rest."""
+"""Remaining times for a power law, over the time to rest."""
 
 TOLERANCE = WORKING / 10
 """For ratios near rest, where less than a thousandth of the initial speed is left."""
@@ -141,8 +141,8 @@ def curves() -> Data:
 def roughly_rest(engine: Engine, throw: Throw) -> float:
     """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    Its tolerance is that of the claims. At a smaller tolerance the rest moves relative to the samples, so the change
-    of a measured value includes the error of the sample times.
+    At a smaller tolerance the rest moves relative to the samples, so the change of a measured value includes the
+    error of the sample times.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
@@ -168,7 +168,6 @@ def uniform_times(engine: Engine, throw: Throw) -> FloatArray:
 
 
 def approach_times(engine: Engine, throw: Throw) -> FloatArray:
-    """Return the times (s) when A over the remaining time equals ``NEARNESSES``."""
     return roughly_rest(engine, throw) - expected_approach(throw) / np.array(NEARNESSES)
 
 

@@ -27,12 +27,12 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
 
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
-BOTH_LAWS = "(19), (20), (23)"  # for both the ring and (23)
+BOTH_LAWS = "(19), (20), (23)"  # equations for both the ring and (23)
 
 FAR_FROM_KINK = 0.02
 """Smallest |U/W − 1| for the expansion about the whirl, which is invalid close to U = W."""
 
-ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)  # in rad/s
+ONSET_SPEEDS = (1.05, 1.2, 1.4, 1.5, 2.0, 3.0)  # ω in rad/s
 
 UNSTABLE_LOADS = (0.3, 0.7)
 """Shares of the interval of μN from the fold to the Hopf point of (23)."""
@@ -242,8 +242,6 @@ def jumps() -> Measured:
                 on_ring += growth[np.isfinite(growth)].tolist()
     return answers_of(on_ring, data=data)
 
-
-# --- Stability of the whirl of Fig. 11
 
 (LOW, _), (HIGH, _) = PLANES["dampers"].lower, PLANES["dampers"].upper
 

@@ -52,7 +52,7 @@ class Region(NamedTuple):
 class Panel(NamedTuple):
     """Labels, ranges and regions of a plane.
 
-    ``outward`` is +1 if the second coordinate increases from the onset to the large whirls, and -1 if it decreases.
+    ``outward`` is the sign of the change of the second coordinate from the onset to the large whirls.
     """
 
     labels: tuple[str, str]

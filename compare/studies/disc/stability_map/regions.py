@@ -34,7 +34,7 @@ ASIDE = 0.01  # relative distance from the curves
 DEVIATION = 0.02
 """Initial deviation from the whirl over the distance to U = W, where a point of the ring comes to rest."""
 
-FLOW_TOLERANCE = 100 * WORKING  # for small differences
+FLOW_TOLERANCE = 100 * WORKING  # for motions whose small differences are evaluated
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
 """x, y, angle, vx, vy, spin near the largest radius of the modulated cycle."""
@@ -120,7 +120,7 @@ def deviations(engine: Engine, lines: Lines) -> list[Deviation]:
 
 
 def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
-    """Yield plane and disc on both sides of the ring's Hopf curves that the lines cross."""
+    """Yield plane and disc on both sides of the ring's Hopf curves on each line."""
     for name, fixed, value in lines:
         plane = PLANES[name]
         along = plane.names[1 - plane.names.index(fixed)]
@@ -226,7 +226,7 @@ def coexisting() -> tuple[theory.Start, ...]:
 
 
 def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
-    """Return, for each plane, both parameters and the index in ``ENDS`` of the motions in it, shape (n, 3)."""
+    """Return both parameters and the index in ``ENDS`` of each motion, by plane, shape (n, 3)."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     for name, plane in PLANES.items():
         for start, end in zip(starts, ends, strict=True):

@@ -60,7 +60,7 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    It includes the effect of the state's: if U and W are nearly equal, friction's slopes depend on their difference.
+    The error includes that of the state: if U and W are nearly equal, friction's slopes depend on their difference.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -74,7 +74,6 @@ def critical_eigenvalues(
 
 
 def spectra(wanted: Kind, curves: Traced) -> list[tuple[ComplexArray, float]]:
-    """Return ``critical_eigenvalues`` at all points of the curves of one kind."""
     found = []
     for (plane, law, kind), branches in curves.items():
         for curve in branches if kind == wanted else ():
@@ -139,7 +138,6 @@ def curves() -> Data:
 
 
 def section() -> Data:
-    """Return μN (N), radius (m) and growth rate (1/s) of Fig. 11's whirls over α, for each law."""
     data: Data = {}
     alphas = np.linspace(0.45, np.pi / 2.0 - 1e-3, 240)
     for name, law in LAWS.items():
@@ -151,8 +149,6 @@ def section() -> Data:
         data[f"section/{name}"] = np.array(rows)
     return data
 
-
-# --- Final motions of the centred disc
 
 SETTLED = 600.0
 WATCHED = 350.0
@@ -198,7 +194,6 @@ def kind_of_end(
 
 
 def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Measured]:
-    """Return the kinds of final motion, and answers whether they are as expected."""
     ends: dict[float, list[str]] = {}
 
     def as_said(tolerance: float) -> list[bool]:

@@ -187,7 +187,7 @@ def _nearest(times: FloatArray, time: float) -> float:
 def momentum(engine: Engine) -> Measured:
     from exudyn_models.solver.breaks import GAP
 
-    gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # in s
+    gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # s
     runs = _runs(engine)
     found = [float(np.dot(INERTIAS, run.speeds[-1])) for run in runs]
     return Measured(

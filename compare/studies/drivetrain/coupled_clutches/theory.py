@@ -17,16 +17,14 @@ from compare.studies.toolkit.rotors import Rotors
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
-# --- Parameters
-
 INERTIAS = (1.0, 1.0, 1.0, 1.0)
-"""In kg m²."""
+"""Inertias in kg m²."""
 
 SPEED = 10.0
 """Initial speed of the first rotor in rad/s; the others rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
-"""Torque on the first rotor in N m and Hz."""
+"""Amplitude in N m and frequency in Hz of the torque on the first rotor."""
 
 RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
 """Modelica's cgeo in m, coefficient of sliding friction, peak ratio, and largest load of a clutch in N."""
@@ -36,32 +34,32 @@ OPENS = 0.2
 
 OPEN_FROM = 0.25 / OPENS
 ENGAGED_FROM = (0.4, 0.9)
-"""In s, when the second and the third clutch receive the whole load at once."""
+"""Times in s when the second and the third clutch receive the whole load at once."""
 
 BREAKS = (*ENGAGED_FROM, OPEN_FROM)
 UNTIL = 1.5
-"""In s."""
+"""Duration in s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
-"""In s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
+"""Times in s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
 
 EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""In m/s, which equals rad/s at the radius of 1 m."""
+"""ε in m/s, which equals rad/s at the radius of 1 m."""
 
 TOLERANCE = 1e-9
-"""For explicit steps, in rad/s; a millionth of the effect of the smallest ε."""
+"""For explicit steps in rad/s; a millionth of the effect of the smallest ε."""
 
 SMALL_EPSILON = 1e-5
-"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest of ``STEPS``."""
+"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest step."""
 
 STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""For implicit runs, in s."""
+"""Implicit steps in s."""
 
 ALL_SLIP_UNTIL = 0.7
-"""In s, one of ``SHOWN``; until then all closed clutches slip."""
+"""Time in s, one of ``SHOWN``; until then all closed clutches slip."""
 
 LETS_GO_FROM = 0.82
-"""In s, before the first release; the first and second clutches stick."""
+"""Time in s before the first release; the first and second clutches stick."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
 """Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
@@ -88,11 +86,10 @@ def _engaged_from(begin: float) -> Callable[[float], float]:
 
 
 LOADS = (first_load, *map(_engaged_from, ENGAGED_FROM))
-"""In N."""
+"""Loads in N."""
 
 
 def torque(time: float) -> float:
-    """Return the torque on the first rotor (N m)."""
     return TORQUE * math.sin(2.0 * math.pi * FREQUENCY * time)
 
 
@@ -166,7 +163,7 @@ def published() -> Published:
 
 
 def first_and_slips(values: FloatArray) -> FloatArray:
-    """Return values of the first rotor and differences between neighbours, shape (n, 4) like ``values``."""
+    """Return values of the first rotor and differences between neighbours, shape (n, 4)."""
     return np.column_stack((values[:, 0], np.diff(values, axis=1)))
 
 

@@ -131,7 +131,7 @@ def _onset(matrix: Callable[[float], FloatArray], near: float, frequency: float)
     return speed, 2.0 * radial(speed)[1] / slope
 
 
-# --- Steady motions on the bench: rest below the onset, with an offset; whirl on the stop above it, without offset
+# --- Steady motions on the bench: rest below the onset, whirl on the stop above it
 
 NOTE = (
     f"At {theory.TORQUE:g} N m and {theory.SLIPPING:g} rad/s of slip, after {theory.DECAYS:g} decay times of the "
@@ -241,7 +241,6 @@ def _motion(speed: float, whirling: bool) -> Steady:
     bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, 0.0 if whirling else car.offset)
 
     def by_reference(rings: int) -> tuple[FloatArray, float]:
-        """Return the values and the decay rate (1/s) of the slowest mode."""
         if whirling:
             whirl = whirl_of(car, bench, rings)
             values = (whirl.radius, whirl.frequency, bench.speed - whirl.spin)

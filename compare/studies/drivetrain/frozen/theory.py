@@ -42,9 +42,6 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain, DrivetrainModel
 
 
-# --- Parameters
-
-
 FINER = 24
 """Rings of the reference's annulus instead of 16, to estimate their error."""
 
@@ -58,7 +55,7 @@ BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""
 
 DECAYS, SEEN = 20.0, 5.0
-"""Length of a run in decay times of its slowest mode, and how many of them show the remaining transient."""
+"""Length of a run in decay times of its slowest mode; the last ``SEEN`` show the remaining transient."""
 
 START = 3e-4
 """Initial position of a whirl in m, within the play."""
@@ -97,10 +94,10 @@ CYCLE_SAMPLE = 2e-3
 """Its sampling interval in s."""
 
 SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""In rpm, from just above the natural frequency."""
+"""Speeds in rpm, from just above the natural frequency."""
 
 TORQUES = np.geomspace(0.2, 60.0, 32)
-"""In N m."""
+"""Torques in N m."""
 
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 
@@ -180,7 +177,7 @@ def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> Flo
     slip = 1j * (whirl.frequency - omega) * x
     force, _ = law.force_and_moment(slip, whirl.slip, 0.0)
     changes = whirl.friction_force * law.jacobian(slip, whirl.slip, 0.0)[:, :3]
-    # Friction resists S with the moment on the disc, whose generalised force for S is negative.
+    # The moment on the disc resists S, so its generalised force for S is negative.
     put = rate_to_slip.T @ np.diag([1.0, 1.0, -1.0])
     stiffness, damping = -put @ changes @ place_to_slip, -put @ changes @ rate_to_slip
     fx, fy = whirl.friction_force * force.real, whirl.friction_force * force.imag
@@ -227,10 +224,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``.
-
-    Lines are x, y at rest, and radius and frequency of a whirl; :func:`whirl_growth` explains the maps.
-    """
+    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
     car, centred = passenger_car(), centred_car()
     onset = onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]

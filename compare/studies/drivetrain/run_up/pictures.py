@@ -32,7 +32,7 @@ MM = 1e3
 CYAN = "#58e0ff"
 
 OPEN = 0.7
-"""In rad, turns the cut of the cover towards the viewer."""
+"""Angle in rad that turns the cut of the cover towards the viewer."""
 
 ENLARGED = 50.0
 """Magnification of radial motion."""
@@ -44,7 +44,7 @@ FRAMES = 15
 """Frames of each slow motion."""
 
 SIZE = (330, 280)
-"""In pixels."""
+"""Size in pixels."""
 
 STEP = math.radians(48.0)
 """Rotation of the engine per frame in rad."""
@@ -183,7 +183,6 @@ def time_of(found: Data, turns: float) -> float:
 
 
 def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
-    """Return the engine's angle and the disc's x, y and angle."""
     near = slice(*np.searchsorted(found["times"], [time - 0.01, time + 0.01]))
     times = found["times"][near]
     angle = float(CubicSpline(times, found["engine"][near, 0])(time))
@@ -191,7 +190,7 @@ def motion_at(found: Data, time: float) -> tuple[float, FloatArray]:
 
 
 def animations(data: ByEngine) -> dict[str, bytes]:
-    """Draw slow motions of two turns at three speeds: the drivetrain, and the orbit of the disc's centre."""
+    """Draw slow motions at three speeds: the drivetrain, and the orbit of the disc's centre."""
     if not engines_in(data):
         return {}
     from exudyn_models.drivetrain.picture import draw_drivetrain

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from exudyn_models.drivetrain.model import DrivetrainMotion
 
 IDLE, TOP = 800.0, 6000.0
-"""In rpm."""
+"""Speeds in rpm."""
 
 TORQUE, RIPPLE = 100.0, 1.0
 """Mean torque of the engine in N m, and amplitude of its firing order over the mean."""
@@ -49,7 +49,7 @@ LINES_APART = 0.06
 """Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
 
 SAMPLE = 5e-4
-"""In s; 20 samples per turn at 6000 rpm."""
+"""Sampling interval in s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
 """Window of the spectrum in turns of the engine, and samples per turn."""
@@ -80,7 +80,6 @@ def whirls_above_onset(car: Drivetrain) -> FloatArray:
 
 
 def curves(count: int = 120) -> Data:
-    """Return the reference's predictions, ``count`` below the onset."""
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
     onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)

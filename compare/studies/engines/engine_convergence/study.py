@@ -203,7 +203,7 @@ def first_stick(engine: Engine) -> Measured | None:
 
 
 class Smoothing(NamedTuple):
-    """Errors of later events and of the state (last column) over ``REGULARISATIONS``, shape (ε, n), and exponents."""
+    """Errors of later events and the state (last column) by regularisation, shape (ε, n), and their exponents."""
 
     errors: FloatArray
     exponents: FloatArray

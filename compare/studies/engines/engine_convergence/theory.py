@@ -19,19 +19,17 @@ from reference_model import Phase, PinOnDisc, Trajectory, simulate
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
 
-# --- Parameters
-
 SLIDING_STARTS = ((0.9, 0.0, 0.0, 0.9), (1.2, 0.0, 0.0, 1.2))
 """Near the whirl, and a third farther out; the pin always slides (our choice)."""
 
 SLIDING_TIMES = np.linspace(0.0, 20.0, 26)
-"""In s, multiples of every step, so the samples are not interpolated."""
+"""Times in s, multiples of every step, so the samples are not interpolated."""
 
 STICKING_STARTS = tuple((0.1, 0.0, float(speed), 0.0) for speed in np.linspace(0.0, 0.06, 12))
-"""Like Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
+"""Starts like those of Fig. 5, with vx in m/s; each pin sticks and is released once in the first 8 s."""
 
 STICKING_UNTIL = 8.0
-"""In s."""
+"""Duration in s."""
 
 
 def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
@@ -42,7 +40,7 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 class Scan:
     """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
 
-    Errors have the ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
+    Errors are of this ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
     the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
     """
 
@@ -84,10 +82,10 @@ TOLERANCE = WORKING / 10
 """So small that ε dominates all other errors."""
 
 STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
-"""In s, until after the last of nine stick phases on the way to the whirl."""
+"""Times in s, until after the last of nine stick phases."""
 
 WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
-"""In s, through stick phases, where ε must be proportional to the step."""
+"""Steps in s through stick phases, where ε must be proportional to the step."""
 
 
 def smallest_regularisation(step: float) -> float:
@@ -144,8 +142,6 @@ def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
     return -(pull.conjugate() * slope * creep).real / grows
 
 
-# --- Errors and cost of simulations
-
 Simulate = Callable[..., Trajectory]
 
 
@@ -172,9 +168,6 @@ def _cost(
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
     """Return the errors of the events, NaN if their number differs from the exact one."""
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
-
-
-# --- Exudyn's solvers at a fixed step
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,7 @@ def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> M
 
 @functools.lru_cache(maxsize=len(theory.PROBLEMS))
 def calibration(engine: Engine, kind: str, motions: int) -> theory.Calibration:
-    """Return the calibration for one kind of problem; all kinds that can be simulated share ``motions``."""
+    """Return the calibration for one kind of problem; all simulated kinds share ``motions``."""
     each = -(-motions // len(simulated(engine)))
     return theory.calibrated(engine, drawn(kind, each))
 

@@ -35,8 +35,6 @@ from reference_model.formulas.pin import (
 from reference_model.systems import DiscOnDisc, FloatArray, System
 from reference_model.trajectory import Trajectory
 
-# --- Parameters
-
 MOTIONS = 360
 """Motions per engine, shared equally by the kinds of problem that it can simulate."""
 
@@ -59,7 +57,7 @@ A smaller true error is a coincidence of two roundings, so its ratio to an estim
 """
 
 EXACT = 100.0 * TRUTH
-"""For the reference, a thousandth of the smallest tolerance of a motion."""
+"""Tolerance of the reference, a thousandth of the smallest tolerance of a motion."""
 
 SMALL_OFFSET = 1e-7
 """X0/ρ_c in the response. Terms of second order are smaller by this factor, and errors are ~ tolerance/X0."""

@@ -20,8 +20,6 @@ from compare.report.numbers import error_text
 from reference_model import Phase, Solution, Trajectory, plain
 from reference_model.systems import FloatArray
 
-# --- Groups of recorded settings by friction law and order
-
 FIRST_ORDER = (
     "MuJoCo, elliptic cone",
     "Bullet, cone",
@@ -64,7 +62,7 @@ TANGENTS = (
 """Settings without slip at the end of a step during stick, and with negligible rounding."""
 
 WANTED = 1e-3
-"""Error in m whose computing time the table lists, the largest that is invisible in the paper's figures."""
+"""Error (m) whose computing time the table lists, the largest that the paper's figures hide."""
 
 HALVED = 0.02
 """Allowed deviation of the ratio of step numbers from 2, because steps divide the interval between output times."""
@@ -185,8 +183,6 @@ def error_of(law: Law, name: str) -> tuple[float, float]:
     return float(value), float(error)
 
 
-# --- Claims of each recorded engine and case
-
 OUR_FORCE = "our force"
 
 PROGRAM = "examples/exec_contact.js"
@@ -205,7 +201,7 @@ IN_SHORT = {
     "release": ("is released", "stick"),
     "disc": ("disc, 6 points", "slip"),
 }
-"""Short name of each case, and whether it slips or sticks."""
+"""Short name of each case, and whether the pin slips or sticks."""
 
 
 def recorded_settings() -> tuple[Recorded, ...]:
@@ -213,7 +209,6 @@ def recorded_settings() -> tuple[Recorded, ...]:
 
 
 def recorded_claims(recording: Recording) -> Recorded:
-    """Return the claims of one setting, one per case, from the finest run."""
     claims = []
     for name, runs in recording.runs.items():
         case = CASES[name]
@@ -255,7 +250,6 @@ def recorded_claims(recording: Recording) -> Recorded:
 
 
 def _advice(recording: Recording) -> str:
-    """Return the refinement for an error of ``WANTED``, or the error of the finest run."""
     runs = {CASES[name]: rows for name, rows in recording.runs.items() if rows[-1, ERROR] <= estimate(rows)}
     if not runs or recording.engine == "reference":
         return ""
@@ -307,7 +301,6 @@ def _finest(runs: FloatArray) -> str:
 
 
 def time_to(wanted: float, runs: FloatArray) -> str:
-    """Return as text the processor time (ms) for the error ``wanted``."""
     if math.isnan(seconds := _at(wanted, runs, SECONDS)):
         return "not reached"
     return f"{'≤ ' * bool(runs[0, ERROR] <= wanted)}{1e3 * seconds:.3g}"

@@ -167,6 +167,6 @@ DRAWN = {
     "pins on stops": Drawn(1, _stiffening, _sliding),
     "rings": Drawn(2, _ring, _sliding),
     "points": Drawn(3, _on_points, _sliding),
-    # For other numbers, wrong engines may never finish, which shows less than a motion that differs.
+    # Other numbers may draw motions that wrong engines never finish, which shows less than a deviation.
     "pins that stick": Drawn(12, _sticking, _stuck),
 }

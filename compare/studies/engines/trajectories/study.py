@@ -64,7 +64,6 @@ def together(measure: Measure) -> MeasureAll:
 
 
 def pooled(parts: Sequence[Measured]) -> Measured:
-    """Return the results of several systems of one kind as one."""
     first, *others = parts
     if not others:
         return first
@@ -160,7 +159,6 @@ def of_bodies(
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
 def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    """Return the motion at ``times_of(motion)``."""
     return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
 
 
@@ -310,7 +308,6 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
 )
 @together
 def release(engine: Engine, motion: Motion) -> Measured | None:
-    """Return None if the reference contains no stick phase."""
     pin, middles = motion.system, samples_in_stick(by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None

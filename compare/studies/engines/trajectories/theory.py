@@ -1,4 +1,4 @@
-"""Motions, ranges of the random ones, and integrals over panels of time.
+"""Given motions, ranges of random motions, and integrals over panels of time.
 
 The paper's m, J and C are all one, so an engine that confuses them still moves correctly. Here no two parameters are
 equal. A mistake may also occur only for certain parameters, such as a slow disc, so random motions cover the whole
@@ -26,7 +26,9 @@ PANEL = 0.25
 """Length in s of the integration intervals of forces."""
 
 STICK_RESOLUTION = 5e-4
-"""In s, to detect a millisecond. Approximate laws of stick release about 1e-5 s late at a tolerance of 1e-9."""
+"""Resolution in s, to detect a millisecond. Approximate laws of stick release about 1e-5 s late at a tolerance of
+1e-9.
+"""
 
 PIN = PinOnDisc(mass=1.3, stiffness=2.1, damping=0.17, friction_force=0.11, disc_speed=1.9, offset=0.07)
 
@@ -100,9 +102,7 @@ MOTIONS = PINS | PINS_THAT_STICK | RINGS | POINTS
 """Only in the pin that sticks does a point of the contact come to rest, where friction has a kink."""
 
 ONE_OF_EACH_KIND = tuple(next(iter(kind.values())) for kind in (PINS, PINS_THAT_STICK, POINTS))
-"""For an engine that differs from another one only in its contact."""
-
-# --- Drawn from the whole range
+"""Motions for an engine that differs from another one only in its contact."""
 
 SEED = 8
 
@@ -110,13 +110,13 @@ SPEEDS = ((0.1, 0.3), (0.4, 3.0), (4.1, 6.0))
 """|ω| in rad/s: slow, near the natural frequency, and fast; the other studies use 0.15 to 5."""
 
 UNTIL = 3.0
-"""In s."""
+"""Duration in s."""
 
 LEAST_SLIP = 0.15
 """Smallest slip over the largest, so nothing almost rests where forces are integrated."""
 
 MOST_TURN = 2.0
-"""Largest rotation in rad of a disc on points during a ``PANEL``, because its forces turn with it."""
+"""Largest rotation in rad of a disc on points in a ``PANEL``, because its forces turn with it."""
 
 STICKS_FOR = (0.2, 2.0)
 """Duration of the initial stick phase in s."""
@@ -136,7 +136,7 @@ SLOWEST_FALL = 0.9
 
 
 def times_of(motion: Motion) -> FloatArray:
-    """Return the bounds and Gauss nodes of all panels in their order; each panel begins with its bound."""
+    """Return the bounds and Gauss nodes of all panels; each panel begins with its bound."""
     bounds = np.linspace(0.0, motion.until, round(motion.until / PANEL) + 1)
     places = np.concatenate(([0.0], 0.5 + 0.5 * NODES))
     return np.append(bounds[:-1, np.newaxis] + PANEL * places, motion.until)
@@ -193,13 +193,9 @@ def forces(body: System, states: FloatArray) -> FloatArray:
 
 
 def equation_of(motion: Motion) -> str:
-    """Return the numbers of the paper's equations of motion for the body."""
     if isinstance(motion.system, PinOnDisc):
         return "(1)"
     return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
-
-
-# --- Stick phases of a pin
 
 
 def samples_in_stick(run: Trajectory) -> list[int]:

@@ -46,11 +46,11 @@ ASKED, BARELY = 64, 1e-6
 """Largest number of starts for shooting, and smallest distance (rad) from the saddle that decides their side."""
 
 UNTIL = 3000.0  # duration in s
-SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # in rad/s
+SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
 STARTS, SEED = 2000, 5  # random starts, the same at every speed
 RECOMPUTED = 16  # starts for the plain reference, half of them near the boundary
-SETTLED = 250.0  # in s until these starts have reached one of the two ends
-STEP = 5e-3  # distance (rad) of other releases, for an engine's multiplier
+SETTLED = 250.0  # duration in s until these starts have reached one of the two ends
+STEP = 5e-3  # distance (rad) of neighbouring releases, whose differences give the multiplier
 
 PLACES, ASIDE = 4, 5e-3
 """Starts on the boundary, and distance of simulated starts from it in m and m/s."""
@@ -59,7 +59,7 @@ WITHIN, REACH = (0.05, -0.1), 0.4
 """A start in the basin of the equilibrium, and a distance from it where all starts lead to the whirl."""
 
 AFTER, ASIDE_TOLERANCE = 90.0, 1e-7
-"""In s until the engines' motions have left the saddle, and tolerance."""
+"""Duration in s until the engines' motions have left the saddle, and tolerance."""
 
 
 def curves(
@@ -80,7 +80,6 @@ def curves(
 
 @functools.cache
 def saddle(pin: PinOnDisc) -> StickSlipOrbit:
-    """Return the orbit whose stable set is the boundary."""
     (orbit,) = (orbit for orbit in stick_slip_orbits(pin, tolerance=TIGHTEST) if not orbit.stable)
     return orbit
 
@@ -126,7 +125,6 @@ def ensemble_of(starts: FloatArray, pin: PinOnDisc = FIG5, **parameters: FloatAr
 
 
 def places_on_grid(side: int) -> FloatArray:
-    """Return x0 and vx0 of the grid, shape (side², 2)."""
     x, vx = (np.linspace(low, high, side) for low, high in PLANE)
     return np.column_stack([each.ravel() for each in np.meshgrid(x, vx)])
 
@@ -162,7 +160,7 @@ def random_places(starts: int) -> tuple[FloatArray, np.random.Generator]:
 
 @functools.lru_cache(maxsize=1)
 def shares_over_speed(speeds: tuple[float, ...], starts: int) -> dict[EndState, FloatArray]:
-    """Return the share of each end at each speed and its 95 % interval, shape (speeds, 3)."""
+    """Return the share of each end and its 95 % interval, shape (speeds, 3)."""
     places, _ = random_places(starts)
     all_starts = np.tile(starts_at(*places.T), (len(speeds), 1))
     found = ensemble_of(all_starts, disc_speed=np.repeat(speeds, starts)).end

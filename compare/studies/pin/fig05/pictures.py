@@ -31,7 +31,7 @@ BARS: dict[str, dict[str, Any]] = {
     "equilibrium": {"linestyle": "--", "linewidth": 0.9},
     "whirl": {"linestyle": "-.", "linewidth": 0.9},
 }
-"""For the errors of event times, and their error bars."""
+"""Styles of the errors of event times, and of their error bars."""
 
 STUCK = PURPLE
 

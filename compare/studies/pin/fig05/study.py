@@ -24,11 +24,11 @@ from reference_model.systems import FloatArray
 SOURCE = "Fig. 5 and its printed initial conditions"
 
 UNTIL = 400.0
-"""In s, which the paper omits; the slowest transients then have decayed to 1e-8."""
+"""Duration in s, which the paper omits; the slowest transients then have decayed to 1e-8."""
 
 SAMPLES = 4001
 
-FURTHER_TURNS = 20  # after a run; the last turn is averaged
+FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
 SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # permanent slip near the whirl (our choice)
 
 SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
@@ -36,7 +36,7 @@ SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
 CAPTURE = 1e-6  # required accuracy of the critical velocity in m/s
 
 AFTERWARDS = 220.0
-"""In s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
+"""Duration in s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
 
 SIDES_TOLERANCE = 1e-7
 
@@ -46,7 +46,7 @@ BESIDE = 2e-5
 RUNS_TOLERANCE = 5.0 * WORKING
 
 CRITICAL_TOLERANCE = WORKING / 5.0
-"""The critical velocity of a regularised law has an error about a hundred times larger."""
+"""For the critical velocity, whose error under a regularised law is about a hundred times larger."""
 
 LEAST_SHARE = 1e-5
 """Smallest error of stick times over their resolution.
@@ -56,7 +56,7 @@ deviated by up to 1.2e-6 of the resolution.
 """
 
 STICK_RESOLUTIONS = {"first": 1e-3, "all": 1e-2}
-"""In s."""
+"""Resolutions in s."""
 
 
 @functools.cache

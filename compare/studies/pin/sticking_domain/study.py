@@ -40,10 +40,10 @@ CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
 LATEST = 1.1  # duration for a pin outside, over the time (7)
-REVOLUTIONS = 2.0  # for a pin inside; the holding force has the period of one revolution
+REVOLUTIONS = 2.0  # turns of a pin inside; the holding force has the period of one revolution
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
-"""ω in rad/s for the search of the largest sticking radius; the first three are near the resonance."""
+"""ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
 
 BRACKET = (0.03, 4.0)
 """Initial bracket of the search over X0, independent of (9)."""
@@ -62,7 +62,6 @@ def pin_at(speed: float) -> PinOnDisc:
 
 
 def curves() -> Data:
-    """Return the radius (9) in m, and the turns (rad) until release, over ω (rad/s)."""
     speeds = np.unique(np.concatenate((np.linspace(0.15, 2.6, 200), RESONANCE + np.linspace(-0.2, 0.2, 81))))
     return {
         "speed": speeds,
@@ -84,7 +83,7 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. Without one of them the vertex is missing, and open if the errors of
+    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if the errors of
     all missing radii are infinite.
     """
 
@@ -105,7 +104,7 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
 
 
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
-    """Return ω (rad/s) at the vertex of the parabola through the radius (9) at three speeds around ``speed``."""
+    """Return ω (rad/s) at the vertex of a parabola through the radius (9) at three speeds."""
     step = width * speed
     # The nodes are not symmetric, so the result does not contain its own prediction.
     nodes = speed + step * np.array([-0.6, 0.4, 1.4])
@@ -122,7 +121,7 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return the displacements of pins inside the radius (9) over it, shape (n, 2), and which pins always stick."""
+    """Return displacements over the radius of pins inside (9), shape (n, 2), and which pins always stick."""
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
     starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]

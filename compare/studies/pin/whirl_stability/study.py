@@ -38,7 +38,7 @@ remaining transient. The slowest deviation falls to 1e-10.
 
 STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
 CAUGHT = 18.0
-"""Starts on the circle (11): ω in rad/s below and above k, and the duration in s until a pin sticks if ω < k."""
+"""Starts on the circle (11): ω in rad/s below and above k, and the time in s until a pin sticks if ω < k."""
 
 POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
 FLOW_DURATION = 0.5
@@ -136,7 +136,6 @@ def counted(margins: ArrayLike, errors: ArrayLike = 0.0) -> Measured:
 
 
 def holds(margin: Callable[[PinOnDisc], float]) -> NDArray[np.bool_]:
-    """Return whether ``margin`` is positive at each point of the grid."""
     return np.array([margin(pin) > 0.0 for pin in grid()])
 
 
@@ -204,7 +203,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
             functools.partial(track, speed),
             duration=DURATION,
             delay=DELAY,
-            period=np.pi / K,  # approximate, of deviations in axes that turn with the whirl
+            period=np.pi / K,  # approximate period of deviations in the rotating axes
             rate=-whirl_eigenvalues(pin_at(speed))[1].real,
             tolerance=WORKING / 5,  # for a resolution of 1e-9
         )
@@ -262,7 +261,7 @@ def _at_end(engine: Engine, speeds: Sequence[float], which: int, predicted: floa
 def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     if engine.contact_only:
         return None
-    interval = 0.01  # in s
+    interval = 0.01  # s
     fourth_order = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
     pins = [pin_at(speed) for speed in starts]
 

@@ -18,8 +18,6 @@ from compare.engines import Engine
 from compare.studies.toolkit.random_systems import state_of
 from reference_model.systems import FloatArray, PinOnDisc
 
-# --- Parameters
-
 SOURCE = "assumption: a block of 1 kg with friction of 1 N"
 
 BLOCK = PinOnDisc(mass=1.0, stiffness=0.0, damping=0.0, friction_force=1.0, disc_speed=0.0)
@@ -29,7 +27,7 @@ DECELERATION = FRICTION / BLOCK.mass
 """g in m/s²."""
 
 HEADINGS = (0.0, 22.5, 45.0, 67.5)
-"""In degrees: sides, corners and neither of squares and octagons in any orientation."""
+"""Headings in degrees: sides, corners and neither of squares and octagons in any orientation."""
 
 SPEED = 1.0
 """v₀ in m/s."""
@@ -38,7 +36,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times over the time to rest."""
 
 AT_REST = 1.5
-"""Such a time, late enough for regularised laws."""
+"""Sample time over the time to rest, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
 """A stretch of 10 m pulls with μN, so the pull changes slowly."""
@@ -50,23 +48,25 @@ BEYOND = 1.01
 """Pull over μN that exceeds friction."""
 
 HELD = 10.0
+"""Duration in s."""
 
 MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
 """Smallest displacement (m) that counts as motion: half of the slide under ``BEYOND``."""
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
-"""Over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
+"""Position over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
 
 DIAGONAL = 45.0
+"""Heading in degrees."""
 
 PULL = 1.5
 """Initial pull over μN on a block thrown along it."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
-"""Initially stretched by 150 m; a larger distance would cost digits of the position."""
+"""The spring is initially stretched by 150 m; a larger distance would cost digits of the position."""
 
 PULLED = np.array([0.0, 1.0, 2.0])
 
@@ -139,7 +139,6 @@ def bend_by_spring(times: FloatArray) -> float:
 
 
 def curves() -> Data:
-    """Return swings in units of μN/C over kt/π, and ``across`` over time."""
     k, length = SWINGING.natural_frequency, FRICTION / SWINGING.stiffness
     swings, times = np.linspace(0.0, SWINGS + 1.0, 401), np.linspace(0.0, 2.0, 201)
     return {

@@ -53,7 +53,7 @@ class Path:
 
     @classmethod
     def of(cls, push: Push) -> Path:
-        """Return the path of a push against the edge that the hand is initially farthest outside of."""
+        """Return the path of a push against the edge that faces the hand."""
         start = complex(push.start_x, push.start_y)
         half = cmath.exp(0.5j * push.turn)
         end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
@@ -162,10 +162,8 @@ def measured_motion(push: Push) -> tuple[complex, float]:
     return (half * complex(push.x, push.y) + (half**2 - 1.0) * CENTRE) * MM, push.turn
 
 
-# --- The Exudyn model
-
 STIFFNESS = 1e6
-"""In N/m; 4 N press the hand in by 4 µm."""
+"""Stiffness in N/m; 4 N press the hand in by 4 µm."""
 
 STEPS = 300
 

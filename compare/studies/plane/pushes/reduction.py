@@ -12,8 +12,8 @@ Choices, and their effect on a series' median error of the force's direction, wh
 - The mean force excludes the first 30 % of the samples (``SETTLING``), while the pusher closes a gap of 2.5 mm and
   the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. A
   start 0.2 s after the force exceeds 1 N changes them by at most 0.4 degrees and 2 %.
-- The first sample is the sensor's offset, as in the authors' work. The mean of 20 samples changes the median by at
-  most 0.5 degrees.
+- The first sample is the sensor's offset, as in the authors' work. The mean of the first 20 samples changes the
+  median by at most 0.5 degrees.
 - The force acts at the hand's final position. Its initial position changes the median error of the wrench by at most
   2 degrees, and the work by at most 4 %.
 """
@@ -179,8 +179,6 @@ def turned(vector: FloatArray, angle: float) -> FloatArray:
     cosine, sine = math.cos(angle), math.sin(angle)
     return np.array([[cosine, -sine], [sine, cosine]]) @ vector
 
-
-# --- The table
 
 SOURCE = """\
 # Measured planar pushes, reduced by compare/studies/plane/pushes/reduction.py from the logs of the repository

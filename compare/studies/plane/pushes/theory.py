@@ -26,16 +26,16 @@ MASS, GRAVITY = 1.518, 9.81
 """Mass of the body in kg, and g in m/s²."""
 
 CENTRE = 50.0 + 50.0j
-"""In mm, in the frame of the body."""
+"""Centre of mass in mm, in the frame of the body."""
 
 LEGS = 150.0
-"""Both legs of the triangle in mm; the origin is the corner between them."""
+"""Length of both legs of the triangle in mm; the origin is the corner between them."""
 
 PUSHER = 0.05
 """The authors' unit of length (m) for moments."""
 
 SLIDING_FORCES = {"board": 4.2, "wood": 5.0}
-"""In N, by surface."""
+"""Sliding force in N, by surface."""
 
 DIVISIONS = 8
 """Divisions of a side of the patch for its quadrature."""
@@ -288,7 +288,6 @@ def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = 
 
 
 def median_with_error(values: FloatArray, draws: int = 2000) -> tuple[float, float]:
-    """Return the median and its bootstrap standard error."""
     generator = np.random.default_rng(1)
     medians = np.median(generator.choice(values, (draws, len(values))), axis=1)
     return float(np.median(values)), float(medians.std())
