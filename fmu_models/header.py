@@ -61,7 +61,6 @@ def tables(model: Model) -> str:
 
 
 def _rules(model: Model) -> str:
-    """Return the C function that checks a model's rules."""
     values = {one.name: f"v[V_{one.name}]" for one in model.having("parameter")}
     lines = [f"{BROKEN} {{", "    (void)v, (void)sentence, (void)size;"]
     for condition, sentence in model.rules:
@@ -73,7 +72,6 @@ def _rules(model: Model) -> str:
 
 
 def _arrays(model: Model) -> dict[str, str]:
-    """Return the values of each array by its declaration."""
     places, weights = np.polynomial.legendre.leggauss(RINGS)
     return {
         "Variable VARIABLES[N_VARIABLES]": ",\n".join(_row(one) for one in model.variables),

@@ -186,7 +186,7 @@ class Claim:
 
     @cached_property
     def units(self) -> tuple[str, ...]:
-        """Units along the last axis if they are mixed, else one unit."""
+        """Units along the last axis, or one unit."""
         if "," not in self.unit:
             return (self.unit,)
         return tuple(_unit(name) for name in self.axes[-1])
@@ -218,7 +218,7 @@ class Claim:
 
     @cached_property
     def worst(self) -> int:
-        """Flat index of the element with the largest ratio; the larger difference decides ties."""
+        """Flat index of the element with the largest ratio or, among equals, difference."""
         ratio = self.ratio
         nearest = np.where(ratio == np.max(ratio), self.difference, -1.0)
         return int(np.argmax(np.nan_to_num(nearest, nan=np.inf, posinf=np.inf)))
@@ -259,7 +259,7 @@ class Claim:
         """
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         missing = ~np.isfinite(self.measured)
-        open_ = missing & np.isinf(total)  # present at one tolerance but not at another
+        open_ = missing & np.isinf(total)  # appears at one tolerance only
         if not np.all((difference <= total) & ~missing | open_):  # False for NaN
             return Verdict.DIFFERS
         if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
@@ -268,7 +268,6 @@ class Claim:
 
 
 def _unit(name: str) -> str:
-    """Return the unit in the name of a component, such as "m" for "x in m", or ""."""
     return name.rpartition(" in ")[2] if " in " in name else ""
 
 

@@ -47,7 +47,7 @@ class Declared:
         return takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and additional arguments of its function."""
+        """Yield each member of the family with additional arguments of its function."""
         if not self.each:
             yield "", ()
         for name, value in self.each.items():

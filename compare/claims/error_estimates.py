@@ -22,22 +22,22 @@ WORKING = USUAL_TOLERANCE
 """Default tolerance of engines in studies."""
 
 TIGHTEST = 1e-12
-"""Smallest tolerance for engines and for shooting; an eighth of it is close to rounding error."""
+"""Smallest tolerance; an eighth of it is close to rounding error."""
 
 TRUTH = 1e-13
-"""Tolerance of the reference as a substitute for the exact motion."""
+"""Tolerance of the reference in place of the exact motion."""
 
 SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
 If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
 that fall slowly or irregularly with the tolerance, unless both errors are equal by chance to within an eighth. The
-change against a *larger* tolerance is too small if its error is not even twice as large, which happens for one number
+change against a *larger* tolerance is too small if the error there is not even twice as large, as for one number
 in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
-"""Relative error of states above which events, such as a release, may appear or vanish."""
+"""Relative error of states above which events may appear or vanish."""
 
 ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
@@ -56,7 +56,7 @@ class Measurement(NamedTuple):
 
     @property
     def rows(self) -> FloatArray:
-        """Largest error of each row (along the last axis), broadcast to the shape of the errors."""
+        """Largest error of each row (along the last axis), broadcast."""
         return np.broadcast_to(np.max(self.error, axis=-1, keepdims=True), self.error.shape)
 
     def plus(self, error: float | FloatArray) -> Measurement:
@@ -163,7 +163,7 @@ SHORTER = 4.0
 """Ratio of successive steps."""
 
 LONGEST = 4.0
-"""Largest expected time in s of an attempt at a shorter step."""
+"""Largest expected time in s of a shorter step."""
 
 Answer = TypeVar("Answer")
 

@@ -111,6 +111,5 @@ def asked(question: Callable[[float], ArrayLike], tolerance: float) -> tuple[Flo
 
 
 def _as_numbers(margins: ArrayLike) -> FloatArray:
-    """Return the margins; truth values become 1 and −1."""
     found = np.asarray(margins)
     return np.where(found, 1.0, -1.0) if found.dtype == np.bool_ else found.astype(float)

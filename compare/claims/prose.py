@@ -83,7 +83,6 @@ class Prose:
 
 
 def _paragraphs(text: str) -> str:
-    """Return the paragraphs, each in one line."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
 
 

@@ -76,7 +76,7 @@ class Recorded:
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validations")
-"""Functions that a study may provide in addition to its claims."""
+"""Optional functions of a study."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ class Study:
 
     @property
     def figures(self) -> Mapping[str, str]:
-        """Captions by figure; without captions, a study that draws has one figure with its name and title."""
+        """Captions by figure; a study that draws has at least one figure, with its name and title."""
         return self.prose.figures or ({self.name: self.title} if "figures" in self.provided else {})
 
     def draw(self, data: ByEngine) -> Figures:
@@ -226,7 +226,7 @@ class Study:
 
     @property
     def has_theory(self) -> bool:
-        """True if the study has claims or curves that need no engine."""
+        """True if claims or curves need no engine."""
         return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
@@ -258,7 +258,7 @@ class Study:
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
 
     def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure the claims of the theory, or ``only`` some as in ``measure``; without ``only`` add the curves."""
+        """Measure the claims of the theory, or ``only`` some; without ``only`` add the curves."""
         found = self.measure(None, few, only)
         if "curves" in self.provided and not only:
             found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
@@ -315,12 +315,12 @@ class Study:
         )
 
     def sentences(self) -> dict[str, str]:
-        """Return the sentences about engines with their selectors in ``only`` of ``measure``."""
+        """Return the sentences about engines with their selectors in ``only``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 
     def duration(self, part: str) -> float:
-        """Return the ``duration`` in s of the claim with the selector ``part``."""
+        """Return the ``duration`` in s of the claim ``part``."""
         return next(
             one.duration for one in self.declared for case, _ in one.cases() if part == one.part(case)
         )

@@ -123,7 +123,7 @@ def cases() -> tuple[Case, ...]:
 
 
 def measured(case: Case, states: Any) -> float:
-    """Return the measured number of a case from its first and last state."""
+    """Return the measured number of a case."""
     x, y = np.asarray(states[-1])[:2] - (0.0 if case.measured == "radius" else np.asarray(states[0])[:2])
     if case.measured == "x":
         return float(states[-1][0])

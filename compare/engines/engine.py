@@ -33,7 +33,7 @@ EVERY_KIND = tuple(KINDS)
 
 
 LEAST_STEP = 1e-9
-"""Shortest fixed step in s: the studies' motions, 10 s and more, would take over 10¹⁰ steps."""
+"""Shortest fixed step in s."""
 
 COARSE_STEP = 30.0
 """Coarseness of a fixed step, see ``StatesOnly``; a contact stuck along tangents creeps at ωh/2 of its speed."""
@@ -192,8 +192,6 @@ class Engine:
     def _seen(
         self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the checked ``answer``, with noise of the engine's precision and with stick phases."""
-
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
             if self.precision == 0.0:
@@ -232,7 +230,7 @@ class Engine:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
     def lacking(self, systems: Iterable[System]) -> str:
-        """Return a sentence with the kinds of ``systems`` that the engine does not simulate, or ""."""
+        """Return a sentence with the kinds of ``systems`` that are not simulated, or ""."""
         words = dict.fromkeys(
             KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
             for system in systems

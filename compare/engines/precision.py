@@ -44,8 +44,8 @@ def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: F
 def _blurred(states: FloatArray, precision: float, tolerance: float, *question: FloatArray) -> FloatArray:
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
-    Independent noise could cause nearly equal errors at both tolerances of an estimate. Opposite signs reveal effects
-    that are odd in the noise, different amplitudes those that are even.
+    Opposite signs at the two tolerances of an estimate reveal effects that are odd in the noise, different amplitudes
+    those that are even. Independent noise could be equal by chance.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision
@@ -53,7 +53,6 @@ def _blurred(states: FloatArray, precision: float, tolerance: float, *question: 
 
 
 def _sizes(states: FloatArray) -> FloatArray:
-    """Return the size relative to which each component of ``states`` (n, 4) or (n, 6) is rounded."""
     half = states.shape[1] // 2
     sizes = np.max(np.abs(states), axis=0)
     for x in (0, half):

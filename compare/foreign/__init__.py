@@ -161,7 +161,7 @@ is wall-clock time; for an engine in another process both are wall-clock time.
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))
 
-DIGITS = 4  # digits in the files
+DIGITS = 4
 
 
 @dataclass(frozen=True, eq=False)

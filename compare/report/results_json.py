@@ -111,7 +111,6 @@ def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str]]:
-    """Return the names along the last axis if units are mixed, else []."""
     if "," not in claim["unit"]:
         return []
     return [[]] * (len(claim["shape"]) - 1) + [[row["place"] for row in rows[: claim["shape"][-1]]]]

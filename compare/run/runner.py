@@ -132,8 +132,6 @@ def run(
 
 @dataclass
 class _Runner:
-    """Scheduler of the measurements, and of each study's drawing after its last one."""
-
     result: Run
     workers: Workers
     jobs: int
@@ -291,7 +289,7 @@ def _loaded(name: str, workers: Workers) -> Engine:
 
 
 def _described(name: str) -> Engine | str:
-    """Return the engine, without references to its module, or the message of its ``ValueError``."""
+    """Return the engine, without references to its module, or the message of a ``ValueError``."""
     try:
         return engines([name])[0]
     except ValueError as error:

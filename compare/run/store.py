@@ -48,7 +48,6 @@ class _Archives:
     def _find(
         self, key: tuple[str, ...], stamp: str | None, restored: Callable[[dict[str, bytes]], Value | None]
     ) -> Value | None:
-        """Return ``restored(contents)``; None if the archive is missing, damaged or has another stamp."""
         try:
             with ZipFile(self._path(key)) as archive:
                 paths = archive.namelist()

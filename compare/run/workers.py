@@ -167,7 +167,7 @@ class Workers:
             worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
-        """Wait for the first result or time limit, and yield all results and timeouts up to then."""
+        """Wait for the first result or time limit, and yield all up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
         left = None
         if self.limit is not None and busy:
@@ -293,7 +293,6 @@ class _Errors:
 
 
 def _serve(connection: Connection) -> None:
-    """Process work until the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
@@ -320,7 +319,6 @@ def _serve(connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent process has ended."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         wait([parent.sentinel])

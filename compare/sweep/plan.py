@@ -219,7 +219,7 @@ def plan_as_json(plan: Plan) -> dict[str, Any]:
 
 
 def plan_from_json(content: Mapping[str, Any]) -> Plan:
-    """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
+    """Return the plan; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
     values = dict(content)
     return from_json(PLANS[values.pop("kind")], values)
 

@@ -53,7 +53,7 @@ class Grid:
         return self.numbers(lines, corner & ~self.simulated[np.ix_(*lines)])
 
     def halved(self, lines: Lines, finer: Lines) -> IntArray:
-        """Return the new points of mixed cells; give other new points the ends of their corners."""
+        """Return the new points of mixed cells; give others the ends of their corners."""
         coarse = self.ends[np.ix_(*lines)]
         cells = mixed(coarse)
         # A point on a line belongs to the cells on both sides of it.

@@ -31,10 +31,10 @@ IRON, STEEL = (0.40, 0.43, 0.48, 1.0), (0.72, 0.74, 0.78, 1.0)
 LINING, BRASS = (0.80, 0.42, 0.16, 1.0), (0.95, 0.75, 0.25, 1.0)
 
 SHAFT = 0.11
-"""Ratio of the radius of the shaft to that of the disc."""
+"""Radius of the shaft over that of the disc."""
 
 BEARING = 1.5
-"""Ratio of the distance between bearing and disc to the radius of the disc."""
+"""Distance of the bearing over the radius of the disc."""
 
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 """Orientation of the model: engine in the back on the right, gearbox in front on the left."""
@@ -42,7 +42,7 @@ VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 SPRINGS = 6
 
 COVERED = 1.25 * math.pi
-"""Angle in rad of the part of the cover that is drawn."""
+"""Drawn part of the cover in rad."""
 
 
 def draw_drivetrain(
@@ -79,7 +79,7 @@ def draw_drivetrain(
 
 @functools.lru_cache(maxsize=4)
 def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any, Any]:
-    """Return the parts on the engine and on the disc, shaft and bearing, which take most of a picture's time.
+    """Return the parts on the engine and on the disc, shaft and bearing.
 
     The shaft has its length without tilt.
     """

@@ -112,8 +112,6 @@ def solve_in_turns(
 
 @dataclass(frozen=True)
 class _Turns:
-    """A motion in progress."""
-
     contact: RegularisedContact
     solver: SlipSolver
     friction: Friction
@@ -196,7 +194,7 @@ class _Turns:
         return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
     def _release_step(self, run: Steps, last: int) -> float:
-        """Return the step that lets a body released after step ``last`` gain only a fraction of ε."""
+        """Return the step that lets a released body gain only a fraction of ε."""
         ratio = self.contact.in_master_axes.slip_ratios(run.states[last : last + 2])[:, WHOLE]
         rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
         return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
@@ -263,7 +261,7 @@ GRAZING = 1e-6
 """(ωh)² of the steps that decide whether friction can hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""Ratio of the steps before and after a reduction for a release."""
+"""Ratio of steps before and after a reduction for a release."""
 
 PARTS = 16
 """Number of checks in a step close to the end of creep."""
@@ -326,7 +324,6 @@ class _Creep:
 
 
 def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
-    """Return the step for a disc that pivots about a point."""
     system, epsilon = contact.system, contact.epsilon
     ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]
     rate = contact.slip_ratio_rates(steps.states[-1], steps.accelerations[-1])[WHOLE]

@@ -17,7 +17,7 @@ WHOLE = 0
 """Column of the contact as a whole; columns of single points follow."""
 
 RELAXATIONS = 40.0
-"""Number of relaxation times until slip has settled to its creep."""
+"""Number of relaxation times until slip has settled."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s that slip below ε needs to settle to its creep."""
+        """Time in s that slip below ε needs to settle."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
@@ -88,7 +88,7 @@ class RegularisedContact:
         return np.hstack((speeds.mean(axis=1, keepdims=True) / epsilon, speeds / self.point_epsilon))
 
     def slip_ratio_rates(self, state: FloatArray, acceleration: FloatArray) -> FloatArray:
-        """Return the growth rates in 1/s of ``slip_ratios`` for one state, where nothing is at rest."""
+        """Return the growth rates in 1/s of ``slip_ratios`` for one state without rest."""
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         size = len(acceleration)
         z, v, a = (complex(*vector[:2]) for vector in (state, state[size:], acceleration))
@@ -126,7 +126,7 @@ class RegularisedContact:
         return np.asarray(ratios + power / limit)
 
     def creeping(self, state: list[float]) -> int | None:
-        """Return the column of ``slip_ratios`` that is below 1, ``WHOLE`` if several are, or None."""
+        """Return the column of ``slip_ratios`` below 1, ``WHOLE`` if there are several, or None."""
         system, size = self.system, len(state) // 2
         x, y, vx, vy = state[0], state[1], state[size], state[size + 1]
         speed = math.hypot(vx + system.disc_speed * y, vy - system.disc_speed * x)

@@ -45,10 +45,10 @@ STOP_STEP_TOLERANCE = 1e-4
 """The same for a support with a stop: a bouncing motion passes the kink of its force many times."""
 
 SMALLEST_STEP_TOLERANCE = 1e-13
-"""Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate, and the step collapses."""
+"""Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate."""
 
 LARGEST_STEP = 6.0
-"""Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
+"""Largest step of DOPRI5 over tolerance^(1/5) time scales, for errors ~ tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
 """Tolerance of Newton's residual, relative to the forces at the start."""

@@ -99,7 +99,6 @@ def _check_writable(folder: Files) -> None:
 
 
 def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
-    """Return the store to resume, or None; raise ``ValueError`` if it belongs to another plan."""
     from compare.sweep.store import SweepStore, is_free
 
     if is_free(files):

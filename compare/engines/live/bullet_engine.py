@@ -40,7 +40,7 @@ ITERATIONS = 50
 
 
 class _World(Model):
-    """A Bullet world with one body, and with a plate unless friction is our force."""
+    """A world with one body, and with a plate unless friction is our force."""
 
     engine = "Bullet"
     most_points = 100  # PyBullet allows 128 links per body

@@ -131,7 +131,6 @@ def _shift(x: float, y: float, z: float) -> Any:
 
 
 def _touching(body: Any, shape: Any, height: float) -> None:
-    """Add ``shape`` to ``body`` at a ``height`` in m, with μ = 1 and without restitution."""
     node = body.createShapeNode(shape)
     node.setRelativeTransform(_shift(0.0, 0.0, height))
     node.createCollisionAspect()

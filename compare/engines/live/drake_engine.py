@@ -171,7 +171,7 @@ class _OurFriction(LeafSystem):  # type: ignore[misc]
 
 
 class _Motion(Model):
-    """A motion through one plant per step size, because Drake fixes the step when a plant is built."""
+    """A motion through one plant per step size, because Drake fixes the step of a plant."""
 
     engine = "Drake"
 

@@ -41,7 +41,7 @@ LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 @dataclass(frozen=True)
 class _Contact:
-    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping."""
+    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's defaults."""
 
     option: str = ""
     friction_rate: float = 0.0
@@ -62,8 +62,6 @@ class _Contact:
 
 
 class _Model(Model):
-    """MuJoCo with contact, or with our force if there is none."""
-
     engine = "MuJoCo"
 
     def build(
@@ -163,7 +161,7 @@ def _xml(system: System, arms: list[complex], option: str, contact: _Contact | N
 
 @contextmanager
 def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
-    """Set ``add`` as MuJoCo's only, global callback for passive forces, and restore the previous one on exit."""
+    """Set MuJoCo's only, global callback for passive forces temporarily."""
     before = mujoco.get_mjcb_passive()
     mujoco.set_mjcb_passive(add)
     try:

@@ -24,8 +24,6 @@ RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the p
 
 
 class _Model(Model):
-    """A ball on a plate, advanced by the solver class ``solver``."""
-
     engine = "Newton"
 
     def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:

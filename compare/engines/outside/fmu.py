@@ -141,7 +141,6 @@ def _model(file: str) -> _Model:
 
 
 def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
-    """Return an error message in one line, with paths relative to ``folder``."""
     return " ".join(str(error).replace(f"{folder.name}{os.sep}", "").split()) or type(error).__name__
 
 

@@ -144,7 +144,6 @@ class StickEvents(Events):
         return self._carried(state[: len(self._placed)], time - stuck)
 
     def _carried(self, place: Any, lasted: float) -> FloatArray:
-        """Return the state after the master disc has carried a body from ``place`` for ``lasted`` s."""
         omega = self._system.disc_speed
         z = complex(*place[:2]) * cmath.exp(1j * omega * lasted)
         velocity = 1j * omega * z
