@@ -23,10 +23,10 @@ PER_PERIOD = 64  # samples per period or revolution, whichever is shorter
 MOST = 20_000  # largest number of samples before refinement
 
 REST = 1e-2
-"""Slip, relative to the largest speed of the motion, below which a body may stick; refinement lowers it."""
+"""Slip over the largest speed of the motion, below which a body may stick; refinement lowers it."""
 
 CREEP = 3e-4
-"""Largest creep in stick, relative to the largest speed of the motion, at a tolerance of 1e-9.
+"""Largest creep in stick over the largest speed of the motion, at a tolerance of 1e-9.
 
 It is proportional to the tolerance, up to ``REST``.
 """
@@ -35,7 +35,7 @@ CLOSER = 64  # factor between sample densities, and between levels of slip, of s
 LOOKS = 3
 
 LEAST = 1e-7
-"""Least slip for extrapolation, relative to the largest speed of the motion, at a tolerance of 1e-9.
+"""Least slip for extrapolation over the largest speed of the motion, at a tolerance of 1e-9.
 
 It is proportional to the root of the tolerance, so that error estimates include the extrapolation.
 """
@@ -59,8 +59,8 @@ FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
-    ``ask`` returns the states of the same motion at any times from ``told.times[0]`` on. ``coarseness`` is the
-    engine's tolerance as a multiple of 1e-9.
+    ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance over
+    1e-9.
     """
 
     def __init__(

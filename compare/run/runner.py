@@ -37,11 +37,10 @@ class Run:
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
     - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
     - ``about``, ``versions``: descriptions and versions of the engines.
-    - ``errata``: errata whose evidence was requested.
     - ``outcomes``: findings or failure for each finished (study, engine or "theory").
     - ``seconds``: duration of each measurement in s.
     - ``drawings``: drawing or failure for each study.
-    - ``evidence``: evidence or failure for each erratum, by its index in ``errata``.
+    - ``evidence``: evidence or failure for each of the requested ``errata``, by index.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
     - ``interrupted``: True if Ctrl-C ended the run early.
     """
