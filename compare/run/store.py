@@ -33,7 +33,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class _Archives:
-    """A folder, made with its first archive, with an archive for each finished piece of work."""
+    """A folder with an archive for each finished piece of work."""
 
     folder: Path
 

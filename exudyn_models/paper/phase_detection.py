@@ -137,8 +137,8 @@ def _time_of_rest(
 def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
     """Return whether friction can hold a creeping system, according to all steps with slip.
 
-    If slip passes through zero the load is first against the slip, then along it; either counts together with
-    friction.
+    A load that friction cannot hold lets the slip pass through zero, and then its direction relative to the slip
+    reverses. It counts in both directions.
     """
     moving = ratio > 0.0
     if not np.any(moving):
