@@ -19,7 +19,6 @@ from compare.claims.claim import Claim, ErrorBudget
 Kind = TypeVar("Kind")
 
 TYPE = "type"
-"""Key for the name of the dataclass."""
 
 
 def as_json(value: Any) -> Any:

@@ -208,4 +208,3 @@ ERRATA: tuple[Erratum, ...] = (
         evidence=_growth_beside_the_equilibrium,
     ),
 )
-"""All errata in the order of the paper."""

@@ -71,8 +71,8 @@ def refined(
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
     If the numbers of a row (along the last axis) are ``alike``, of one unit and size, it is also at least the largest
-    change in the row, because a single number may hardly change by chance. Engines do not follow ever smaller
-    tolerances, so the next larger one that changes the result is used if necessary.
+    change in the row, because a single number may hardly change by chance. If the smaller tolerance changes nothing,
+    because the engine does not follow it, the next larger one that does is used.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):

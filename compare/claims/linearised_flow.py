@@ -15,7 +15,6 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 ComplexArray = NDArray[np.complex128]
 
 DIFFERENCE = 4e-3
-"""Step of the central differences over the slip."""
 
 FLOW_TOLERANCE = 10.0 * TIGHTEST
 """Tolerance of the simulations, small because of their differences."""

@@ -22,7 +22,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NAME = "study.md"
-"""File name of the texts in a study's own folder."""
 
 SECTIONS = {
     "pin": "The friction pin",

@@ -46,7 +46,6 @@ FULL = "report"
 """Default folder of a full report."""
 
 MOST_LISTED = 10
-"""Largest number of measurements that a message lists."""
 
 Names = Annotated[
     list[str] | None,

@@ -26,10 +26,6 @@ SAME = 0.8  # least ratio of the creep at any rung to the largest, if it does no
 HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
 
 MOST_HELD, BISECTIONS = 32.0, 20
-"""Largest load over μN, and number of bisections."""
-
-
-# --- The parts and their results.
 
 
 MOTIONS = CASES | {

@@ -13,8 +13,8 @@ from compare.claims.error_estimates import ROUNDING
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
 from reference_model.systems import FloatArray
 
-RUNGS = 4  # rungs of a ladder
-HALVED = 2.0  # ratio of fixed steps from rung to rung
+RUNGS = 4
+HALVED = 2.0
 
 SAFETY = 3.0
 """Ratio of the error estimate to the last change: three times the error for first order and halved steps."""

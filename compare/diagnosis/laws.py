@@ -77,7 +77,7 @@ SHAPES = _shapes()
 class Friction:
     """Friction law with the best fit."""
 
-    shape: str  # name of the law in ``SHAPES``
+    shape: str
     strength: float  # ratio of the fitted to the nominal μ
     angle: float  # rotation of the force from the law's direction, in rad
     error: float  # of the measured force over μN; also that of ``strength`` and ``angle``

@@ -40,7 +40,7 @@ SLIDES_FOR = 0.1
 
 PANELS = 32  # intervals for the integral of friction with a direction that changes
 FEWEST_PANELS = 4  # the same at the coarsest rung, where steps may not exceed an interval
-CHECKED_FOR = 1.0  # duration in s of the first check
+CHECKED_FOR = 1.0
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -191,7 +191,6 @@ NEARLY, BEYOND = 0.99, (1.001, 1.01, 1.05, 1.2)
 PULLED_FOR = 4.0  # duration in s; the creep speed is measured in the second half
 
 LOOKS = 16
-"""Number of samples of the velocity in the second half."""
 
 
 def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:

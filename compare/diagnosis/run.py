@@ -20,7 +20,7 @@ from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-IN_SHORT = 20.0  # time limit in s for each part of a short diagnosis
+IN_SHORT = 20.0  # in s for each part
 
 
 def diagnosed(

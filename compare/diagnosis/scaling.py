@@ -19,7 +19,7 @@ LEAST = 1e-6
 
 KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
-POWER_FITS = 0.02  # largest relative misfit of a power law
+POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
 FEWEST = 3  # least number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]

@@ -61,15 +61,13 @@ class UnsupportedSystemError(ValueError):
 class Engine:
     """An engine's name, its ``simulate``, and its capabilities.
 
-    - ``name``: name on the command line.
     - ``function``: the engine's ``simulate``; a function of an importable module if several processes are to use it.
-    - ``kinds``: systems that ``function`` simulates: "block" (a pin on a disc at rest), "pin" (includes blocks),
-      "points" (a disc on single points), "ring" (a disc on the continuous ring).
+    - ``kinds``: systems that it simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
+      disc on single points), "ring" (a disc on the continuous ring).
     - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds
       no stick, and which do not start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
-    - ``phases``: True if its trajectories contain the stick phases. Otherwise, and for a trajectory without phases,
-      stick is found from the states, see ``compare.engines.stick``.
+    - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
     - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for
       single precision, see ``compare.engines.precision``.
     - ``step``: step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function``
@@ -78,7 +76,6 @@ class Engine:
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
     - ``contact_only``: True if it shares everything except the contact with its kin. Unless it is requested by name,
       it is then measured only in studies of the contact, see ``Study.contact``.
-    - ``version``: the engine's own version.
     - ``about``: one or two sentences for readers of the report.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 

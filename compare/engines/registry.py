@@ -202,8 +202,6 @@ def imported(name: str, place: str) -> Engine:
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
 
-# --- Engines of this project.
-
 _simulate_reference = ByName("reference_model", "simulate")
 
 reference = register(Engine("reference", _simulate_reference, EVERY_KIND))

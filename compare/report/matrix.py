@@ -307,7 +307,7 @@ def evidence_of(claim: Claim) -> Evidence:
     """Return the kind of evidence of an agreement that no other verdict implies."""
     if claim.basis != "reference":
         return claim.basis
-    # The theory takes its predictions from the reference.
+    # The theory's predictions are the reference's.
     same = claim.engine == THEORY or shares_code(claim.engine, "reference")
     return "self-check" if same else "independent"
 

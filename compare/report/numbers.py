@@ -13,7 +13,6 @@ from compare.claims.claim import Claim, Verdict
 MINUS = "\N{MINUS SIGN}"
 
 MOST_DIGITS = 12
-"""Largest number of digits of a result."""
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 

@@ -26,7 +26,6 @@ from compare.run.workers import Failure
 from reference_model.systems import UNITS
 
 HERO = "drivetrain-picture"
-"""Figure on the first screen, if it was drawn."""
 
 
 def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:

@@ -57,7 +57,7 @@ COLUMNS = (
 """Columns of a table; ``element`` counts from 0, ``place`` describes it."""
 
 LARGE = 32_768
-"""Size in bytes above which a table is compressed."""
+"""In bytes; larger tables are compressed."""
 
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:

@@ -40,13 +40,11 @@ MOST_ERRORS = 100_000
 """Largest number of characters of standard error that are forwarded at once."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
-"""Messages of the loader of shared libraries without memory."""
 
 FAREWELL = 1.0
 """Longest wait in s for the exit code of a process whose connection has closed."""
 
 TICK = 0.005
-"""Interval in s between checks of the exit code."""
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from reference_model.systems import System
 
 
-MOST_POINTS = 100_000_000  # largest number of points of a grid
+MOST_POINTS = 100_000_000
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),

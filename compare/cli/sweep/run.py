@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from compare.sweep.plan import Plan
     from compare.sweep.store import SweepStore
 
-STORE = "sweep.zarr"  # file name of the store
-CHUNK = 32768  # default number of trajectories per chunk
+STORE = "sweep.zarr"
+CHUNK = 32768
 MOST_UNDECIDED = 0.5  # largest share of undecided trajectories for exit status 0
 
 

@@ -37,9 +37,9 @@ from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation
 GREETING_BYTES = 100_000
-TICK = 0.1  # interval in s between checks of the time limit
+TICK = 0.1  # in s, for checks of the time limit
 FAREWELL = 1.0  # time in s for a program to end after its input is closed
-AT_ONCE = 1 << 18  # bytes read from a pipe at once
+AT_ONCE = 1 << 18
 LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's standard error
 POSIX = os.name == "posix"
 

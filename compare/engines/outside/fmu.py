@@ -42,7 +42,7 @@ tolerance.
 """
 
 LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without speed
-MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive
+MOST_BYTES = 2**30  # of an unpacked archive
 
 
 class FmuError(RuntimeError):

@@ -95,7 +95,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             ) from None
 
     def __exit__(self, *_: object) -> None:
-        with suppress(Exception):  # the scheduler may be lost
+        with suppress(Exception):
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:

@@ -30,7 +30,6 @@ from compare.sweep.store import SweepStore, flags
 CHECKED = 20  # trajectories that the plain reference repeats
 
 CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
-"""Groups of a store in addition to its rounds."""
 
 Progress = Callable[[str, int, int], None]  # takes the name of the work, the amount done and the total
 
