@@ -29,8 +29,8 @@ class Variable:
 
     ``unit`` is one of ``description.UNITS``, or "" if dimensionless. ``role`` is "time", "parameter", "state",
     "derivative", "input", "output", "local", or "event" for an output that changes only at events. ``start`` is None
-    if the value follows from others. ``type`` is "real", "whole" or "boolean". A derivative is ``derivative_of`` a
-    state, whose ``scale`` is "x" for lengths, "v" for speeds, or "1".
+    if the value follows from others. A derivative is ``derivative_of`` a state, whose ``scale`` is "x" for lengths,
+    "v" for speeds, or "1".
     """
 
     name: str

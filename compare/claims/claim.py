@@ -72,8 +72,8 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
 
-    - ``numerical``: error in the claim's unit, estimated from the run itself (same run at another tolerance,
-      Richardson). NaN, if there is no estimate, makes the claim differ.
+    - ``numerical``: error in the claim's unit, estimated from the run itself. NaN, if there is no estimate, makes the
+      claim differ.
     - ``model``: size of the first neglected term of an approximation; zero for an identity.
     - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
     """
@@ -106,8 +106,7 @@ class Claim:
     - ``equation``: equation of the paper, such as "(3)"; "" if the statement is ours.
     - ``engine``: name of the engine, or "theory" without a simulation.
     - ``predicted``, ``measured``, of the same shape, and ``budget``: numbers and their errors in ``unit``.
-    - ``parameters``: numbers or words that repeat the measurement.
-    - ``source``: origin of the parameters: a figure, or an assumption in words.
+    - ``parameters``, ``source``: numbers or words that repeat the measurement, and their origin.
     - ``note``: method of the measurement or its error estimate, if not obvious.
     - ``basis``: kind of evidence, by default ``usual_basis``.
     - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
@@ -255,7 +254,7 @@ class Claim:
     def verdict(self) -> Verdict:
         """Verdict: differs beyond the budget or without a number.
 
-        Otherwise the claim agrees if its error is within the resolution or a grade, else it is inconclusive.
+        Otherwise it agrees if its error is within the resolution or a grade, else it is inconclusive.
         """
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         missing = ~np.isfinite(self.measured)

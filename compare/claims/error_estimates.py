@@ -31,9 +31,8 @@ SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
 If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
-that fall slowly or irregularly with the tolerance, unless both errors are equal by chance to within an eighth. The
-change against a *larger* tolerance is too small if the error there is not even twice as large, as for one number
-in twenty of the reference and one in fifty of Exudyn.
+that fall slowly or irregularly with the tolerance, unless both are equal by chance to within an eighth. The change
+against a *larger* tolerance is too small for one number in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
@@ -91,10 +90,7 @@ def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
 
 
 def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
-    """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse.
-
-    Such errors may add or remove a stick phase, or delay the last release.
-    """
+    """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse."""
     coarse = states.largest > COARSE * float(np.max(np.abs(states.value)))
     missing = ~np.isfinite(found.value)
     return Measurement(found.value, np.where(missing & coarse, np.inf, found.error))
@@ -118,9 +114,9 @@ def observed_exponent(
 ) -> tuple[float, float, float]:
     """Return p of errors ~ x^p·(1 + b·x^next_term) as x → 0, its numerical and its model error.
 
-    The fit is a least-squares fit of ln e = a + p·ln x + b·x^next_term. The numerical error is the 95 % interval from
-    the scatter of successive errors, plus the effect of ``noise``, the error of the errors. The model error is the
-    change of p without the next term. All shapes are (n,). p is NaN if an error is not a positive number.
+    ln e = a + p·ln x + b·x^next_term is fitted by least squares. The numerical error is the 95 % interval from the
+    scatter of successive errors, plus the effect of ``noise``, the error of the errors. The model error is the change
+    of p without the next term. All shapes are (n,). p is NaN if an error is not a positive number.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0

@@ -57,7 +57,7 @@ class Recorded:
     - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
     - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
     - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
-    - ``advice``: refinement for a small error, or the error of the finest run, as a clause; "" without advice.
+    - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
     - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
     """
 
@@ -83,10 +83,8 @@ PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validation
 class Study:
     """One figure or group of statements, with claims declared by the decorator ``claim``.
 
-    - ``name``: name on the command line, such as "fig03".
     - ``only``: names of the engines that the study is about; empty for all.
-    - ``source``: origin of the parameters: a figure, or an assumption in words.
-    - ``system``: system whose parameters repeat the measurements.
+    - ``system``, ``source``: system whose parameters repeat the measurements, and their origin.
     - ``seconds``: approximate time in s for one engine; the longest work starts first to keep all cores busy.
     - ``quick``: True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
     - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
@@ -234,7 +232,7 @@ class Study:
 
         Findings say why they leave out claims that the engine does not support. ``few`` contains arguments of claims'
         functions by their names, to measure fewer cases. ``only`` selects functions by name, or members of a family
-        by "function/case"; empty for all.
+        by "function/case".
         """
         claims: list[Claim] = []
         data: Data = {}

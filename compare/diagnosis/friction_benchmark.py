@@ -20,10 +20,9 @@ import numpy as np
 class Case:
     """A point mass, or a thin ring, on a horizontal plate that may rotate about the origin; SI units.
 
-    The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``
-    (the coefficient times the normal force). ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A
-    ring lies on the plate under uniform pressure. It has the ``radius`` R and the moment of inertia m·R², and turns
-    with ``spin`` at the start.
+    The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``.
+    ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A ring lies on the plate under uniform
+    pressure. It has the ``radius`` R and the moment of inertia m·R², and turns with ``spin`` at the start.
     """
 
     name: str

@@ -142,7 +142,7 @@ def slides(
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
     They are the mean friction force over μN, the mean directions of slip and of the place, and the conditions: mass,
-    load, mean slip speed, disc speed and distance from the axis. The speeds in m/s are the given initial one, and the
+    load, mean slip speed, disc speed and distance from the axis. Then follow the given initial speed in m/s, and the
     one that follows from speed and force when the measurement begins. The last two are the error of the force due to
     the declared precision, and the smallest slip over the first.
     """

@@ -32,8 +32,8 @@ def diagnosed(
 ) -> Iterator[Row]:
     """Yield the row of each engine in order of completion; an engine that supports no part has an empty row.
 
-    A row reports parts that exceed ``limit`` (s). ``progress`` is called with the number of finished parts, the total
-    number and the name of the last part.
+    A row reports parts that exceed ``limit`` (s). ``progress`` is called with the numbers of finished and of all
+    parts, and the name of the last part.
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}

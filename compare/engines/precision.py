@@ -1,8 +1,8 @@
 """Noise that makes the limited precision of an engine visible in the error estimates.
 
-The numerical error of a claim is estimated from its change with the tolerance. Rounding to single precision can cut
-off the same digits at both tolerances. Noise of that size, different at each tolerance, propagates as rounding does
-and contributes to the change (stochastic arithmetic: Vignes, Mathematics and Computers in Simulation 35, 1993).
+The error of a claim is estimated from its change with the tolerance. Rounding to single precision can cut off the
+same digits at both tolerances. Noise of that size, different at each tolerance, propagates as rounding does and
+contributes to the change (stochastic arithmetic: Vignes, Mathematics and Computers in Simulation 35, 1993).
 """
 
 from __future__ import annotations

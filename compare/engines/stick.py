@@ -245,8 +245,8 @@ class _Samples:
 
         The level is the geometric mean of the creep and of ``REST``. If friction is regularised over ε, creep grows
         before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. If the level
-        jumped with the samples, or the error of a parabola (late) cancelled that of creep (early), the error would
-        not fall with the step as the error estimate assumes. A cubic has a smaller error.
+        jumped with the samples, the error would not fall with the step as the error estimate assumes. A cubic has a
+        smaller error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]

@@ -105,10 +105,10 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Findings and drawings are written as they arrive; drawings of equal data are reused. ``jobs`` is the number of
-    processes. A piece of work that takes longer than ``limit`` (s) fails. ``resume`` reuses findings with the same
-    digest of code and libraries. ``expected`` are the durations of an earlier run. ``progress`` is called whenever a
-    piece of work begins or ends. After Ctrl-C the results are incomplete, with ``interrupted`` set.
+    Findings and drawings are written as they arrive; drawings of equal data are reused. A piece of work that takes
+    longer than ``limit`` (s) fails. ``resume`` reuses findings with the same digest of code and libraries.
+    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete, with ``interrupted``
+    set.
     """
     result = Run(
         studies,

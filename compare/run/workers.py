@@ -84,11 +84,10 @@ class _Work:
 
 
 class Workers:
-    """A pool of at most ``jobs`` processes, used as a context manager.
+    """A pool of at most ``jobs`` processes, used as a context manager; leaving it kills all processes.
 
     A piece of work that takes longer than ``limit`` (s) fails. The limit may change while no work is pending.
-    ``watch`` is called with the keys of the running work when they may have changed. Leaving the context kills all
-    processes.
+    ``watch`` is called with the keys of the running work when they may have changed.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:

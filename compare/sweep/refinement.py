@@ -3,8 +3,7 @@
 A cell of the coarse grid is mixed if its corners end differently. Mixed cells are halved and their new points
 simulated; new points of other cells are assumed to end like the corners. If this is wrong, the boundary continues
 into a mixed cell with corners that were not simulated. They are simulated until no such cell remains, so *all corners
-of every mixed cell of the finest grid were simulated*. Structures entirely between points of the coarse grid are not
-detected.
+of every mixed cell of the finest grid were simulated*. Structures between points of the coarse grid are not detected.
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 - ``round-0``, ``round-1``, ...: trajectories, written region by region (:mod:`compare.sweep.arrays`).
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
-A group is valid once it is sealed. Attributes contain the plan, the digest of the code and their checksum. Damaged
-groups and chunks are recomputed. A small finished store in a local folder becomes one file.
+A group is valid once it is sealed. Damaged groups and chunks are recomputed. A small finished store in a local folder
+becomes one file.
 """
 
 from __future__ import annotations

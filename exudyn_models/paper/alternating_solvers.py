@@ -85,8 +85,7 @@ def solve_in_turns(
     """Solve up to the last of ``times``, shape (n,), with ``solver`` in slip and generalised-α in creep.
 
     In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
-    almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep, which is itself
-    the error of the regularisation.
+    almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep.
 
     A creeping part, the whole contact or one of several points, feels only the viscous part of the law. The model
     extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends

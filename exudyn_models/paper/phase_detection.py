@@ -28,7 +28,7 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
     before it has settled; and slip after a release, which may cross ε several times, must first reach 2ε.
 
     A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
-    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All these times have
+    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. These times have
     errors of first order in ε.
     """
     ratios, creeping = _creeping_parts(contact, steps)

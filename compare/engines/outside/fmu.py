@@ -37,8 +37,7 @@ OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
 """Parameter for the regularisation speed of points, and the ratio of this speed to tolerance times speed.
 
-Even a model that reports stick may regularise friction at points. The error of the creep must fall with the
-tolerance.
+The error of the creep must fall with the tolerance.
 """
 
 LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without speed

@@ -2,7 +2,7 @@
 
 The outputs ``NAMES`` count sticks and releases and give their last times and the position of the last stick.
 ``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the last
-change. They are read at communication points. A step with several events of a kind is rejected and halved.
+change. A step with several events of a kind is rejected and halved.
 """
 
 from __future__ import annotations

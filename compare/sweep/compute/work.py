@@ -67,8 +67,8 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
     The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
-    duration is doubled up to ``DOUBLINGS`` times, because the kernel knows attractors and sees the end earlier. An
-    undecided trajectory is simulated up to ``time`` only.
+    duration is doubled up to ``DOUBLINGS`` times, because the kernel sees the end earlier. An undecided trajectory is
+    simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -158,8 +158,8 @@ def end_of(trajectory: Trajectory) -> EndState:
     - *Stuck*: the last stick phase lasts a whole turn of the master disc, so no new force can release it; or the
       contact slips ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same radius.
     - *Self-centred*: the centre hardly moves in the last quarter.
-    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis, taken once a turn, is
-      constant for a whirl and varies equally in both halves for a modulated motion.
+    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis is constant for a whirl
+      and varies equally in both halves for a modulated motion.
     """
     system, times = trajectory.system, trajectory.times
     since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))
