@@ -9,7 +9,7 @@ import numpy as np
 from fmu_models.variables import Model, Variable
 
 RINGS = 12
-"""Quadrature points of an annulus, on each side of the radius at which a point may be at rest."""
+"""Number of quadrature points of an annulus, on each side of the radius at which a point may be at rest."""
 
 CAUSALITY = {
     "time": "t",
