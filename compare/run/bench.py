@@ -19,10 +19,7 @@ NO_CLAIM = "-"
 
 
 class Bench:
-    """Measures one claim at a time, within the time that the other claims of its study leave.
-
-    The quick level does not attempt a claim that would take too long.
-    """
+    """Measures one claim at a time, within the time that the other claims of its study leave."""
 
     def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
         self.seed = seed

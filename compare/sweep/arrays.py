@@ -54,8 +54,7 @@ class Large(NamedTuple):
 class Group:
     """A group of a store, which any process may open.
 
-    ``description`` is the digest of the store's description, because another machine may have another store at that
-    path.
+    ``description`` is the digest of the store's description; another machine may have another store at that path.
     """
 
     files: Files

@@ -50,8 +50,8 @@ Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 class Friction:
     """Friction between two discs, in the units and the axes of a run.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` returns the creeping part of the contact,
-    which may be modelled with unlimited viscosity (single points by the argument ``held`` of ``add``).
+    ``add`` adds it to a model. ``creeping`` returns the creeping part of the contact, which may be modelled with
+    unlimited viscosity (single points by the argument ``held`` of ``add``).
     """
 
     add: Callable[..., Any]
@@ -179,8 +179,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed, or None.
 
-        A release at ``crossing`` needs them, and a load so close to the friction limit that the error of the creep
-        decides whether it exceeds the limit.
+        A release at ``crossing`` needs them, and a load that the error of the creep could push across the friction
+        limit.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -273,7 +273,7 @@ def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.i
 
 
 def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
-    """Return possible ends of creep in ``run``: its last time, and those around its maxima near ε."""
+    """Return possible ends of creep in ``run``: its last time, and around maxima near ε."""
     steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * np.linspace(0.0, 1.0, PARTS + 1)[1:]

@@ -42,8 +42,7 @@ class RegularisedContact:
         """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
         The resistance per m/s is μN/ε for a pin, at least half of it for a disc or its rim on a continuous ring, and
-        1/n of it for one resting point of n. The inertia of the rim, J/R², may be far larger than the mass. Without
-        friction both times are infinite.
+        1/n of it for one resting point of n. The inertia of the rim, J/R², may be far larger than the mass.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -108,8 +107,8 @@ class RegularisedContact:
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
         """Return the load at rest over the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is the viscous friction, P/ε of the limit, plus the forces that change and damp the creep. Along the slip,
-        which is normal to the limit surface, these are the power that goes into both over μN·P.
+        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep over
+        μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)

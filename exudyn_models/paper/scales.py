@@ -1,6 +1,6 @@
 """Scales of time, motion and force of a system, which determine the steps and tolerances of a run.
 
-All numbers are in the units of ``system`` and ``state``, SI or those of ``nondimensional``.
+All numbers are in the units of ``system`` and ``state``.
 """
 
 from __future__ import annotations

@@ -124,8 +124,8 @@ def simulate_fixed_step(
     """Return the motion by one Exudyn integrator with the constant step ``step`` (s), for convergence studies.
 
     ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha" or "TrapezoidalIndex2" (implicit,
-    order 2). An explicit integrator needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is
-    nan. Raises as ``simulate``.
+    order 2). An explicit one needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is nan.
+    Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -143,9 +143,8 @@ def simulate_fixed_step(
 class Run:
     """A motion to compute from time 0 on, in units that make it of order one.
 
-    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. Contact, with its ε,
-    state, times and scales are in these units. ``tolerance`` is nan for fixed steps; ``began`` is the start by
-    ``time.perf_counter``.
+    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. ``tolerance`` is nan for
+    fixed steps; ``began`` is the start by ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

@@ -29,7 +29,7 @@ class Motion(NamedTuple):
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
     """Return the motions that starts end in, without undecided ones; all arguments have shape (n,).
 
-    A gap between radii separates motions of one kind. Stuck motions form one group, because a pin may stick anywhere.
+    A gap between radii separates motions of one kind, except stuck motions, because a pin may stick anywhere.
     """
     found = []
     for end in EndState:
