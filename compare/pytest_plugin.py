@@ -1,11 +1,10 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
-Each study is a file and each of its claim sentences a test, collected without measuring. A separate process measures
-the claims. A test fails if the claim differs or the engine has no answer. A claim is "not attempted" if the engine
-does not support it or its study has no time left, "inconclusive" if the errors leave it open, and "not finished" if
-it exceeds the limit. None of these is a pass.
+A separate process measures the claims. A test fails if the claim differs or the engine has no answer. A claim is "not
+attempted" if the engine does not support it or its study has no time left, "inconclusive" if the errors leave it
+open, and "not finished" if it exceeds the limit. None of these is a pass.
 
-Without ``--pyargs compare`` or a file of this package the plugin is inactive and adds no options.
+Without ``--pyargs compare`` or a file of this package the plugin is inactive.
 """
 
 from __future__ import annotations
@@ -35,10 +34,10 @@ NO_VERDICT = {INCONCLUSIVE: "?", NOT_ATTEMPTED: "-", NOT_FINISHED: "t"}
 PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
-"""Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
+"""Exit statuses beyond those of pytest: too few claims pass or some are not finished; no verdict."""
 
 LIMITS = {"quick": 17.0, "full": 120.0}
-"""Time limits in s for one study of one engine, by level. The quick level has about seven studies."""
+"""Time limits in s for one study of one engine, by level."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -347,7 +346,7 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    """Write the diagnosis of failed engines, and each reason for missing verdicts once."""
+    """Write the diagnosis of failed engines, and reasons for missing verdicts."""
     failed = terminalreporter.stats.get("failed", [])
     if failed and _engines(config) and not hasattr(config, "workerinput"):
         from compare.diagnosis.run import in_short

@@ -2,18 +2,12 @@
 
 All public names are exported here. They come from these packages:
 
-- ``parts``: parts for your model. ``add_ring_friction`` adds friction between two bodies and returns a
-  ``RingFriction``; ``add_native_friction`` uses Exudyn's own contact; ``add_radial_support`` adds an elastic support
-  and returns a ``RadialSupport``; ``add_thermal_node`` adds a ``ThermalNode`` that friction heats;
-  ``add_energy_balance`` (``EnergyBalance``) and ``spring_energy`` check a run. Importing this package also defines
-  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
-- ``solver``: ``solve_dynamic`` is ``mbs.SolveDynamic`` with checks and clear errors. It returns a ``ModeChange`` for
-  each change of a contact with exact stick. ``largest_stable_step`` is for explicit solvers with a fixed step.
-- ``drivetrain``: engine, clutch and vehicle made of these parts. ``Drivetrain`` contains the parameters, with
-  ``PASSENGER_CAR`` and its torque ``four_cylinder`` as examples; ``build_drivetrain`` returns a ``DrivetrainModel``.
-- ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference;
-  ``simulate_fixed_step`` is for convergence studies; ``simulate_with_native_contact`` uses Exudyn's contact;
-  ``build_model`` returns their model; ``eigenvalues`` linearises about a state.
+- ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing this package also
+  defines ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
+- ``solver``: ``solve_dynamic`` is ``mbs.SolveDynamic`` with checks and clear errors. ``largest_stable_step`` is for
+  explicit solvers with a fixed step.
+- ``drivetrain``: engine, clutch and vehicle made of these parts, and an example, ``PASSENGER_CAR``.
+- ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference.
 - ``forces``: the compiled force laws.
 """
 

@@ -38,7 +38,7 @@ class HeadersMissingError(ValueError):
 
 @dataclass(frozen=True)
 class Exported:
-    """A unit in a ``file``, with a library for ``platform``, or "" and a ``remark`` with the reason for none."""
+    """A unit in ``file``, with a library for ``platform``; if that is "", ``remark`` says why."""
 
     file: Path
     platform: str
@@ -60,13 +60,13 @@ def write_sources(model: Model, folder: Path) -> None:
 
 
 def write_standard(folder: Path, fmi: Fmi) -> None:
-    """Write the functions and headers of the standard into ``folder``; raise ``HeadersMissingError`` without FMPy."""
+    """Write functions and headers of the standard into ``folder``; raise ``HeadersMissingError`` without FMPy."""
     for path in (*standard_headers().glob(f"fmi{fmi}*.h"), FOLDER / f"fmi{fmi}.c"):
         shutil.copyfile(path, folder / path.name)
 
 
 def standard_headers() -> Path:
-    """Return FMPy's folder with the headers of the standard; raise ``HeadersMissingError`` without FMPy."""
+    """Return the folder with the headers of the standard; raise ``HeadersMissingError`` without FMPy."""
     found = importlib.util.find_spec("fmpy")
     if found is None or found.origin is None:
         raise HeadersMissingError(
@@ -76,12 +76,12 @@ def standard_headers() -> Path:
 
 
 def compiler() -> str | None:
-    """Return the path of the C compiler: $CC, else cc, gcc or clang; None if there is none."""
+    """Return the path of $CC, cc, gcc or clang, or None."""
     return next(filter(None, map(shutil.which, (os.environ.get("CC") or "cc", "gcc", "clang"))), None)
 
 
 def compile_library(sources: Sequence[Path], library: Path, *more: str) -> None:
-    """Compile C files into a library; raise ``RuntimeError`` with the compiler's messages if it fails."""
+    """Compile C files into a library; raise ``RuntimeError`` with the compiler's messages."""
     library.parent.mkdir(parents=True, exist_ok=True)
     command = [str(compiler()), *OPTIONS, *more, "-o", str(library), *map(str, sources), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True)

@@ -50,7 +50,7 @@ UNTIL = "100"
 
 
 def token_of(model: Model) -> str:
-    """Return the token that library and description of a model must share."""
+    """Return the token that library and description must share."""
     return "{" + hashlib.sha256(repr(model).encode()).hexdigest()[:32] + "}"
 
 

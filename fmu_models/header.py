@@ -9,7 +9,7 @@ import numpy as np
 from fmu_models.variables import Model, Variable
 
 RINGS = 12
-"""Quadrature points of an annulus, on each side of the radius at which a point may be at rest."""
+"""Number of quadrature points of an annulus, on each side of the radius at which a point may be at rest."""
 
 CAUSALITY = {
     "time": "t",
@@ -61,7 +61,6 @@ def tables(model: Model) -> str:
 
 
 def _rules(model: Model) -> str:
-    """Return the C function that checks a model's rules."""
     values = {one.name: f"v[V_{one.name}]" for one in model.having("parameter")}
     lines = [f"{BROKEN} {{", "    (void)v, (void)sentence, (void)size;"]
     for condition, sentence in model.rules:
@@ -73,7 +72,6 @@ def _rules(model: Model) -> str:
 
 
 def _arrays(model: Model) -> dict[str, str]:
-    """Return the values of each array by its declaration."""
     places, weights = np.polynomial.legendre.leggauss(RINGS)
     return {
         "Variable VARIABLES[N_VARIABLES]": ",\n".join(_row(one) for one in model.variables),

@@ -29,8 +29,8 @@ class Variable:
 
     ``unit`` is one of ``description.UNITS``, or "" if dimensionless. ``role`` is "time", "parameter", "state",
     "derivative", "input", "output", "local", or "event" for an output that changes only at events. ``start`` is None
-    if the value follows from others. ``type`` is "real", "whole" or "boolean". A derivative is ``derivative_of`` a
-    state, whose ``scale`` is "x" for lengths, "v" for speeds, or "1".
+    if the value follows from others. A derivative is ``derivative_of`` a state, whose ``scale`` is "x" for lengths,
+    "v" for speeds, or "1".
     """
 
     name: str
@@ -131,7 +131,7 @@ MEASURED_BY = {"x": "x", "y": "x", "angle": "1", "vx": "v", "vy": "v", "spin": "
 DERIVED_UNITS = {"m": "m/s", "m/s": "m/s2", "rad": "rad/s", "rad/s": "rad/s2", "J": "W"}
 
 REFERENCE_UNITS = {"N s/m": "N.s/m", "N/m³": "N/m3", "kg m²": "kg.m2", "N m s/rad": "N.m.s/rad"}
-"""Units of the reference in the spelling recommended by the standard."""
+"""Units of the reference in the spelling of the standard."""
 
 TIME = Variable("time", "s", "time", "time")
 TOLERANCE = Variable(

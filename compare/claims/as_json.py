@@ -19,11 +19,10 @@ from compare.claims.claim import Claim, ErrorBudget
 Kind = TypeVar("Kind")
 
 TYPE = "type"
-"""Key for the name of the dataclass, if a field allows several."""
 
 
 def as_json(value: Any) -> Any:
-    """Return numbers, arrays, tuples, mappings and dataclasses as JSON values; other values are unchanged."""
+    """Return numbers, arrays, tuples, mappings and dataclasses as JSON values, others unchanged."""
     if isinstance(value, np.ndarray):
         numbers = value.astype(float).tolist()
         return numbers if np.all(np.isfinite(value)) else as_json(numbers)
@@ -71,7 +70,6 @@ def _value(kind: Any, content: Any) -> Any:
 
 
 def _dataclasses(kind: Any) -> dict[str, type[Any]]:
-    """Return the dataclasses in the union ``kind`` by name."""
     several = get_args(kind) if get_origin(kind) is UnionType else ()
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
 

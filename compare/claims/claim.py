@@ -72,8 +72,8 @@ GRADES = {Grade.EXACT: 1e-7, Grade.FINE: 1e-4, Grade.COARSE: 1e-2}
 class ErrorBudget:
     """Difference that the errors of the engine and the formula can explain.
 
-    - ``numerical``: error in the claim's unit, estimated from the run itself (same run at another tolerance,
-      Richardson). NaN, if there is no estimate, makes the claim differ.
+    - ``numerical``: error in the claim's unit, estimated from the run itself. NaN, if there is no estimate, makes the
+      claim differ.
     - ``model``: size of the first neglected term of an approximation; zero for an identity.
     - ``resolution``: largest total error of a conclusive agreement. Beyond it the claim may agree to a coarser grade.
     """
@@ -106,8 +106,7 @@ class Claim:
     - ``equation``: equation of the paper, such as "(3)"; "" if the statement is ours.
     - ``engine``: name of the engine, or "theory" without a simulation.
     - ``predicted``, ``measured``, of the same shape, and ``budget``: numbers and their errors in ``unit``.
-    - ``parameters``: numbers or words that repeat the measurement.
-    - ``source``: origin of the parameters: a figure, or an assumption in words.
+    - ``parameters``, ``source``: numbers or words that repeat the measurement, and their origin.
     - ``note``: method of the measurement or its error estimate, if not obvious.
     - ``basis``: kind of evidence, by default ``usual_basis``.
     - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
@@ -186,7 +185,7 @@ class Claim:
 
     @cached_property
     def units(self) -> tuple[str, ...]:
-        """Units along the last axis if they are mixed, else one unit."""
+        """Units along the last axis, or one unit."""
         if "," not in self.unit:
             return (self.unit,)
         return tuple(_unit(name) for name in self.axes[-1])
@@ -218,7 +217,7 @@ class Claim:
 
     @cached_property
     def worst(self) -> int:
-        """Flat index of the element with the largest ratio; the larger difference decides ties."""
+        """Flat index of the element with the largest ratio or, among equals, difference."""
         ratio = self.ratio
         nearest = np.where(ratio == np.max(ratio), self.difference, -1.0)
         return int(np.argmax(np.nan_to_num(nearest, nan=np.inf, posinf=np.inf)))
@@ -255,11 +254,11 @@ class Claim:
     def verdict(self) -> Verdict:
         """Verdict: differs beyond the budget or without a number.
 
-        Otherwise the claim agrees if its error is within the resolution or a grade, else it is inconclusive.
+        Otherwise it agrees if its error is within the resolution or a grade, else it is inconclusive.
         """
         difference, total = np.broadcast_arrays(self.difference, self.budget.total)
         missing = ~np.isfinite(self.measured)
-        open_ = missing & np.isinf(total)  # present at one tolerance but not at another
+        open_ = missing & np.isinf(total)  # appears at one tolerance only
         if not np.all((difference <= total) & ~missing | open_):  # False for NaN
             return Verdict.DIFFERS
         if np.any(self.budget.total > self.budget.resolution) and self.grade is None:
@@ -268,7 +267,6 @@ class Claim:
 
 
 def _unit(name: str) -> str:
-    """Return the unit in the name of a component, such as "m" for "x in m", or ""."""
     return name.rpartition(" in ")[2] if " in " in name else ""
 
 

@@ -18,13 +18,14 @@ class Declared:
 
     - ``function``: ``function(engine) -> Measured``, or without an argument for the theory. It returns None if the
       claim does not apply to the engine. In a family it also takes one of the values of ``each``.
-    - ``sentence``, ``equation``, ``kind``, ``unit``, ``note``, ``basis``, ``implied_by``, ``named``: as in
-      :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the member's name.
     - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
     - ``swept``: parameters of the system that the claim varies.
     - ``each``: names and values of the members of a family; empty for a single claim.
     - ``duration``: total duration in s of the motions of a long claim, with more weight for finer steps, else 0. The
       quick level skips claims that would take too long.
+
+    All others are those of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the
+    member's name.
     """
 
     function: Callable[..., Measured | None]
@@ -47,7 +48,7 @@ class Declared:
         return takes_engine(self.function)
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
-        """Yield the name of each member of the family and additional arguments of its function."""
+        """Yield each member of the family with additional arguments of its function."""
         if not self.each:
             yield "", ()
         for name, value in self.each.items():

@@ -81,7 +81,7 @@ def _characteristic_coefficient() -> Evidence:
 
 
 def _force_on_the_circle() -> Evidence:
-    """Return the tangential force of eq. 1 on a pin that moves on the circle of eq. 11 at ω < k."""
+    """Return the tangential force of eq. 1 on a pin on the circle of eq. 11 at ω < k."""
     pin = replace(CENTRED, disc_speed=0.8)
     k = pin.natural_frequency
     radius = pin.friction_force / (pin.damping * k)
@@ -109,7 +109,7 @@ def _shift_of_the_whirl() -> Evidence:
 
 
 def _moment_of_the_expansion() -> Evidence:
-    """Return the moment on a ring at equal slip speeds of centre and rim, from averages over the ring."""
+    """Return the moment on a ring at equal slip speeds of centre and rim."""
     slip, rim_speed = 1j, 1.0
     mean_speed = math.hypot(abs(slip), rim_speed)
     places = 2.0 * math.pi * np.arange(16) / 16  # averages are exact: cubic at most in sine and cosine
@@ -140,7 +140,7 @@ def _spin_of_the_self_centred_disc() -> Evidence:
 
 
 def _growth_beside_the_equilibrium() -> Evidence:
-    """Return the growth rate of the slowest deviation from the self-centred equilibrium of Fig. 9's disc."""
+    """Return the growth rate of the slowest deviation from the self-centred equilibrium."""
     (equilibrium,) = self_centred_equilibria(FIG9)
     simulated, _ = measured_eigenvalues(reference, FIG9, equilibrium.state, duration=1.0)
     return Evidence(
@@ -209,4 +209,3 @@ ERRATA: tuple[Erratum, ...] = (
         evidence=_growth_beside_the_equilibrium,
     ),
 )
-"""All errata in the order of the paper."""

@@ -22,22 +22,21 @@ WORKING = USUAL_TOLERANCE
 """Default tolerance of engines in studies."""
 
 TIGHTEST = 1e-12
-"""Smallest tolerance for engines and for shooting; an eighth of it is close to rounding error."""
+"""Smallest tolerance; an eighth of it is close to rounding error."""
 
 TRUTH = 1e-13
-"""Tolerance of the reference as a substitute for the exact motion."""
+"""Tolerance of the reference in place of the exact motion."""
 
 SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
 If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
-that fall slowly or irregularly with the tolerance, unless both errors are equal by chance to within an eighth. The
-change against a *larger* tolerance is too small if its error is not even twice as large, which happens for one number
-in twenty of the reference and one in fifty of Exudyn.
+that fall slowly or irregularly with the tolerance, unless both are equal by chance to within an eighth. The change
+against a *larger* tolerance is too small for one number in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
-"""Relative error of states above which events, such as a release, may appear or vanish."""
+"""Relative error of states above which events may appear or vanish."""
 
 ROUNDING = 64.0 * np.finfo(float).eps
 """Relative error below which two runs may coincide by chance."""
@@ -56,7 +55,7 @@ class Measurement(NamedTuple):
 
     @property
     def rows(self) -> FloatArray:
-        """Largest error of each row (along the last axis), broadcast to the shape of the errors."""
+        """Largest error of each row (along the last axis), broadcast."""
         return np.broadcast_to(np.max(self.error, axis=-1, keepdims=True), self.error.shape)
 
     def plus(self, error: float | FloatArray) -> Measurement:
@@ -71,8 +70,8 @@ def refined(
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
     If the numbers of a row (along the last axis) are ``alike``, of one unit and size, it is also at least the largest
-    change in the row, because a single number may hardly change by chance. Engines do not follow ever smaller
-    tolerances, so the next larger one that changes the result is used if necessary.
+    change in the row, because a single number may hardly change by chance. If the smaller tolerance changes nothing,
+    because the engine does not follow it, the next larger one that does is used.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):
@@ -91,10 +90,7 @@ def known(values: ArrayLike, errors: ArrayLike) -> FloatArray:
 
 
 def open_where_coarse(found: Measurement, states: Measurement) -> Measurement:
-    """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse.
-
-    Such errors may add or remove a stick phase, or delay the last release.
-    """
+    """Return ``found`` with infinite errors for missing values, if the ``states`` they are read from are coarse."""
     coarse = states.largest > COARSE * float(np.max(np.abs(states.value)))
     missing = ~np.isfinite(found.value)
     return Measurement(found.value, np.where(missing & coarse, np.inf, found.error))
@@ -118,9 +114,9 @@ def observed_exponent(
 ) -> tuple[float, float, float]:
     """Return p of errors ~ x^p·(1 + b·x^next_term) as x → 0, its numerical and its model error.
 
-    The fit is a least-squares fit of ln e = a + p·ln x + b·x^next_term. The numerical error is the 95 % interval from
-    the scatter of successive errors, plus the effect of ``noise``, the error of the errors. The model error is the
-    change of p without the next term. All shapes are (n,). p is NaN if an error is not a positive number.
+    ln e = a + p·ln x + b·x^next_term is fitted by least squares. The numerical error is the 95 % interval from the
+    scatter of successive errors, plus the effect of ``noise``, the error of the errors. The model error is the change
+    of p without the next term. All shapes are (n,). p is NaN if an error is not a positive number.
     """
     if not np.all(errors > 0.0) or not np.all(np.isfinite(errors)):
         return math.nan, 0.0, 0.0
@@ -163,7 +159,7 @@ SHORTER = 4.0
 """Ratio of successive steps."""
 
 LONGEST = 4.0
-"""Largest expected time in s of an attempt at a shorter step."""
+"""Largest expected time in s of a shorter step."""
 
 Answer = TypeVar("Answer")
 

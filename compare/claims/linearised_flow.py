@@ -15,7 +15,6 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray, System
 ComplexArray = NDArray[np.complex128]
 
 DIFFERENCE = 4e-3
-"""Step of the central differences, as a fraction of the slip."""
 
 FLOW_TOLERANCE = 10.0 * TIGHTEST
 """Tolerance of the simulations, small because of their differences."""
@@ -35,10 +34,7 @@ def rotated(states: ArrayLike, angle: ArrayLike) -> FloatArray:
 
 
 def _deviations(system: System, state: FloatArray) -> tuple[list[int], FloatArray]:
-    """Return the indices of the components that deviate, and their scales.
-
-    Deviations must be small compared with the slip, because friction changes with its direction.
-    """
+    """Return the indices of the components that deviate, and their scales, small compared with the slip."""
     half, omega = len(state) // 2, system.disc_speed
     (x, y), (vx, vy) = state[:2], state[half : half + 2]
     slip = np.hypot(vx + omega * y, vy - omega * x)
@@ -58,7 +54,7 @@ def measured_eigenvalues(
     Central differences of the engine's flow over ``duration`` (s), with |Im λ|·duration < π, give the linearised
     flow, whose eigenvalues are exp(λ·duration). Two steps, h and 2h, are extrapolated to h = 0. The error is the
     change with 2h and 4h instead, plus the estimate of ``refined``, plus the tolerance itself. The largest error
-    counts for all eigenvalues, because a single one may be right by chance.
+    counts for all eigenvalues.
 
     The motion must slide from ``state``, shape (4,) or (6,), and is steady in axes that turn with ``frame_speed``
     (rad/s). A disc has a continuous ring and five eigenvalues, without that of its angle.
@@ -96,16 +92,13 @@ def measured_eigenvalues(
 
 
 def _unseen(eigenvalues: ComplexArray, duration: float, size: float) -> float:
-    """Return the error in 1/s due to the tolerance; ``size`` is the ratio of the state to the smallest deviation.
-
-    Deviations from rest may stay within the tolerance, so ``refined`` sees no change.
-    """
+    """Return the error in 1/s of deviations within the tolerance; ``size`` is the ratio of state and deviation."""
     smallest = float(np.min(np.abs(np.exp(eigenvalues * duration))))
     return FLOW_TOLERANCE * size / (smallest * duration)
 
 
 def matched(values: ArrayLike, to: ArrayLike) -> ComplexArray:
-    """Return complex ``values`` in the order that is nearest to ``to``, both of shape (n,)."""
+    """Return complex ``values`` in the order nearest to ``to``, both of shape (n,)."""
     from scipy.optimize import linear_sum_assignment
 
     values, to = np.asarray(values, dtype=complex), np.asarray(to, dtype=complex)

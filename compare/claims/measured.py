@@ -22,16 +22,12 @@ class Measured:
 
     - ``predicted``, ``value``, of the same shape: numbers in the claim's unit.
     - ``error``, ``model``: numerical error of both (broadcastable), and model error, see ``ErrorBudget``.
-    - ``resolution``: largest total error of a conclusive agreement; overrides the declared one.
     - ``components``: names along the last axis, such as "x in m"; () for one quantity.
     - ``at``: varied quantities in the order of the other axes: a name with its unit, such as "μN in N", and the
       numbers or words along that axis.
-    - ``system``, ``source``: system to repeat the measurement, and origin of its parameters; they override the
-      study's.
-    - ``parameters``: additional parameters to repeat the measurement.
-    - ``note``: method, if it depends on the measurement; appended to the declared note.
+    - ``system``, ``source``, ``resolution``: these override the study's and the declared ones.
+    - ``parameters``, ``note``, ``named``: additions to the system's and the declared ones.
     - ``data``: arrays by name, for the figures.
-    - ``named``: names for quotes of an element (its flat index), in addition to the declared ones.
     - ``size``, ``answers``: as in ``Claim``.
     """
 
@@ -111,6 +107,5 @@ def asked(question: Callable[[float], ArrayLike], tolerance: float) -> tuple[Flo
 
 
 def _as_numbers(margins: ArrayLike) -> FloatArray:
-    """Return the margins; truth values become 1 and −1."""
     found = np.asarray(margins)
     return np.where(found, 1.0, -1.0) if found.dtype == np.bool_ else found.astype(float)

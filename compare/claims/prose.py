@@ -22,7 +22,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 NAME = "study.md"
-"""File name of the texts in a study's own folder."""
 
 SECTIONS = {
     "pin": "The friction pin",
@@ -83,7 +82,6 @@ class Prose:
 
 
 def _paragraphs(text: str) -> str:
-    """Return the paragraphs, each in one line."""
     return "\n\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text.strip()))
 
 

@@ -39,12 +39,12 @@ def counted(ends: Ends) -> IntArray:
 
 
 def of_sample(ends: Ends) -> dict[EndState, Share]:
-    """Return the shares of the end states ``ends`` (shape (n,)) of independent random starts."""
+    """Return the shares of end states (shape (n,)) of random starts."""
     return of_counts(counted(ends))
 
 
 def of_counts(counts: IntArray) -> dict[EndState, Share]:
-    """Return the shares of independent random starts from the number of each end state."""
+    """Return the shares of random starts from the number of each end state."""
     total, doubtful = int(np.sum(counts)), int(counts[EndState.UNDECIDED])
     shares = {}
     for end in EndState:
@@ -54,7 +54,7 @@ def of_counts(counts: IntArray) -> dict[EndState, Share]:
 
 
 def of_count(count: int, total: int, doubtful: int = 0) -> Share:
-    """Return the share of ``count`` among ``total`` independent random starts; ``doubtful`` more may count."""
+    """Return the share of ``count`` among ``total`` random starts; ``doubtful`` more may count."""
     from scipy.stats import binomtest  # slow import
 
     low, high = (
@@ -83,7 +83,7 @@ def of_grid(ends: Ends) -> dict[EndState, Share]:
 
 
 def mixed(ends: Ends) -> BoolArray:
-    """Return a mask of the cells with different corners, one element shorter than ``ends`` along each axis."""
+    """Return a mask of the cells with different corners, one shorter than ``ends`` along each axis."""
     corner = ends[:-1, :-1]
     result: BoolArray = (corner != ends[1:, :-1]) | (corner != ends[:-1, 1:]) | (corner != ends[1:, 1:])
     return result

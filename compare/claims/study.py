@@ -57,7 +57,7 @@ class Recorded:
     - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
     - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
     - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
-    - ``advice``: refinement for a small error, or the error of the finest run, as a clause; "" without advice.
+    - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
     - ``whirl``: relative error of the radius of the whirl; NaN if not simulated.
     """
 
@@ -76,17 +76,15 @@ class Recorded:
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validations")
-"""Functions that a study may provide in addition to its claims."""
+"""Optional functions of a study."""
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
     """One figure or group of statements, with claims declared by the decorator ``claim``.
 
-    - ``name``: name on the command line, such as "fig03".
     - ``only``: names of the engines that the study is about; empty for all.
-    - ``source``: origin of the parameters: a figure, or an assumption in words.
-    - ``system``: system whose parameters repeat the measurements.
+    - ``system``, ``source``: system whose parameters repeat the measurements, and their origin.
     - ``seconds``: approximate time in s for one engine; the longest work starts first to keep all cores busy.
     - ``quick``: True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
     - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
@@ -142,7 +140,7 @@ class Study:
 
     @property
     def figures(self) -> Mapping[str, str]:
-        """Captions by figure; without captions, a study that draws has one figure with its name and title."""
+        """Captions by figure; a study that draws has at least one figure, with its name and title."""
         return self.prose.figures or ({self.name: self.title} if "figures" in self.provided else {})
 
     def draw(self, data: ByEngine) -> Figures:
@@ -226,7 +224,7 @@ class Study:
 
     @property
     def has_theory(self) -> bool:
-        """True if the study has claims or curves that need no engine."""
+        """True if claims or curves need no engine."""
         return "curves" in self.provided or any(not one.of_engine for one in self.declared)
 
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
@@ -234,7 +232,7 @@ class Study:
 
         Findings say why they leave out claims that the engine does not support. ``few`` contains arguments of claims'
         functions by their names, to measure fewer cases. ``only`` selects functions by name, or members of a family
-        by "function/case"; empty for all.
+        by "function/case".
         """
         claims: list[Claim] = []
         data: Data = {}
@@ -258,7 +256,7 @@ class Study:
         return Findings(tuple(claims), data, "; ".join(dict.fromkeys(lacking)))
 
     def measure_theory(self, few: Few | None = None, only: Collection[str] = ()) -> Findings:
-        """Measure the claims of the theory, or ``only`` some as in ``measure``; without ``only`` add the curves."""
+        """Measure the claims of the theory, or ``only`` some; without ``only`` add the curves."""
         found = self.measure(None, few, only)
         if "curves" in self.provided and not only:
             found.data.update(_arrays(self.provided["curves"](**(few or {}).get("curves", {}))))
@@ -315,12 +313,12 @@ class Study:
         )
 
     def sentences(self) -> dict[str, str]:
-        """Return the sentences about engines with their selectors in ``only`` of ``measure``."""
+        """Return the sentences about engines with their selectors in ``only``."""
         of_engines = (declared for declared in self.declared if declared.of_engine)
         return {one.sentence_of(case): one.part(case) for one in of_engines for case, _ in one.cases()}
 
     def duration(self, part: str) -> float:
-        """Return the ``duration`` in s of the claim with the selector ``part``."""
+        """Return the ``duration`` in s of the claim ``part``."""
         return next(
             one.duration for one in self.declared for case, _ in one.cases() if part == one.part(case)
         )

@@ -1,8 +1,7 @@
 """A validation: a prediction of theory against a measured experiment.
 
 It is not a verdict, because a law of friction describes a real contact only to some extent. A validation states how
-far, and how much of the difference the known uncertainties explain (ASME V&V 20-2009, Standard for Verification and
-Validation in Computational Fluid Dynamics and Heat Transfer).
+far, and how much of the difference the known uncertainties explain (ASME V&V 20-2009).
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ class Validation:
     - ``quantity``, ``unit``: compared quantity, and the unit of all following numbers.
     - ``error``, ``error_uncertainty``: median of the comparison error E = S − D, and its standard error from the
       scatter.
-    - ``data``, ``input``, ``numerical``: median standard uncertainties of the measured data, the parameters and the
+    - ``data``, ``input``, ``numerical``: median standard uncertainties of the data, the parameters and the
       computation.
     - ``explained``: share of the ``count`` measurements with |E| at most twice their total uncertainty.
     """

@@ -66,7 +66,7 @@ def printing() -> Iterator[None]:
 
 
 def close_output() -> None:
-    """Redirect standard output to the null device, so flushing it at exit cannot fail again."""
+    """Redirect standard output to the null device, so flushing it at exit cannot fail."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
@@ -80,7 +80,7 @@ def refused() -> Iterator[None]:
 
 
 def say(sentence: str, result: int) -> int:
-    """Print a sentence on the error stream and return the exit status ``result``."""
+    """Print a sentence on the error stream; return ``result``."""
     print(printable(sentence), file=sys.stderr)
     return result
 
@@ -111,7 +111,7 @@ def _bar(*columns: Any) -> Iterator[Callable[..., None]]:
 
 @contextmanager
 def measurements() -> Iterator[Callable[..., None]]:
-    """Show finished and running measurements and the remaining time in s: a bar, or a line at intervals."""
+    """Show finished and running measurements and the remaining time in s."""
     if not sys.stderr.isatty():
         yield _lines()
         return

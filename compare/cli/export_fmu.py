@@ -122,7 +122,6 @@ def _export(name: str, unit: Unit) -> None:
 
 
 def _numbers(changes: dict[str, str]) -> dict[str, float]:
-    """Return the values as numbers; the unit checks their ranges."""
     from reference_model.systems import finite_number
 
     words = {"true": "1", "false": "0"}

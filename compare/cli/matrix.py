@@ -45,7 +45,7 @@ Benchmark = Annotated[
     typer.Option("--benchmark", help="Run the friction benchmark instead: closed-form cases, with a score."),
 ]
 
-LIMIT = 60.0  # default of ``--limit`` in s
+LIMIT = 60.0
 
 
 def matrix(

@@ -156,7 +156,7 @@ def with_options(
 
 
 def changed(system: System, settings: Sequence[str]) -> System:
-    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid name or value."""
+    """Return ``system`` with the changes "name=value"; raise ``ValueError`` for an invalid one."""
     changes: dict[str, Any] = dict(changes_of(settings, [field.name for field in fields(system)]))
     if str(changes.get("contact_points", "")).strip().lower() == "none":
         changes["contact_points"] = None
@@ -190,7 +190,7 @@ Seed = Annotated[
 
 
 def studies_of(context: typer.Context, names: Sequence[str], level: str = "full") -> tuple[Study, ...]:
-    """Return the named studies, or all of a level, from the studies passed to ``main`` or the paper's."""
+    """Return the named studies, or all of a level, of ``main`` or the paper."""
     from compare.studies import STUDIES, studies
 
     with refused():

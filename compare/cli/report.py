@@ -46,7 +46,6 @@ FULL = "report"
 """Default folder of a full report."""
 
 MOST_LISTED = 10
-"""Largest number of measurements that a message lists."""
 
 Names = Annotated[
     list[str] | None,
@@ -177,7 +176,6 @@ def report(
 
 
 def _check_logs(folder: Path | None) -> None:
-    """Compare the table of the study pushes with the logs in a folder, and print the errors of other series."""
     if folder is None:
         return
     from compare.studies.plane.pushes.reduction import check_table
@@ -199,7 +197,6 @@ def store_of(output: Path) -> Path:
 def _requested_studies(
     context: typer.Context, names: list[str], claim: str | None, level: str, resume: bool
 ) -> tuple[Study, ...]:
-    """Return the studies to measure; reject options that conflict with ``--claim``."""
     studies = studies_of(context, names, level)
     if claim is None:
         return studies
@@ -253,7 +250,6 @@ def _print_diagnoses(engines: Iterable[Engine], matrix: Matrix) -> None:
 
 
 def _status(result: Run, matrix: Matrix, least_conclusive: int, named: Collection[str]) -> int:
-    """Return the exit status and print what is missing; ``named`` are the engines from ``--engine``."""
     from compare.report.matrix import State
 
     if result.interrupted:

@@ -37,7 +37,7 @@ MOST_SAMPLES = 10_000_000
 PICTURES = (".png", ".pdf", ".svg")
 
 PATIENCE = 2.0
-"""Time in s before a terminal shows that the engine still works."""
+"""Time in s before a terminal shows the engine at work."""
 
 simulate = typer.Typer(rich_markup_mode=None)
 
@@ -226,7 +226,7 @@ def _elapsed_time(what: str) -> Iterator[None]:
 def _simulated(
     engine: Engine, system: System, state: FloatArray, times: FloatArray, tolerance: float, phases: bool
 ) -> Trajectory:
-    """Return the motion as arrays, with phases only on request, because they may need another simulation."""
+    """Return the motion as arrays; its phases may need another simulation."""
     from reference_model.trajectory import Trajectory
 
     found = engine.simulate(system, state, times, tolerance=tolerance)

@@ -21,7 +21,7 @@ def writer(path: Path) -> Callable[[Trajectory, str, IO[str]], None]:
 
 
 def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
-    """Write column names with units, then one line per time, in full precision."""
+    """Write column names with units, then one line per time."""
     header = [("t", "s"), *COLUMNS[type(trajectory.system)]]
     stream.write(",".join(f"{name} [{unit}]" for name, unit in header) + "\n")
     for time, state in zip(trajectory.times, trajectory.states, strict=True):
@@ -29,7 +29,7 @@ def write_csv(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
 
 
 def write_json(trajectory: Trajectory, engine: str, stream: IO[str]) -> None:
-    """Write the motion with its parameters, its phases and the details of its solution."""
+    """Write the motion with parameters, phases and details of its solution."""
     columns = COLUMNS[type(trajectory.system)]
     content = {
         "version": version_of("friction-discs"),

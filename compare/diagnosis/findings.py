@@ -26,10 +26,6 @@ SAME = 0.8  # least ratio of the creep at any rung to the largest, if it does no
 HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
 
 MOST_HELD, BISECTIONS = 32.0, 20
-"""Largest load over μN on blocks at rest, and the number of bisections."""
-
-
-# --- The parts and their results.
 
 
 MOTIONS = CASES | {
@@ -51,7 +47,7 @@ class Creep:
 
     speed: float  # under a load of μN/2
     order: float
-    smoothing: str  # regularised friction law that explains the creep, or ""
+    smoothing: str  # friction law that explains the creep, or ""
     epsilon: float  # its regularisation
     chatter: float = 0.0  # largest deviation of the velocity from the creep
     chatter_order: float = math.nan
@@ -96,7 +92,7 @@ class Repeat:
 
 @dataclass(frozen=True)
 class Lag:
-    """Delay in s of the friction force behind the slip, its error, and its order in the step."""
+    """Delay in s of friction behind the slip, its error, and its order in the step."""
 
     seconds: float
     error: float
@@ -105,7 +101,7 @@ class Lag:
 
 @dataclass(frozen=True)
 class Motion:
-    """Errors in m of one case of ``compare.foreign`` against the exact motion."""
+    """Errors in m of one case of ``compare.foreign``."""
 
     errors: tuple[float, ...]  # largest over time at each rung
     estimate: float  # of the last error, from the changes between rungs
@@ -125,7 +121,7 @@ class Motion:
 
     @property
     def conclusive(self) -> bool:
-        """True if the estimate is small enough to exclude another law."""
+        """True if the estimate excludes another law."""
         return self.estimate <= self.resolution
 
 
@@ -133,7 +129,7 @@ Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
 
 
 def friction(engine: Engine) -> Friction:
-    """Return the friction law that decelerates blocks on a plane at rest."""
+    """Return the friction law of blocks on a plane at rest."""
     pushes = probes.unsaturated(engine, probes.headings(), float(tolerances(engine)[0]))
     values = _slides(engine, pushes).values.copy()
     sizes = np.max(np.hypot(values[..., 0], values[..., 1]), axis=1)
@@ -147,13 +143,12 @@ def friction(engine: Engine) -> Friction:
 
 
 def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
-    """Return the slides at each rung, with twice as many intervals from rung to rung."""
     rungs = enumerate(tolerances(engine).tolist())
     return Ladder(np.array([probes.slides(engine, pushes, it, probes.FEWEST_PANELS << i) for i, it in rungs]))
 
 
 def scales(engine: Engine) -> Scales:
-    """Return friction forces over wide ranges of mass, load, speed and place."""
+    """Return friction forces over wide ranges."""
     pushes = probes.draws(turning=False)
     if engine.simulates(probes.TURN):
         pushes += probes.draws(turning=True)
@@ -188,7 +183,7 @@ def creep(engine: Engine) -> Creep:
 
 
 def history(engine: Engine) -> History:
-    """Return the largest load held from rest, and how friction acts after a slide."""
+    """Return the largest load held from rest, and friction after a slide."""
     pulls, gravity = np.array(probes.BEYOND), probes.FRICTION / probes.SLIDE.mass
     ladder = Ladder.of(engine, functools.partial(probes.pulled, engine, probes.BEYOND))
     moves = ladder.finest[:, 0] > HELD * (pulls - 1.0) * gravity * probes.PULLED_FOR
@@ -211,7 +206,6 @@ def history(engine: Engine) -> History:
 
 
 def _held(engine: Engine, pulls: Sequence[float]) -> float:
-    """Return the largest load over μN, up to ``MOST_HELD``, that a block at rest withstands."""
     least, most = pulls[0], MOST_HELD
     for number in range(BISECTIONS):
         middle = (
@@ -305,7 +299,7 @@ PROBES: dict[str, type[Any]] = {
 
 
 def parts_of(engine: Engine) -> dict[str, Callable[[Engine], Part]]:
-    """Return the measurements that apply to an engine by name: the friction law first, then the motions."""
+    """Return the measurements that apply to an engine by name, in their order."""
     parts: dict[str, Callable[[Engine], Part]] = {}
     if engine.simulates(probes.SLIDE):
         parts |= {"law": friction, "scales": scales, "creep": creep, "history": history}

@@ -20,10 +20,9 @@ import numpy as np
 class Case:
     """A point mass, or a thin ring, on a horizontal plate that may rotate about the origin; SI units.
 
-    The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``
-    (the coefficient times the normal force). ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A
-    ring lies on the plate under uniform pressure. It has the ``radius`` R and the moment of inertia m·R², and turns
-    with ``spin`` at the start.
+    The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``.
+    ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A ring lies on the plate under uniform
+    pressure. It has the ``radius`` R and the moment of inertia m·R², and turns with ``spin`` at the start.
     """
 
     name: str
@@ -123,7 +122,7 @@ def cases() -> tuple[Case, ...]:
 
 
 def measured(case: Case, states: Any) -> float:
-    """Return the measured number of a case from its first and last state."""
+    """Return the measured number of a case."""
     x, y = np.asarray(states[-1])[:2] - (0.0 if case.measured == "radius" else np.asarray(states[0])[:2])
     if case.measured == "x":
         return float(states[-1][0])

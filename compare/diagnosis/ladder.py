@@ -13,8 +13,8 @@ from compare.claims.error_estimates import ROUNDING
 from compare.engines import COARSENING, USUAL_TOLERANCE, Engine
 from reference_model.systems import FloatArray
 
-RUNGS = 4  # rungs of a ladder
-HALVED = 2.0  # ratio of fixed steps from rung to rung
+RUNGS = 4
+HALVED = 2.0
 
 SAFETY = 3.0
 """Ratio of the error estimate to the last change: three times the error for first order and halved steps."""
@@ -44,7 +44,7 @@ class Ladder:
 
     @property
     def error(self) -> FloatArray:
-        """Estimated distance of the finest value from the limit, shape (...)."""
+        """Estimated distance of the finest value from the limit."""
         change = np.max(np.abs(np.diff(self.values[-3:], axis=0)), axis=0)
         return np.asarray(SAFETY * change + ROUNDING * np.max(np.abs(self.finest), initial=0.0))
 
@@ -55,7 +55,7 @@ def step_ratio(engine: Engine) -> float:
 
 
 def falling(sizes: Sequence[float] | FloatArray, ratio: float) -> float:
-    """Return the order from the last two of ``sizes`` and the ``ratio`` of their steps; NaN if undefined."""
+    """Return the order from the last two ``sizes`` and the ``ratio`` of their steps, or NaN."""
     if len(sizes) < 2 or not (0.0 < sizes[-2] < math.inf and 0.0 < sizes[-1] < math.inf):
         return math.nan
     return math.log(sizes[-2] / sizes[-1]) / math.log(ratio)

@@ -28,7 +28,7 @@ FITS = 1e-6  # misfit over μN allowed for any law, because the force varies a l
 DISTINCT = 3.0  # least ratio of the second-best misfit to the best, and of a reported deviation to its error
 
 NEAR, FAR = 1e-3, 100.0
-"""Largest misfit of a law that is named with a further difference, and the least ratio of the next misfit."""
+"""Largest misfit of a law with a further difference, and the least ratio of the next misfit."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def _against(slip: complex) -> complex:
 
 
 def _polygon(sides: int, tilt: float, slip: complex) -> complex:
-    """Return the corner nearest to the direction opposite to the slip; the first corner is at ``tilt`` (rad)."""
+    """Return the corner nearest to the direction opposite to the slip; the first is at ``tilt`` (rad)."""
     step = 2.0 * math.pi / sides
     return cmath.rect(1.0, tilt + step * round((cmath.phase(-slip) - tilt) / step))
 
@@ -77,7 +77,7 @@ SHAPES = _shapes()
 class Friction:
     """Friction law with the best fit."""
 
-    shape: str  # name of the law in ``SHAPES``
+    shape: str
     strength: float  # ratio of the fitted to the nominal μ
     angle: float  # rotation of the force from the law's direction, in rad
     error: float  # of the measured force over μN; also that of ``strength`` and ``angle``
@@ -126,7 +126,7 @@ def fitted(forces: FloatArray, error: float) -> Friction:
 
 
 def _ellipse(numbers: FloatArray, slips: Complex) -> Complex:
-    """Return the force of largest dissipation in an ellipse with semi-axes and direction ``numbers``."""
+    """Return the force of largest dissipation in an ellipse."""
     turn = np.exp(1j * numbers[2])
     along = slips / turn
     x, y = numbers[0] ** 2 * along.real, numbers[1] ** 2 * along.imag
@@ -135,7 +135,7 @@ def _ellipse(numbers: FloatArray, slips: Complex) -> Complex:
 
 
 def _as_ellipse(slips: Complex, measured: Complex, error: float, misfit: float) -> Friction | None:
-    """Return an ellipse if it fits much better than the best ``misfit`` of the other laws."""
+    """Return an ellipse if it fits much better than the other laws, with their ``misfit``."""
 
     def off(numbers: FloatArray) -> FloatArray:
         rest = measured - _ellipse(numbers, slips)
@@ -197,7 +197,7 @@ SMOOTHING_FITS = 0.2  # largest relative misfit of an identified regularisation
 
 
 def smoothing_of(creep: FloatArray) -> tuple[str, float]:
-    """Return the regularisation that explains the creep under ``PULLS`` and its ε in m/s, else "" and NaN."""
+    """Return the regularisation that explains the creep under ``PULLS`` and its ε in m/s."""
     if not np.all(creep > 0.0):
         return "", math.nan
     pulls = np.array(PULLS)

@@ -40,11 +40,11 @@ SLIDES_FOR = 0.1
 
 PANELS = 32  # intervals for the integral of friction with a direction that changes
 FEWEST_PANELS = 4  # the same at the coarsest rung, where steps may not exceed an interval
-CHECKED_FOR = 1.0  # duration in s of the first check
+CHECKED_FOR = 1.0
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how far a block slides, and how far one at rest moves: each found and exact, in m."""
+    """Return how far a sliding block and one at rest move: each found and exact, in m."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     slid = engine.simulate(SLIDE, sliding, times).states[-1]
@@ -58,7 +58,7 @@ def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float
 DRAWS, TURNING_DRAWS = 48, 24  # combinations on a plane at rest and on a turntable
 
 MASSES, SPEEDS, DISC_SPEEDS = (1e-3, 1e3), (1e-4, 1e2), (1e-2, 1e2)
-"""Ranges in kg, m/s and rad/s; they limit the loads, because friction may remove little of the speed."""
+"""Ranges in kg, m/s and rad/s."""
 
 SPENT = 0.05
 """Largest share of the slip that friction may remove; the probe is repeated with smaller loads."""
@@ -68,7 +68,7 @@ WEAKER, MOST_WEAKER = 10.0, 7  # factor of the load between repetitions, and the
 
 @dataclass(frozen=True, eq=False)
 class Push:
-    """A body that slides: its system, and its initial position and velocity as complex numbers."""
+    """A body that slides, with complex initial position and velocity."""
 
     system: PinOnDisc
     place: complex
@@ -92,7 +92,7 @@ class Push:
         return replace(self, system=replace(self.system, friction_force=self.system.friction_force / factor))
 
     def times(self, panels: int) -> FloatArray:
-        """Return the start in s and the ends of the intervals; a straight slide has two."""
+        """Return the start in s and the ends of the intervals."""
         panels = panels if self.system.disc_speed else 2
         return np.concatenate(([0.0], SETTLES_FOR + np.linspace(0.0, self.lasts, panels + 1)))
 
@@ -103,7 +103,7 @@ class Push:
 
 
 def headings() -> list[Push]:
-    """Return slides in all directions, each across the radius because some engines ignore slip along it."""
+    """Return slides in all directions, each across the radius."""
     return [Push.of(1.0, FRICTION, unit * SPEED, 1j * unit) for unit in np.exp(1j * HEADINGS).tolist()]
 
 
@@ -142,7 +142,7 @@ def slides(
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
     They are the mean friction force over μN, the mean directions of slip and of the place, and the conditions: mass,
-    load, mean slip speed, disc speed and distance from the axis. The speeds in m/s are the given initial one, and the
+    load, mean slip speed, disc speed and distance from the axis. Then follow the given initial speed in m/s, and the
     one that follows from speed and force when the measurement begins. The last two are the error of the force due to
     the declared precision, and the smallest slip over the first.
     """
@@ -169,7 +169,7 @@ def slides(
 
 
 def unsaturated(engine: Engine, pushes: Sequence[Push], tolerance: float) -> list[Push]:
-    """Return the slides with loads so small that friction removes little of the slip, if possible."""
+    """Return the slides with loads so small that friction removes little of the slip."""
     found, saturated = list(pushes), list(range(len(pushes)))
     for _ in range(MOST_WEAKER):
         left = slides(engine, [found[i] for i in saturated], tolerance)[:, LEFT]
@@ -191,7 +191,6 @@ NEARLY, BEYOND = 0.99, (1.001, 1.01, 1.05, 1.2)
 PULLED_FOR = 4.0  # duration in s; the creep speed is measured in the second half
 
 LOOKS = 16
-"""Number of samples of the velocity in the second half, because a block may chatter."""
 
 
 def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArray:
@@ -219,7 +218,7 @@ RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
-    """Return how far the block moves after its second release, over the exact distance, and its delay in s."""
+    """Return how far the block moves after its second release, over the exact distance, and its delay."""
     stretch = FRICTION / SWING.stiffness
     turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
     start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
@@ -245,7 +244,7 @@ def at_rest(engine: Engine, tolerance: float) -> float:
 TURN = PinOnDisc(mass=1.0, stiffness=WEAK, damping=0.0, friction_force=0.02, disc_speed=1.0, offset=0.0)
 
 TURNS_FOR = 1.0
-"""Duration in s. The slip of a pin that leaves the axis radially turns with the speed of the disc below."""
+"""Duration in s; the slip of a pin that leaves the axis radially turns with the disc below."""
 
 
 def lag(engine: Engine, tolerance: float) -> float:
@@ -275,11 +274,11 @@ SUPPORTS = {
     "damper force": (replace(SMOOTH, damping=1.0), (0.0, 0.0, 1.0, 0.5)),
     "force of the offset": (replace(SMOOTH, stiffness=1.0, offset=1.0), (0.0, 0.0, 0.0, 0.1)),
 }
-"""Systems and initial states with one acting part of the support, by the name of its force."""
+"""Systems and initial states with one acting part of the support."""
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one, shape (3,)."""
+    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
     settled = _settled(engine, [(*motion, times) for motion in SUPPORTS.values()], tolerance, 1e-9)
     return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])
@@ -288,7 +287,7 @@ def supports(engine: Engine, tolerance: float) -> FloatArray:
 def _settled(
     engine: Engine, motions: Sequence[Any], tolerance: float, exactly: float
 ) -> Iterator[tuple[FloatArray, FloatArray, FloatArray]]:
-    """Yield the engine's states after ``SETTLES_FOR`` and at the end, and the exact end from the former."""
+    """Yield the states after ``SETTLES_FOR`` and at the end, and the exact end from the former."""
     runs = engine.simulate_many(motions, tolerance=tolerance)
     for (system, _, times), run in zip(motions, runs, strict=True):
         begun, ended = run.states[1:]
@@ -302,7 +301,7 @@ def _share(found: FloatArray, exact: FloatArray, start: FloatArray) -> float:
 
 
 def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]]:
-    """Return discs on a plane that slide, spin and do both, small and large."""
+    """Return small and large discs that slide, spin and do both."""
     found: list[tuple[DiscOnDisc, tuple[float, ...], FloatArray]] = []
     for mass, radius in ((1.0, 0.1), (30.0, 2.0)):
         for slip, spin in ((1.0, 0.0), (0.0, 1.0), (0.6, 0.8)):

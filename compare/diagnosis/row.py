@@ -24,12 +24,12 @@ from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
 
-RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"  # verdicts over everything that was measured
+RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"  # verdicts over everything
 
 
 @dataclass(frozen=True)
 class Row:
-    """Results of the probes and motions for an engine; a probe is None if it was not measured."""
+    """Results for an engine; a probe is None if not measured."""
 
     engine: str
     version: str = ""
@@ -151,7 +151,7 @@ LEAST = 1e-16  # smallest plotted error in m
 
 
 def drawn(rows: Sequence[Row]) -> Figure:
-    """Return a figure with a panel for each motion and a line for each engine."""
+    """Return a figure with a panel for each motion."""
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
     columns = min(4, len(names))
     figure, panels = new_figure(ncols=columns, nrows=-(-len(names) // columns), width=11.0, height=6.5)
@@ -174,7 +174,7 @@ def drawn(rows: Sequence[Row]) -> Figure:
 
 
 def drawn_forces(rows: Sequence[Row]) -> Figure:
-    """Return a figure of the measured friction force against each variable of ``Scales``."""
+    """Return a figure of the friction force against each variable of ``Scales``."""
     figure, panels = new_figure(ncols=len(VARIABLES), width=15.0, height=3.5)
     wide = max(float(np.ptp(np.log10(np.hypot(*row.scales.forces.T)))) for row in rows if row.scales) > 1.0
     for row, marker in zip(rows, itertools.cycle(MARKERS), strict=False):
@@ -199,13 +199,13 @@ def drawn_forces(rows: Sequence[Row]) -> Figure:
 
 
 def write_rows(rows: Sequence[Row], folder: Path) -> None:
-    """Write the available rows to ``folder``/matrix.json; the file is replaced atomically."""
+    """Write the available rows to ``folder``/matrix.json atomically."""
     content = [as_json(row) | {"sentences": list(row.sentences), "wrong": row.wrong} for row in rows]
     write_text(folder / "matrix.json", json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def write_pictures(rows: Sequence[Row], folder: Path) -> list[Path]:
-    """Write matrix and friction, if there is something to draw, as svg and png; return the paths of the latter."""
+    """Write available figures as svg and png; return the paths of the latter."""
     figures: dict[str, Figure] = {}
     wrong = [row for row in rows if row.scales is not None and row.verdict != RIGHT]
     with paper_style():

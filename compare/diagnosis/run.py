@@ -20,7 +20,7 @@ from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 
-IN_SHORT = 20.0  # time limit in s for each part of a short diagnosis
+IN_SHORT = 20.0  # in s for each part
 
 
 def diagnosed(
@@ -32,8 +32,8 @@ def diagnosed(
 ) -> Iterator[Row]:
     """Yield the row of each engine in order of completion; an engine that supports no part has an empty row.
 
-    A row reports parts that exceed ``limit`` (s). ``progress`` is called with the number of finished parts, the total
-    number and the name of the last part.
+    A row reports parts that exceed ``limit`` (s). ``progress`` is called with the numbers of finished and of all
+    parts, and the name of the last part.
     """
     parts = {engine: list(parts_of(engine)) for engine in engines}
     rows = {engine.name: _empty(engine) for engine in engines}
@@ -87,7 +87,6 @@ def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
 
 
 def _probed(engine: Engine, workers: Workers) -> Row:
-    """Return the results of the probes up to the first part without a result."""
     row, parts = _empty(engine), parts_of(engine)
     for part in PROBES:
         if part in parts and not row.gaps:
@@ -96,7 +95,7 @@ def _probed(engine: Engine, workers: Workers) -> Row:
 
 
 def measured(engine: Engine, part: str) -> Any:
-    """Return one part of an engine's diagnosis, or the reason why it is not supported."""
+    """Return one part of an engine's diagnosis, or why it is not supported."""
     return _or_reason(parts_of(engine)[part], engine)
 
 
@@ -126,7 +125,7 @@ SLACK = 1e-6  # stiffness in N/m of a spring that pulls with a constant force
 
 
 def benchmarked(engine: Engine) -> dict[str, Any]:
-    """Return the engine's results in ``friction_benchmark``; a long, weak spring gives constant forces."""
+    """Return the engine's results in ``friction_benchmark``, with weak springs for constant forces."""
 
     def moved(case: friction_benchmark.Case, times: Sequence[float]) -> list[Any]:
         x, y, vx, vy = case.start
@@ -157,7 +156,7 @@ def benchmarked(engine: Engine) -> dict[str, Any]:
 
 
 def recorded_rows() -> tuple[Row, ...]:
-    """Return a row for each recorded setting of a foreign engine."""
+    """Return a row for each recorded setting."""
     return tuple(row_of(recording) for recording in recordings() if recording.setting)
 
 
@@ -171,7 +170,6 @@ def row_of(recording: Recording) -> Row:
 
 
 def _motion(runs: FloatArray, name: str) -> Motion:
-    """Return the last rungs of a recorded ladder, with the report's error estimate."""
     ratio = float(runs[-2, TOLERANCE] / runs[-1, TOLERANCE]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),

@@ -15,11 +15,11 @@ from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
 
 LEAST = 1e-6
-"""Smallest deviation of the force over μN that counts: friction removes down to 1e-4 of the speed, see ``probes``."""
+"""Smallest deviation of the force over μN that counts."""
 
 KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
-POWER_FITS = 0.02  # largest relative misfit of a power law
+POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
 FEWEST = 3  # least number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
@@ -42,7 +42,7 @@ class Scales:
     speeds: FloatArray  # (n, 2): initial speed in m/s, given and as measured
 
     def ratios(self, law: Friction) -> NDArray[np.complex128]:
-        """Return measured over expected forces, NaN where a law other than the cone has no fixed direction."""
+        """Return measured over expected forces, NaN for unknown directions of other laws."""
         force, slip = self.forces @ PLANE, self.slips @ PLANE
         if law.shape == CONE:
             return np.asarray(force / -slip)
@@ -64,7 +64,7 @@ def _short(value: float) -> str:
 
 
 def speed_limit(scales: Scales) -> str:
-    """Return a sentence if bodies lose speed at once, else ""."""
+    """Describe an immediate loss of speed."""
     before, after = scales.speeds[scales.conditions[:, DISC_SPEED] == 0.0].T
     lost = after < KEEPS * before
     if not np.any(lost):
@@ -85,7 +85,7 @@ class Deviation:
 
 
 def deviation(scales: Scales, law: Friction) -> Deviation | None:
-    """Return how the force deviates from ``law`` over the ranges, or None."""
+    """Return how the force deviates from ``law``, or None."""
     ratios = scales.ratios(law)
     keep = np.isfinite(ratios) & (scales.speeds[:, 1] >= KEEPS * scales.speeds[:, 0])
     ratios, conditions, errors = ratios[keep], scales.conditions[keep], scales.errors[keep]
@@ -123,7 +123,7 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
 
 
 def blind(scales: Scales) -> str:
-    """Describe friction that ignores slip along the radius, else return ""."""
+    """Describe friction that ignores slip along the radius."""
     at_rest = scales.conditions[:, DISC_SPEED] == 0.0
     force, slip, radial = ((one @ PLANE)[at_rest] for one in (scales.forces, scales.slips, scales.radial))
     acts, slides = force * np.conj(radial), slip * np.conj(radial)
@@ -134,7 +134,7 @@ def blind(scales: Scales) -> str:
 
 
 def _power(conditions: FloatArray, sizes: FloatArray) -> str:
-    """Describe a force that is a power of mass, load or speed, else return ""."""
+    """Describe a force that is a power of mass, load or speed."""
     if not np.all(sizes > 0.0):
         return ""
     logs = np.log(conditions[:, : SPEED + 1])
@@ -155,11 +155,11 @@ FALLING: dict[str, Curve] = {
     "exp(−(v/V)²)": lambda x: np.exp(-x * x),
     "1/(1 + v/V)": lambda x: 1.0 / (1.0 + x),
 }
-"""Curves over the slip speed v, as functions of v over a constant."""
+"""Curves over the slip speed v."""
 
 
 def _of_speed(conditions: FloatArray, sizes: FloatArray, errors: FloatArray) -> str:
-    """Describe a force that depends on the slip speed alone, else return ""."""
+    """Describe a force that depends on the slip speed alone."""
     allowed = CURVE_FITS * np.maximum(np.abs(sizes), 0.1) * min(1.0, float(np.ptp(sizes))) + DISTINCT * errors
     regularised = {one.name: one.share for one in SMOOTHINGS}
     found = [
@@ -183,7 +183,7 @@ def _of_speed(conditions: FloatArray, sizes: FloatArray, errors: FloatArray) -> 
 def _fit(
     curve: Curve, speeds: FloatArray, sizes: FloatArray, allowed: FloatArray, *, alone: bool
 ) -> tuple[float, float, FloatArray]:
-    """Return misfit, scale and coefficients of a + b·curve(v/scale); a = 0 if ``alone``."""
+    """Return misfit, scale and coefficients of a + b·curve(v/scale)."""
 
     def fit(power: float) -> tuple[float, FloatArray]:
         shape = curve(speeds / 10.0**power)
@@ -198,7 +198,7 @@ def _fit(
 
 
 def _thresholds(conditions: FloatArray, sizes: FloatArray, wrong: NDArray[np.bool_]) -> str:
-    """Describe deviations beyond a threshold of one or several variables, else return ""."""
+    """Describe deviations beyond thresholds of some variables."""
     sides = []
     for name, unit, values in zip(VARIABLES, UNITS, np.abs(conditions).T, strict=True):
         right = values[~wrong & (values > 0.0)]

@@ -14,15 +14,15 @@ from compare.diagnosis.probes import SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
 
-LEAST_DEVIATION = 1e-7  # smallest reported relative deviation of a force or its direction
+LEAST_DEVIATION = 1e-7  # smallest reported relative deviation of a force
 FALLS = 0.3  # order in the step above which a quantity decreases with it
 RESTS = 1e-9  # ratio of speed to sliding speed below which a block is at rest
 
 LEAST_LAG = 1e-6
-"""Smallest reported lag in s, if the force is equally accurate: the slip rotates at about 1 rad/s in the probe."""
+"""Smallest reported lag in s; the slip rotates at about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)  # range of lags that are reported in steps
-LEAST_SHARE = 1e-6  # smallest reported relative deviation of a distance, force or moment
+LEAST_SHARE = 1e-6  # smallest reported relative deviation of other results
 
 ALIKE = 0.1
 """Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
@@ -31,7 +31,7 @@ SAME_DELAY = 0.2  # largest relative difference of equal delays
 CHATTERS = 3.0  # least ratio of velocity to creep of a block that chatters
 
 MOTION, MASS = "Wrong motion", "Wrong mass"
-"""Beginnings of the verdict of an engine whose friction may be right."""
+"""Beginnings of a verdict about other parts than friction."""
 
 
 class Remark(NamedTuple):
@@ -48,7 +48,7 @@ def sentence(text: str) -> str:
 
 
 def size_text(share: float, error: float | None = None) -> str:
-    """Return the ratio ``share`` of a number to the right one in words."""
+    """Return a ratio of two numbers in words."""
     if not 0.5 < share < 2.0:
         return f"{share:.3g} times the right one"
     margin = f" (±{error_text(100.0 * error)} %)" if error is not None else ""
@@ -56,7 +56,7 @@ def size_text(share: float, error: float | None = None) -> str:
 
 
 def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: str) -> Iterator[Remark]:
-    """Yield how friction differs from Coulomb's, over wide ranges and for one block."""
+    """Yield how friction differs from Coulomb's."""
     if scales is not None and (text := blind(scales)):
         yield Remark(sentence(text), True)
     elif law.shape == NOTHING:
@@ -166,7 +166,7 @@ def of_history(history: History, explained: bool, least: float) -> Iterator[Rema
 
 
 def of_support(support: Shares) -> list[Remark]:
-    """Return the wrong forces of the support; an equal factor of all is that of the mass."""
+    """Return the wrong forces of the support, or a wrong mass."""
     off = np.abs(support.shares - 1.0) > np.maximum(DISTINCT * support.errors, LEAST_SHARE)
     farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
     if np.all(off) and farthest and float(np.ptp(support.shares)) < ALIKE * abs(1.0 / farthest - 1.0):
@@ -219,7 +219,7 @@ def of_lag(lag: Lag, step: float, least: float) -> Iterator[Remark]:
 
 
 def of_motions(motions: dict[str, Motion], refined: str) -> Iterator[Remark]:
-    """Yield the order of the errors, and the motions that do not converge to the exact one."""
+    """Yield the order of the errors, and motions that do not converge."""
     others = {name: motion for name, motion in motions.items() if not motion.converges}
     orders = [motion.order for name, motion in motions.items() if name not in others and motion.order > FALLS]
     if orders:

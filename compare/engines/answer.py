@@ -14,9 +14,9 @@ from reference_model.trajectory import Phase, Trajectory
 PHASES = ("slip", "pivot", "stick")
 
 TIME_ROUNDING = 1e-12
-"""Largest relative difference between times of one grid that were summed in different order."""
+"""Largest relative rounding error of times."""
 
-REAL = "fiu"  # NumPy's kinds of real numbers
+REAL = "fiu"
 
 
 class BadTrajectoryError(RuntimeError):

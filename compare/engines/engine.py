@@ -33,7 +33,7 @@ EVERY_KIND = tuple(KINDS)
 
 
 LEAST_STEP = 1e-9
-"""Shortest fixed step in s: the studies' motions, 10 s and more, would take over 10¹⁰ steps."""
+"""Shortest fixed step in s."""
 
 COARSE_STEP = 30.0
 """Coarseness of a fixed step, see ``StatesOnly``; a contact stuck along tangents creeps at ωh/2 of its speed."""
@@ -61,15 +61,13 @@ class UnsupportedSystemError(ValueError):
 class Engine:
     """An engine's name, its ``simulate``, and its capabilities.
 
-    - ``name``: name on the command line.
     - ``function``: the engine's ``simulate``; a function of an importable module if several processes are to use it.
-    - ``kinds``: systems that ``function`` simulates: "block" (a pin on a disc at rest), "pin" (includes blocks),
-      "points" (a disc on single points), "ring" (a disc on the continuous ring).
+    - ``kinds``: systems that it simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
+      disc on single points), "ring" (a disc on the continuous ring).
     - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds
       no stick, and which do not start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
-    - ``phases``: True if its trajectories contain the stick phases. Otherwise, and for a trajectory without phases,
-      stick is found from the states, see ``compare.engines.stick``.
+    - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
     - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for
       single precision, see ``compare.engines.precision``.
     - ``step``: step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function``
@@ -78,7 +76,6 @@ class Engine:
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
     - ``contact_only``: True if it shares everything except the contact with its kin. Unless it is requested by name,
       it is then measured only in studies of the contact, see ``Study.contact``.
-    - ``version``: the engine's own version.
     - ``about``: one or two sentences for readers of the report.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
@@ -192,8 +189,6 @@ class Engine:
     def _seen(
         self, answer: object, system: System, initial_state: ArrayLike, times: ArrayLike, tolerance: float
     ) -> Trajectory:
-        """Return the checked ``answer``, with noise of the engine's precision and with stick phases."""
-
         def looked_at(answer: object, times: ArrayLike) -> Trajectory:
             found = checked(answer, system, times)
             if self.precision == 0.0:
@@ -232,7 +227,7 @@ class Engine:
         return kind in self.kinds or (kind == "block" and "pin" in self.kinds)
 
     def lacking(self, systems: Iterable[System]) -> str:
-        """Return a sentence with the kinds of ``systems`` that the engine does not simulate, or ""."""
+        """Return a sentence with the kinds of ``systems`` that are not simulated, or ""."""
         words = dict.fromkeys(
             KINDS[kind_of(system)] + (" on a nonlinear support" if self._promises(kind_of(system)) else "")
             for system in systems

@@ -94,9 +94,8 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or by default all registered engines except those on request.
 
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Names may also be
-    "module:function", which may be in the current folder; "exec:COMMAND", see ``compare.engines.outside``; and an
-    entry point "friction_discs.engines" of an installed package. Raises ``ValueError`` if a name is unknown or cannot
-    be imported.
+    "module:function", which may be in the current folder; "exec:COMMAND"; and an entry point "friction_discs.engines"
+    of an installed package. Raises ``ValueError`` if a name is unknown or cannot be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(
@@ -201,8 +200,6 @@ def imported(name: str, place: str) -> Engine:
         attributes = ", ".join(f"{key} = {value!r}" for key, value in declared.items())
         raise ValueError(f"engine {name!r}, attribute {attributes}: {error}") from None
 
-
-# --- Engines of this project.
 
 _simulate_reference = ByName("reference_model", "simulate")
 

@@ -23,10 +23,10 @@ PER_PERIOD = 64  # samples per period or revolution, whichever is shorter
 MOST = 20_000  # largest number of samples before refinement
 
 REST = 1e-2
-"""Slip, relative to the largest speed of the motion, below which a body may stick; refinement lowers it."""
+"""Slip over the largest speed of the motion, below which a body may stick; refinement lowers it."""
 
 CREEP = 3e-4
-"""Largest creep in stick, relative to the largest speed of the motion, at a tolerance of 1e-9.
+"""Largest creep in stick over the largest speed of the motion, at a tolerance of 1e-9.
 
 It is proportional to the tolerance, up to ``REST``.
 """
@@ -35,7 +35,7 @@ CLOSER = 64  # factor between sample densities, and between levels of slip, of s
 LOOKS = 3
 
 LEAST = 1e-7
-"""Least slip for extrapolation, relative to the largest speed of the motion, at a tolerance of 1e-9.
+"""Least slip for extrapolation over the largest speed of the motion, at a tolerance of 1e-9.
 
 It is proportional to the root of the tolerance, so that error estimates include the extrapolation.
 """
@@ -59,8 +59,8 @@ FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
-    ``ask`` returns the states of the same motion at any times from ``told.times[0]`` on. ``coarseness`` is the
-    engine's tolerance as a multiple of 1e-9.
+    ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance over
+    1e-9.
     """
 
     def __init__(
@@ -84,9 +84,9 @@ class StatesOnly(Trajectory):
 
 @dataclass
 class _Span:
-    """A time span from sample ``first`` to sample ``last``, in s, with slip below ``level`` in m/s.
+    """A time span from sample ``first`` to ``last``, in s, with slip below ``level`` in m/s.
 
-    Its begin and end are extrapolated from slip above the level by polynomials of this ``degree``.
+    Polynomials of this ``degree`` extrapolate its begin and end from slip above the level.
     """
 
     first: float
@@ -96,8 +96,6 @@ class _Span:
 
 
 class _Samples:
-    """States and slip speeds of a motion at a growing set of times."""
-
     def __init__(
         self, system: System, ask: Callable[[FloatArray], FloatArray], coarseness: float, precision: float
     ) -> None:
@@ -161,7 +159,7 @@ class _Samples:
         self.slip = slip_of(Trajectory(self.system, self.times, self.states))
 
     def _where_it_may_rest_between(self) -> FloatArray:
-        """Return times around minima of slip that may reach zero between samples, judging by the adjacent slopes."""
+        """Return times around minima of slip that may reach zero between samples."""
         slip, steps = self.slip, np.abs(np.diff(self.slip))
         beside = np.concatenate(([np.inf], slip, [np.inf]))
         lowest = np.flatnonzero((slip <= beside[:-2]) & (slip < beside[2:]))
@@ -183,7 +181,7 @@ class _Samples:
         ]
 
     def _places(self, span: _Span) -> tuple[int, int]:
-        """Return the indices of the first and last sample of a span, which later samples may have extended."""
+        """Return the indices of the first and last sample of a span, which may have grown."""
         first, last = (int(i) for i in np.searchsorted(self.times, (span.first, span.last)))
         while first > 0 and self.slip[first - 1] <= span.level:
             first -= 1
@@ -208,7 +206,6 @@ class _Samples:
         return [span] if level >= span.level else self._spans(level, first, last + 1)
 
     def _quantile(self, begin: float, end: float, share: float) -> float:
-        """Return a quantile, over time, of the slip from ``begin`` to ``end``."""
         evenly = np.linspace(begin, end, 4 * CLOSER + 1)
         return float(np.quantile(np.interp(evenly, self.times, self.slip), share))
 
@@ -230,7 +227,6 @@ class _Samples:
         return _joined(np.linspace(self.times[i], self.times[j], CLOSER + 1) for i, j in flanks)
 
     def _begin(self, span: _Span) -> float:
-        """Return the time of zero slip before the span."""
         first, _ = self._places(span)
         if first == 0:
             return float(self.times[0])
@@ -238,7 +234,6 @@ class _Samples:
         return min(max(time, nearest), span.last)
 
     def _end(self, span: _Span) -> float:
-        """Return the time of zero slip after the span."""
         _, last = self._places(span)
         if last == len(self.times) - 1:
             return float(self.times[-1])
@@ -250,8 +245,8 @@ class _Samples:
 
         The level is the geometric mean of the creep and of ``REST``. If friction is regularised over ε, creep grows
         before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. If the level
-        jumped with the samples, or the error of a parabola (late) cancelled that of creep (early), the error would
-        not fall with the step as the error estimate assumes. A cubic has a smaller error.
+        jumped with the samples, the error would not fall with the step as the error estimate assumes. A cubic has a
+        smaller error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]

@@ -1,8 +1,7 @@
 """Motions in other units: equal to the requested ones in dimensionless form, with other parameters.
 
-The studies' masses are mostly 1 kg and their speeds below 2 m/s; an engine may be wrong at all others. In other units
-the same claims test it there. The units are powers of two, so an engine without absolute constants returns the same
-digits.
+The studies' masses are mostly 1 kg and their speeds below 2 m/s; an engine may be wrong at all others. The units are
+powers of two, so an engine without absolute constants returns the same digits.
 """
 
 from __future__ import annotations

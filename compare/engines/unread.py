@@ -13,7 +13,7 @@ from reference_model.systems import System
 NONLINEAR = {"hardening": ("hardening",), "stop_stiffness": ("stop_stiffness", "stop_gap")}
 """Parameters of nonlinear supports. An engine knows one if it reads any of the listed names.
 
-An engine may read the stiffness of a stop only during contact, so reading the gap is sufficient.
+It may read the stiffness of a stop only during contact, so reading the gap is sufficient.
 """
 
 SHORT = 1e-3  # duration of the motion in s

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import IO, Any
 
 PART = ".part"
-"""Suffix of a file that is being written."""
 
 
 @contextmanager

@@ -181,7 +181,6 @@ def _joined(sentences: Sequence[str]) -> str:
 
 
 def _share(setting: Recorded) -> float:
-    """Return the largest error of agreeing motions over the change due to another friction law."""
     return max(
         (
             float(max(claim.difference.max(), claim.budget.total.max()))

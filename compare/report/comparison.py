@@ -24,7 +24,7 @@ Key: TypeAlias = "tuple[str, str]"
 
 
 class Kind(Enum):
-    """Kind of a change; unknown changes in ``BAD`` make the comparison fail."""
+    """Kind of a change; those in ``BAD`` make the comparison fail unless they are known."""
 
     WORSE = "worse"
     MOVED = "moved"

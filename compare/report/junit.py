@@ -72,7 +72,6 @@ def _numbers(claim: Claim) -> dict[str, str]:
 
 
 def _share_time(suite: ET.Element, run: Run, study: str) -> None:
-    """Divide the time of a study equally among its cases."""
     cases: dict[str, list[ET.Element]] = {}
     for case in suite.iter("testcase"):
         cases.setdefault(case.get("classname", ""), []).append(case)

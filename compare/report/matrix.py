@@ -63,13 +63,10 @@ WORST_FIRST = (
 
 @dataclass(frozen=True)
 class Cell:
-    """One engine's answer to one claim.
+    """One engine's answer to one claim: the worst state of usually one claim.
 
-    - ``state``: worst state of the claims.
-    - ``claims``: usually one; several if the study makes the same claim for several parameters.
-    - ``reason``: reason for a missing verdict.
-    - ``evidence``: kind of evidence; "" without a verdict.
-    - ``implied_by``: claim that implies this verdict, or engine whose verdict on the same claim implies it.
+    ``reason`` is that of a missing verdict, ``evidence`` the kind of evidence, "" without a verdict. ``implied_by``
+    is the claim that implies this verdict, or the engine whose verdict on the same claim implies it.
     """
 
     state: State
@@ -124,7 +121,7 @@ class Row:
 
 @dataclass(frozen=True)
 class RecordedMatrix:
-    """Recorded verdicts of engines on the claims of one study, a row for each of ``settings``."""
+    """Recorded verdicts on the claims of one study, a row for each of ``settings``."""
 
     study: Study
     settings: tuple[Recorded, ...]
@@ -139,7 +136,7 @@ class RecordedMatrix:
 
     @property
     def adapters(self) -> dict[str, Path]:
-        """Existing source files of the engines' adapters by their paths in the report."""
+        """Source files of the engines' adapters by their paths in the report."""
         found = {
             f"adapters/{Path(one.adapter).name}.txt": ROOT / one.adapter
             for one in self.settings
@@ -199,7 +196,7 @@ class Matrix:
         return tuple(row.cells[column] for row in self.rows if column in row.cells)
 
     def count(self, column: str) -> Counter[State]:
-        """Return the number of cells of the column in each state."""
+        """Return the number of cells in each state."""
         return Counter(cell.state for cell in self.column(column))
 
     @property
@@ -310,7 +307,7 @@ def evidence_of(claim: Claim) -> Evidence:
     """Return the kind of evidence of an agreement that no other verdict implies."""
     if claim.basis != "reference":
         return claim.basis
-    # The theory takes its predictions from the reference.
+    # The theory's predictions are the reference's.
     same = claim.engine == THEORY or shares_code(claim.engine, "reference")
     return "self-check" if same else "independent"
 

@@ -13,7 +13,6 @@ from compare.claims.claim import Claim, Verdict
 MINUS = "\N{MINUS SIGN}"
 
 MOST_DIGITS = 12
-"""Largest number of digits of a result."""
 
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
@@ -130,7 +129,7 @@ def _name(claim: Claim, index: int) -> str:
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:
-    """Return the claim nearest to failing, or the least certain one, of ``claims`` with the same verdict."""
+    """Return the claim nearest to failing, or the least certain one, of claims with the same verdict."""
 
     def weight(claim: Claim) -> float:
         element = worst(claim)

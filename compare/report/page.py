@@ -26,7 +26,6 @@ from compare.run.workers import Failure
 from reference_model.systems import UNITS
 
 HERO = "drivetrain-picture"
-"""Figure on the first screen, if it was drawn."""
 
 
 def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
@@ -167,7 +166,6 @@ def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
 
 
 def _particular(row: Row, claim: Claim) -> str:
-    """Return the parameters of a claim that other claims of its row do not share."""
     shared = _shared_parameters(row.claims)
     return _parameters({name: value for name, value in claim.parameters.items() if name not in shared})
 
@@ -190,7 +188,6 @@ def _shared_parameters(claims: tuple[Claim, ...]) -> dict[str, Any]:
 
 
 def _by_engine(row: Row, attribute: str) -> list[str]:
-    """Return the distinct texts, with the names of their engines if there are several."""
     texts: dict[str, list[str]] = {}
     for claim in row.claims:
         text = getattr(claim, attribute)
@@ -210,7 +207,7 @@ def _parameters(parameters: Mapping[str, Any]) -> str:
 
 
 def _is_answered(study: Study, own: Matrix) -> bool:
-    """Return whether a study's finding may be shown: its claims agree, and all of its numbers were measured."""
+    """Return whether a study's finding may be shown: its claims agree, and its numbers were measured."""
     return (
         bool(study.prose.finding)
         and own.agrees
@@ -249,7 +246,6 @@ def _origin(quote: quotes.Quote) -> str:
 
 
 def _pictures(run: Run, study: Study) -> list[tuple[str, str]]:
-    """Return name and suffix of the study's pictures in the order of their captions."""
     drawing = run.drawings.get(study.name)
     if not isinstance(drawing, Drawing):
         return []

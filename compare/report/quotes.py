@@ -35,7 +35,6 @@ Nature = Literal["count", "measured", "error"]
 MISSING = "(not measured)"
 
 UNITS = {"%": 100.0, "mm": 1e3, "rpm": 30.0 / math.pi, "turns": 0.5 / math.pi}
-"""Factors from units of claims to units of texts."""
 
 
 @dataclass(frozen=True)

@@ -57,7 +57,7 @@ COLUMNS = (
 """Columns of a table; ``element`` counts from 0, ``place`` describes it."""
 
 LARGE = 32_768
-"""Size in bytes above which a table is compressed."""
+"""In bytes; larger tables are compressed."""
 
 
 def tables(matrix: Matrix) -> dict[str, tuple[str, bytes]]:
@@ -111,7 +111,6 @@ def with_arrays(results: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _axes(rows: list[dict[str, str]], claim: Mapping[str, Any]) -> list[list[str]]:
-    """Return the names along the last axis if units are mixed, else []."""
     if "," not in claim["unit"]:
         return []
     return [[]] * (len(claim["shape"]) - 1) + [[row["place"] for row in rows[: claim["shape"][-1]]]]

@@ -19,10 +19,7 @@ NO_CLAIM = "-"
 
 
 class Bench:
-    """Measures one claim at a time, within the time that the other claims of its study leave.
-
-    The quick level does not attempt a claim that would take too long.
-    """
+    """Measures one claim at a time, within the time that the other claims of its study leave."""
 
     def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
         self.seed = seed
@@ -57,7 +54,7 @@ class Bench:
         return Findings(not_simulated=longer) if out_of_time and self._quick else found
 
     def _pace_of(self, engine: str) -> float:
-        """Return the wall-clock time for a second of motion, 0 without a fixed step or a result."""
+        """Return the time for a second of motion, 0 without a fixed step or a result."""
         if engine not in self._pace:
             found = self._ask(self._limit + START_UP, engine, pace, engine)
             self._pace[engine] = found if isinstance(found, float) else 0.0

@@ -144,7 +144,6 @@ def _found(package: str, folder: str) -> ModuleSpec | None:
 # --- Digest of all that results depend on: sources, the engine's own files, versions of libraries, type of machine.
 
 SOURCES = {".py", ".c", ".h", ".json", ".csv"}
-"""Suffixes of the project's code and of its data."""
 
 DRAWING_LIBRARIES = ("matplotlib", "pillow")
 

@@ -37,11 +37,10 @@ class Run:
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
     - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
     - ``about``, ``versions``: descriptions and versions of the engines.
-    - ``errata``: errata whose evidence was requested.
     - ``outcomes``: findings or failure for each finished (study, engine or "theory").
     - ``seconds``: duration of each measurement in s.
     - ``drawings``: drawing or failure for each study.
-    - ``evidence``: evidence or failure for each erratum, by its index in ``errata``.
+    - ``evidence``: evidence or failure for each of the requested ``errata``, by index.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
     - ``interrupted``: True if Ctrl-C ended the run early.
     """
@@ -106,10 +105,10 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Findings and drawings are written as they arrive; drawings of equal data are reused. ``jobs`` is the number of
-    processes. A piece of work that takes longer than ``limit`` (s) fails. ``resume`` reuses findings with the same
-    digest of code and libraries. ``expected`` are the durations of an earlier run. ``progress`` is called whenever a
-    piece of work begins or ends. After Ctrl-C the results are incomplete, with ``interrupted`` set.
+    Findings and drawings are written as they arrive; drawings of equal data are reused. A piece of work that takes
+    longer than ``limit`` (s) fails. ``resume`` reuses findings with the same digest of code and libraries.
+    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete, with ``interrupted``
+    set.
     """
     result = Run(
         studies,
@@ -132,8 +131,6 @@ def run(
 
 @dataclass
 class _Runner:
-    """Scheduler of the measurements, and of each study's drawing after its last one."""
-
     result: Run
     workers: Workers
     jobs: int
@@ -291,7 +288,7 @@ def _loaded(name: str, workers: Workers) -> Engine:
 
 
 def _described(name: str) -> Engine | str:
-    """Return the engine, without references to its module, or the message of its ``ValueError``."""
+    """Return the engine, without references to its module, or the message of a ``ValueError``."""
     try:
         return engines([name])[0]
     except ValueError as error:

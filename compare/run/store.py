@@ -33,7 +33,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class _Archives:
-    """A folder, made with its first archive, with an archive for each finished piece of work."""
+    """A folder with an archive for each finished piece of work."""
 
     folder: Path
 
@@ -48,7 +48,6 @@ class _Archives:
     def _find(
         self, key: tuple[str, ...], stamp: str | None, restored: Callable[[dict[str, bytes]], Value | None]
     ) -> Value | None:
-        """Return ``restored(contents)``; None if the archive is missing, damaged or has another stamp."""
         try:
             with ZipFile(self._path(key)) as archive:
                 paths = archive.namelist()

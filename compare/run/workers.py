@@ -40,13 +40,11 @@ MOST_ERRORS = 100_000
 """Largest number of characters of standard error that are forwarded at once."""
 
 NO_MEMORY = ("failed to map segment", "annot allocate memory")
-"""Messages of the loader of shared libraries without memory."""
 
 FAREWELL = 1.0
 """Longest wait in s for the exit code of a process whose connection has closed."""
 
 TICK = 0.005
-"""Interval in s between checks of the exit code."""
 
 
 @dataclass(frozen=True)
@@ -86,11 +84,10 @@ class _Work:
 
 
 class Workers:
-    """A pool of at most ``jobs`` processes, used as a context manager.
+    """A pool of at most ``jobs`` processes, used as a context manager; leaving it kills all processes.
 
     A piece of work that takes longer than ``limit`` (s) fails. The limit may change while no work is pending.
-    ``watch`` is called with the keys of the running work when they may have changed. Leaving the context kills all
-    processes.
+    ``watch`` is called with the keys of the running work when they may have changed.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -167,7 +164,7 @@ class Workers:
             worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
-        """Wait for the first result or time limit, and yield all results and timeouts up to then."""
+        """Wait for the first result or time limit, and yield all up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
         left = None
         if self.limit is not None and busy:
@@ -293,7 +290,6 @@ class _Errors:
 
 
 def _serve(connection: Connection) -> None:
-    """Process work until the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # not inherited on Windows
     if hasattr(os, "setsid"):
         os.setsid()  # signals to the group of an engine's process stay there
@@ -320,7 +316,6 @@ def _serve(connection: Connection) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when its parent process has ended."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         wait([parent.sentinel])

@@ -5,7 +5,7 @@ Their stores need the extra ``sweep``; without it, importing this package raises
 
 from importlib.util import find_spec
 
-NEEDED = ("fsspec", "xarray", "zarr")  # packages of the extra ``sweep``
+NEEDED = ("fsspec", "xarray", "zarr")
 EXTRA = "friction-discs[sweep]"
 
 if _missing := [name for name in NEEDED if find_spec(name) is None]:

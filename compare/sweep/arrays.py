@@ -35,7 +35,7 @@ CHAINS = [[first, "blosc", "crc32c"] for first in ("bytes", "vlen-utf8")]
 """Allowed data types with their codecs."""
 
 MISSING = {"f8": -np.inf, "u1": 255, "i8": -1}
-"""Fill values by type; no result has such a value, because Zarr may omit a piece that contains nothing else."""
+"""Fill values by type; no result has them, because Zarr may omit a piece that contains nothing else."""
 
 CHECKSUM = "checksum"
 
@@ -54,8 +54,7 @@ class Large(NamedTuple):
 class Group:
     """A group of a store, which any process may open.
 
-    ``description`` is the digest of the store's description, because another machine may have another store at that
-    path.
+    ``description`` is the digest of the store's description; another machine may have another store at that path.
     """
 
     files: Files
@@ -116,7 +115,7 @@ class Group:
         return found
 
     def seal(self) -> None:
-        """Write the checksum of all descriptions, which makes the group valid."""
+        """Write the checksum that makes the group valid."""
         self.files.write({f"{self.name}/{DESCRIPTION}": _seal(self._described())})
 
     def is_intact(self, names: Sequence[str] = ()) -> bool | None:
@@ -141,7 +140,7 @@ class Group:
         )
 
     def can_read(self, name: str, where: slice) -> bool:
-        """Return whether a part of an array can be read and has the right checksums."""
+        """Return whether a part of an array is intact."""
         try:
             self.array(name)[where]
         except MemoryError:

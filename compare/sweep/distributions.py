@@ -20,7 +20,7 @@ LEAST_UNIFORM = 2.0**-54
 
 
 class _Kind(NamedTuple):
-    """Names and conditions of a distribution's numbers, and the function that makes it with ``scipy.stats``."""
+    """Names and conditions of a distribution's numbers, and its function."""
 
     arguments: tuple[str, ...]
     allowed: str

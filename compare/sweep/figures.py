@@ -45,7 +45,7 @@ MOST_PIXELS = 2000
 MOST_DOTS = 20_000
 
 MOST_DRAWS = 1 << 20
-"""Largest number of draws in the distribution of a radius; the first draws are a random sample."""
+"""Largest number of draws in the distribution of a radius."""
 
 BINS = 60
 
@@ -70,7 +70,7 @@ def write_figures(store: SweepStore, folder: Files) -> tuple[str, ...]:
 
 
 def figures(plan: Plan, result: xr.Dataset, theory: xr.Dataset | None) -> dict[str, Figure]:
-    """Return the figures of a sweep by name; ``theory`` contains the results of formulas."""
+    """Return the figures of a sweep by name; ``theory`` contains results of formulas."""
     draw: dict[type[Plan], Callable[..., Figure]] = {
         Basin: basin,
         RandomBasin: random_basin,
@@ -148,7 +148,7 @@ def in_words(end: int) -> str:
 
 
 def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
-    """Draw ends, largest radius, modulation and slip power with the theory's curves, in a row for each start."""
+    """Draw ends, largest radius, modulation and slip power with the theory's curves."""
     figure, panels = new_figure(ncols=4, nrows=len(plan.starts), width=18.0, height=4.4 * len(plan.starts))
     shown = (
         ("largest_radius", "largest radius in m"),
@@ -175,7 +175,7 @@ def parameter_map(plan: Map, result: xr.Dataset, curves: xr.Dataset) -> Figure:
 
 
 def draw_curves(axes: Axes, plan: Map, curves: xr.Dataset) -> None:
-    """Draw the theory's curves with a dash pattern for each meaning and white outlines."""
+    """Draw the theory's curves with dashes and white outlines."""
     from matplotlib.patheffects import withStroke
 
     meanings = [str(meaning) for meaning in curves["curve"].values]
@@ -236,7 +236,7 @@ def uncertainty(plan: Uncertainty, result: xr.Dataset) -> Figure:
 
 
 def continuation(plan: Continuation, result: xr.Dataset, branches: xr.Dataset) -> Figure:
-    """Draw the shares of the motions, and their radii with those of formulas and continuation."""
+    """Draw the shares and radii of the motions, with those of the theory."""
     figure, (left, right) = new_figure(ncols=2, width=12.5, height=4.8)
     values = plan.x.values
     for j, end in enumerate(result["motion_end"].values):

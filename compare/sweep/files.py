@@ -134,7 +134,7 @@ def is_remote(place: str | Path) -> bool:
 
 @contextmanager
 def store_errors(url: str, action: str = "write to") -> Iterator[None]:
-    """Turn any exception of a file system into ``StoreError``, except ``FileExistsError`` and ``MemoryError``."""
+    """Turn exceptions of a file system into ``StoreError``, except ``FileExistsError`` and ``MemoryError``."""
     try:
         yield
     except (FileExistsError, MemoryError, StoreError):
@@ -150,7 +150,7 @@ PARTIAL = ".partial"  # suffix of files that Zarr left when its process was kill
 
 
 def pack(folder: Path, archive: Path) -> None:
-    """Write all files of a store to an archive, which is never incomplete."""
+    """Write a store to an archive, which is never incomplete."""
     with replacing(archive, "wb") as stream, ZipFile(stream, "w") as content:  # pieces are already compressed
         for path in sorted(folder.rglob("*")):
             if path.is_file() and path.suffix != PARTIAL:

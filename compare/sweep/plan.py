@@ -1,7 +1,6 @@
 """Plans of sweeps: initial state and parameters of each trajectory by its number.
 
-A plan can be sent to other processes and written as JSON. A refined basin has a round of trajectories for each step
-of the refinement; other plans have one round.
+A refined basin has a round of trajectories for each step of the refinement; other plans have one round.
 """
 
 from __future__ import annotations
@@ -139,8 +138,8 @@ class Uncertainty(Plan):
     """Random parameters and starts in the design for Sobol indices by Saltelli et al. (2010).
 
     Each of the ``samples`` rows contains two independent draws A and B and, for each quantity in ``varied``, a
-    mixture with this quantity from B and the others from A. Trajectories are numbered row·(2 + quantities) + position
-    in the row.
+    mixture: this quantity from B, the others from A. Trajectories are numbered row·(2 + quantities) + position in the
+    row.
     """
 
     kind = "uncertainty"
@@ -219,7 +218,7 @@ def plan_as_json(plan: Plan) -> dict[str, Any]:
 
 
 def plan_from_json(content: Mapping[str, Any]) -> Plan:
-    """Return the plan of ``plan_as_json``; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
+    """Return the plan; raise ``KeyError``, ``TypeError`` or ``ValueError`` if it is invalid."""
     values = dict(content)
     return from_json(PLANS[values.pop("kind")], values)
 

@@ -3,8 +3,7 @@
 A cell of the coarse grid is mixed if its corners end differently. Mixed cells are halved and their new points
 simulated; new points of other cells are assumed to end like the corners. If this is wrong, the boundary continues
 into a mixed cell with corners that were not simulated. They are simulated until no such cell remains, so *all corners
-of every mixed cell of the finest grid were simulated*. Structures entirely between points of the coarse grid are not
-detected.
+of every mixed cell of the finest grid were simulated*. Structures between points of the coarse grid are not detected.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ class Grid:
         return self.numbers(lines, corner & ~self.simulated[np.ix_(*lines)])
 
     def halved(self, lines: Lines, finer: Lines) -> IntArray:
-        """Return the new points of mixed cells; give other new points the ends of their corners."""
+        """Return the new points of mixed cells; give others the ends of their corners."""
         coarse = self.ends[np.ix_(*lines)]
         cells = mixed(coarse)
         # A point on a line belongs to the cells on both sides of it.

@@ -3,8 +3,8 @@
 - ``round-0``, ``round-1``, ...: trajectories, written region by region (:mod:`compare.sweep.arrays`).
 - ``check``, ``result``, ``curves``, ``branches``: written after all chunks.
 
-A group is valid once it is sealed. Attributes contain the plan, the digest of the code and their checksum. Damaged
-groups and chunks are recomputed. A small finished store in a local folder becomes one file.
+A group is valid once it is sealed. Damaged groups and chunks are recomputed. A small finished store in a local folder
+becomes one file.
 """
 
 from __future__ import annotations
@@ -116,7 +116,7 @@ class SweepStore:
                 pack(Path(self.files.url), archive)
 
     def tidy(self) -> None:
-        """Remove the folders of a packed store, which makes this object useless."""
+        """Remove the folders of a packed store, which ends the use of this object."""
         archive = archive_of(self._place)
         if archive is not None and archive.exists():
             shutil.rmtree(self._place, ignore_errors=True)
@@ -132,7 +132,7 @@ class SweepStore:
         return Round(Chunks(group, len(numbers), self.chunk), numbers)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
-        """Return round ``i`` of the trajectories ``numbers``, None if it is missing or damaged."""
+        """Return round ``i`` of the trajectories ``numbers``, or None without an intact one."""
         group = self._group(ROUND.format(i))
         if not self._is_intact(group, f"the description of {group.name}", ["component"]):
             return None
@@ -166,12 +166,12 @@ class SweepStore:
         self._whole.add(group.name)
 
     def get(self, name: str) -> xr.Dataset | None:
-        """Return an intact group, None if it is missing or damaged."""
+        """Return an intact group, or None."""
         group = self._group(name)
         return group.dataset() if self._is_intact(group, name) else None
 
     def finished(self, name: str) -> xr.Dataset:
-        """Return an intact group; raise ``ValueError`` if it is missing or damaged."""
+        """Return an intact group; raise ``ValueError`` without one."""
         group = self.get(name)
         if group is None:
             raise ValueError(

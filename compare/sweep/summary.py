@@ -44,7 +44,7 @@ def summary(store: SweepStore) -> Iterator[str]:
 
 
 def same_ends(store: SweepStore) -> bool:
-    """Return whether no trajectory of the random sample ended differently with the plain reference."""
+    """Return whether the plain reference confirms all ends of the random sample."""
     return not np.any(_differing(store.finished(CHECK)))
 
 

@@ -1,8 +1,7 @@
 """A dry clutch in its drivetrain, built of public parts: the paper's disc between an engine and a vehicle.
 
 Engine and flywheel press on both facings of the clutch disc. The disc sits on the gearbox's input shaft, which is
-radially elastic and may be offset from the engine's axis. A torsional spring and damper connect the disc to the
-gearbox and the vehicle.
+radially elastic and may be offset. A torsional spring and damper connect the disc to the gearbox and the vehicle.
 """
 
 from __future__ import annotations
@@ -37,17 +36,8 @@ ANGLE, SPEED = exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordi
 class DrivetrainMotion:
     """The motion of a drivetrain; all arrays of shape (n,) or, for the disc, (n, 3).
 
-    Parameters
-    ----------
-    times : array
-        Times in s.
-    engine_angle, engine_speed, vehicle_angle, vehicle_speed : array
-        Angles in rad and speeds in rad/s.
-    disc, disc_velocity : array
-        x, y in m and the angle in rad; their rates in m/s and rad/s.
-    energy
-        Energy balance at the same times.
-
+    ``times`` are in s, angles in rad and speeds in rad/s. ``disc`` contains x, y in m and the angle in rad,
+    ``disc_velocity`` their rates. ``energy`` is the energy balance at the same times.
     """
 
     times: FloatArray
@@ -69,10 +59,9 @@ class DrivetrainMotion:
 class DrivetrainModel:
     """A drivetrain in Exudyn, assembled.
 
-    ``container`` owns ``mbs`` and must live as long. ``engine``, ``disc`` and ``vehicle`` are the nodes of the
-    bodies, and ``sensors`` record their coordinates and velocities. ``friction`` is the clutch, which
-    ``friction.change(normal_load=...)`` engages. ``support`` holds the disc on its shaft. ``balance`` returns the
-    energy balance after a run.
+    ``container`` owns ``mbs`` and must live as long. ``engine``, ``disc`` and ``vehicle`` are nodes, whose
+    coordinates and velocities the ``sensors`` record. ``friction.change(normal_load=...)`` engages the clutch.
+    ``support`` holds the disc on its shaft. ``balance`` returns the energy balance after a run.
     """
 
     container: Any
@@ -95,8 +84,8 @@ class DrivetrainModel:
     ) -> DrivetrainMotion:
         """Return the motion from the start to ``until`` (s), sampled every ``sample_every`` s.
 
-        It is computed by DOPRI5 with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad,
-        m/s, rad/s and ``ENERGY_UNIT``. Raises ``SimulationError`` if Exudyn fails or a state is not finite.
+        DOPRI5 computes it with steps up to ``largest_step`` (s) and the local error ``tolerance`` in m, rad, m/s,
+        rad/s and ``ENERGY_UNIT``. Raises ``SimulationError`` if Exudyn fails or a state is not finite.
         """
         settings = exu.SimulationSettings()
         settings.solution.file.write = False
@@ -137,8 +126,8 @@ def build_drivetrain(
 ) -> DrivetrainModel:
     """Build a drivetrain whose disc initially turns with the gearbox about the shaft's axis.
 
-    ``normal_load`` is that of ``add_ring_friction``; all facings carry it. ``regularisation`` is ε > 0 in m/s. The
-    initial speeds are in rad/s, and ``shaft_torque``, in N m, is the initial torque of the torsional spring. Raises
+    ``normal_load`` is that of ``add_ring_friction``; all facings carry it. ``regularisation`` is ε > 0 in m/s.
+    Initial speeds are in rad/s, and ``shaft_torque``, in N m, is the initial torque of the torsional spring. Raises
     ``ValueError`` if a number is out of range.
     """
     container = exu.SystemContainer()

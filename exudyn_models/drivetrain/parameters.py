@@ -121,15 +121,15 @@ PASSENGER_CAR = Drivetrain(
 - Torsional spring: 17 N m per degree.
 - Radial support, assumed: a steel shaft of 18 mm over a free length of 0.31 m, which gives a natural frequency of
   2865 rpm; 5 % of critical damping; 0.5 mm clearance in the pilot bearing; 0.2 mm between the axes; an unbalance of
-  18 g mm. The radial mode of clutch discs can become unstable in engagement: Proceedings of the IMechE, Part C
-  (2020), doi 10.1177/0954406220927065.
+  18 g mm. The radial mode can become unstable in engagement: Proceedings of the IMechE, Part C (2020), doi
+  10.1177/0954406220927065.
 """
 
 
 def four_cylinder(mean: float, ripple: float) -> Torque:
-    """Return the torque of a four-stroke engine with four cylinders, which fire twice per revolution.
+    """Return the torque T·(1 + r·cos 2θ) of a four-stroke engine with four cylinders.
 
-    It is T·(1 + r·cos 2θ) with the mean T = ``mean`` in N m and ``ripple`` = r.
+    T = ``mean`` is in N m and r = ``ripple``.
     """
     mean, ripple = finite_number("mean", mean), finite_number("ripple", ripple)
     return lambda time, angle, speed: mean * (1.0 + ripple * math.cos(2.0 * angle))

@@ -1,7 +1,6 @@
 """A three-dimensional picture of a drivetrain by Exudyn's ray tracer, which needs no display.
 
-The clutch cover is cut open to show the disc. Radial motion is enlarged, because a tenth of a millimetre would be
-invisible.
+The clutch cover is cut open, and radial motion is enlarged because a tenth of a millimetre would be invisible.
 """
 
 from __future__ import annotations
@@ -31,10 +30,10 @@ IRON, STEEL = (0.40, 0.43, 0.48, 1.0), (0.72, 0.74, 0.78, 1.0)
 LINING, BRASS = (0.80, 0.42, 0.16, 1.0), (0.95, 0.75, 0.25, 1.0)
 
 SHAFT = 0.11
-"""Ratio of the radius of the shaft to that of the disc."""
+"""Radius of the shaft over that of the disc."""
 
 BEARING = 1.5
-"""Ratio of the distance between bearing and disc to the radius of the disc."""
+"""Distance of the bearing over the radius of the disc."""
 
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 """Orientation of the model: engine in the back on the right, gearbox in front on the left."""
@@ -42,7 +41,7 @@ VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 SPRINGS = 6
 
 COVERED = 1.25 * math.pi
-"""Angle in rad of the part of the cover that is drawn."""
+"""Drawn part of the cover in rad."""
 
 
 def draw_drivetrain(
@@ -55,8 +54,8 @@ def draw_drivetrain(
 ) -> Image:
     """Return a picture of flywheel, clutch disc and shaft, shape (height, width, 3).
 
-    ``engine_angle`` is in rad; ``disc`` contains x, y in m and the angle in rad. ``magnification`` multiplies x and
-    y, the offset and the clearance of the shaft. ``size`` is width and height in pixels.
+    ``engine_angle`` is in rad; ``disc`` contains x, y in m and the angle in rad. ``magnification`` multiplies x, y,
+    the offset and the clearance of the shaft. ``size`` is in pixels.
     """
     outer = drivetrain.outer_radius
     x, y, angle = np.asarray(disc, dtype=float).tolist()
@@ -79,10 +78,7 @@ def draw_drivetrain(
 
 @functools.lru_cache(maxsize=4)
 def _parts(drivetrain: Drivetrain, play: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any, Any]:
-    """Return the parts on the engine and on the disc, shaft and bearing, which take most of a picture's time.
-
-    The shaft has its length without tilt.
-    """
+    """Return the parts on the engine and on the disc, shaft and bearing; the shaft has its length without tilt."""
     outer, inner, shaft = drivetrain.outer_radius, drivetrain.inner_radius, SHAFT * drivetrain.outer_radius
     on_engine = (
         _ring(1.25 * outer, play + shaft, -0.3 * outer, -0.04 * outer, IRON),

@@ -50,8 +50,8 @@ Creeping = Callable[[RegularisedContact, list[float]], Part | None]
 class Friction:
     """Friction between two discs, in the units and the axes of a run.
 
-    ``add`` adds it to a model, as ``AddFriction`` describes. ``creeping`` returns the creeping part of the contact,
-    which may be modelled with unlimited viscosity (single points by the argument ``held`` of ``add``).
+    ``add`` adds it to a model. ``creeping`` returns the creeping part of the contact, which may be modelled with
+    unlimited viscosity (single points by the argument ``held`` of ``add``).
     """
 
     add: Callable[..., Any]
@@ -85,8 +85,7 @@ def solve_in_turns(
     """Solve up to the last of ``times``, shape (n,), with ``solver`` in slip and generalised-α in creep.
 
     In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
-    almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep, which is itself
-    the error of the regularisation.
+    almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep.
 
     A creeping part, the whole contact or one of several points, feels only the viscous part of the law. The model
     extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
@@ -112,8 +111,6 @@ def solve_in_turns(
 
 @dataclass(frozen=True)
 class _Turns:
-    """A motion in progress."""
-
     contact: RegularisedContact
     solver: SlipSolver
     friction: Friction
@@ -182,8 +179,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed, or None.
 
-        A release at ``crossing`` needs them, and a load so close to the friction limit that the error of the creep
-        decides whether it exceeds the limit.
+        A release at ``crossing`` needs them, and a load that the error of the creep could push across the friction
+        limit.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -196,7 +193,7 @@ class _Turns:
         return max(int(grazed[0]) - 1, 0) if len(grazed) > 0 else None
 
     def _release_step(self, run: Steps, last: int) -> float:
-        """Return the step that lets a body released after step ``last`` gain only a fraction of ε."""
+        """Return the step that lets a released body gain only a fraction of ε."""
         ratio = self.contact.in_master_axes.slip_ratios(run.states[last : last + 2])[:, WHOLE]
         rate = float(ratio[1] - ratio[0]) / float(run.times[last + 1] - run.times[last])
         return math.sqrt(0.12 * self.contact.relaxation_times[0] / rate) if rate > 0.0 else 0.0
@@ -263,7 +260,7 @@ GRAZING = 1e-6
 """(ωh)² of the steps that decide whether friction can hold a load: its error is 1e-7 of the load."""
 
 REFINEMENT = 16.0
-"""Ratio of the steps before and after a reduction for a release."""
+"""Ratio of steps before and after a reduction for a release."""
 
 PARTS = 16
 """Number of checks in a step close to the end of creep."""
@@ -276,7 +273,7 @@ def _tops(contact: RegularisedContact, run: Steps, above: float) -> NDArray[np.i
 
 
 def _suspects(contact: RegularisedContact, run: Steps) -> FloatArray:
-    """Return possible ends of creep in ``run``: its last time, and those around its maxima near ε."""
+    """Return possible ends of creep in ``run``: its last time, and around maxima near ε."""
     steps = _tops(contact, run, 0.99)
     steps = np.union1d(steps[steps > 0] - 1, steps[steps < len(run.times) - 1])
     inside = run.times[steps, None] + np.diff(run.times)[steps, None] * np.linspace(0.0, 1.0, PARTS + 1)[1:]
@@ -326,7 +323,6 @@ class _Creep:
 
 
 def _pivot_step(contact: RegularisedContact, steps: Steps) -> float:
-    """Return the step for a disc that pivots about a point."""
     system, epsilon = contact.system, contact.epsilon
     ratio = contact.slip_ratios(steps.states[-1:])[0, WHOLE]
     rate = contact.slip_ratio_rates(steps.states[-1], steps.accelerations[-1])[WHOLE]

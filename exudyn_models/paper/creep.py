@@ -17,7 +17,7 @@ WHOLE = 0
 """Column of the contact as a whole; columns of single points follow."""
 
 RELAXATIONS = 40.0
-"""Number of relaxation times until slip has settled to its creep."""
+"""Number of relaxation times until slip has settled."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +42,7 @@ class RegularisedContact:
         """Relaxation times in s of slip below ε towards its creep: the faster and the slower of centre and rim.
 
         The resistance per m/s is μN/ε for a pin, at least half of it for a disc or its rim on a continuous ring, and
-        1/n of it for one resting point of n. The inertia of the rim, J/R², may be far larger than the mass. Without
-        friction both times are infinite.
+        1/n of it for one resting point of n. The inertia of the rim, J/R², may be far larger than the mass.
         """
         system = self.system
         if system.friction_force == 0.0:
@@ -57,7 +56,7 @@ class RegularisedContact:
 
     @property
     def settling_time(self) -> float:
-        """Time in s that slip below ε needs to settle to its creep."""
+        """Time in s that slip below ε needs to settle."""
         return RELAXATIONS * self.relaxation_times[0]
 
     @cached_property
@@ -88,7 +87,7 @@ class RegularisedContact:
         return np.hstack((speeds.mean(axis=1, keepdims=True) / epsilon, speeds / self.point_epsilon))
 
     def slip_ratio_rates(self, state: FloatArray, acceleration: FloatArray) -> FloatArray:
-        """Return the growth rates in 1/s of ``slip_ratios`` for one state, where nothing is at rest."""
+        """Return the growth rates in 1/s of ``slip_ratios`` for one state without rest."""
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         size = len(acceleration)
         z, v, a = (complex(*vector[:2]) for vector in (state, state[size:], acceleration))
@@ -108,8 +107,8 @@ class RegularisedContact:
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
         """Return the load at rest over the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is the viscous friction, P/ε of the limit, plus the forces that change and damp the creep. Along the slip,
-        which is normal to the limit surface, these are the power that goes into both over μN·P.
+        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep over
+        μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)
@@ -126,7 +125,7 @@ class RegularisedContact:
         return np.asarray(ratios + power / limit)
 
     def creeping(self, state: list[float]) -> int | None:
-        """Return the column of ``slip_ratios`` that is below 1, ``WHOLE`` if several are, or None."""
+        """Return the column of ``slip_ratios`` below 1, ``WHOLE`` if there are several, or None."""
         system, size = self.system, len(state) // 2
         x, y, vx, vy = state[0], state[1], state[size], state[size + 1]
         speed = math.hypot(vx + system.disc_speed * y, vy - system.disc_speed * x)

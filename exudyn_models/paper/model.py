@@ -31,9 +31,8 @@ def build_model(
     """Build ``system`` in ``initial_state``, shape (4,) or (6,), with the contact that ``friction`` adds.
 
     A body on springs and dampers to a support at (X0, 0) touches a master disc that turns about (0, 0) with ω. A disc
-    has a torsional damper to its shaft. Connectors with zero friction or damping are omitted.
-
-    ``initial_state`` refers to axes that turn with ``axes_speed`` (rad/s); the ground turns backwards in them.
+    has a torsional damper to its shaft. ``initial_state`` refers to axes that turn with ``axes_speed`` (rad/s); the
+    ground turns backwards in them.
     """
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -65,10 +64,7 @@ def build_model(
 
 
 def _add_supported_body(mbs: Any, system: System, initial_state: FloatArray, axes_speed: float) -> Any:
-    """Add a planar body on springs and dampers to a support at (X0, 0).
-
-    In turning axes the ground with its support is a body that turns backwards.
-    """
+    """Add a planar body on springs and dampers to a support at (X0, 0), which turns backwards in turning axes."""
     position, velocity = initial_state.reshape(2, -1).tolist()
     turn = [0.0] * (3 - len(position))
     node = mbs.AddNode(
@@ -111,10 +107,7 @@ def _add_inertia_forces(mbs: Any, node: Any, mass: float, speed: float) -> None:
 
 
 def _add_shaft(mbs: Any, node: Any, disc: DiscOnDisc, axes_speed: float) -> None:
-    """Add the torsional damper between ``disc`` and a shaft that turns at Ω, with the moment b(Ω − φ̇).
-
-    Ω, relative to the axes, is the velocity offset of a damper to the ground.
-    """
+    """Add the torsional damper between ``disc`` and a shaft that turns at Ω, with the moment b(Ω − φ̇)."""
     mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamperExt(
             markerNumbers=[coordinate_marker(mbs, None), coordinate_marker(mbs, node, 2)],

@@ -27,9 +27,9 @@ class Units:
     def of(cls, system: System, state: FloatArray) -> Units:
         """Return the units for the motion of ``system`` from ``state``, shape (4,) or (6,).
 
-        The faster of springs and master disc scales time; without them a stop, the dampers, or how fast friction
-        stops the slip. The position of the centre and the distances that its speed and friction cover in the unit of
-        time scale length; a fast spin must not hide the motion of the centre.
+        Time is scaled by the faster of springs and master disc; without them by a stop, by the dampers, or by how
+        fast friction stops the slip. Length is scaled by the position of the centre and the distances that its speed
+        and friction cover in the unit of time, so that a fast spin does not hide its motion.
         """
         velocities = system.state_size // 2
         push = system.friction_force / system.mass

@@ -28,7 +28,7 @@ def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, .
     before it has settled; and slip after a release, which may cross ε several times, must first reach 2ε.
 
     A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
-    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. All these times have
+    load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. These times have
     errors of first order in ε.
     """
     ratios, creeping = _creeping_parts(contact, steps)
@@ -85,7 +85,7 @@ def _leave_what_is_held(
 
 
 NEIGHBOURS = 100
-"""Number of steps kept at both ends of a uniform run; the time of rest depends on a few of them."""
+"""Number of steps kept at both ends of a uniform run."""
 
 
 def essential_steps(contact: RegularisedContact, steps: Steps) -> NDArray[np.bool_]:
@@ -119,7 +119,7 @@ def _kind(part: int) -> Literal["slip", "pivot", "stick"]:
 
 
 def _runs(values: NDArray[Any]) -> list[tuple[int, int]]:
-    """Return the first index of every run of equal values and the index after its last."""
+    """Return the start of every run of equal values and the index after its end."""
     edges = [0, *(np.flatnonzero(values[1:] != values[:-1]) + 1).tolist(), len(values)]
     return list(itertools.pairwise(edges))
 
@@ -137,8 +137,8 @@ def _time_of_rest(
 def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
     """Return whether friction can hold a creeping system, according to all steps with slip.
 
-    If slip passes through zero the load is first against the slip, then along it; either counts together with
-    friction.
+    A load that friction cannot hold lets the slip pass through zero, and then its direction relative to the slip
+    reverses. It counts in both directions.
     """
     moving = ratio > 0.0
     if not np.any(moving):
@@ -147,13 +147,12 @@ def _is_held(load: FloatArray, ratio: FloatArray) -> bool:
 
 
 def _release(times: FloatArray, excess: FloatArray, first: int, beyond: int) -> float:
-    """Return the time of the last sign change of ``excess``."""
     held = np.flatnonzero(excess[first:beyond] < 0.0)
     return _crossing(times, excess, first + int(held[-1]) if len(held) else beyond - 1)
 
 
 def _crossing(times: FloatArray, values: FloatArray, left: int) -> float:
-    """Return when ``values`` cross zero after step ``left``, or the end of that step."""
+    """Return when ``values`` cross zero after step ``left``, at the latest at its end."""
     if values[left] >= 0.0 or values[left + 1] <= 0.0:
         return float(times[left + 1])
     share = values[left] / (values[left] - values[left + 1])

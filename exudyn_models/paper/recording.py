@@ -17,7 +17,7 @@ MOST_KEPT = 50_000
 
 
 class Recording:
-    """Records consecutive runs of a motion at requested ``times``, shape (n,), the first of them the start."""
+    """Records consecutive runs of a motion at requested ``times``, shape (n,), from the start on."""
 
     def __init__(self, contact: RegularisedContact, times: FloatArray) -> None:
         self.times, self.states = times, np.empty((len(times), contact.system.state_size))

@@ -1,6 +1,6 @@
 """Scales of time, motion and force of a system, which determine the steps and tolerances of a run.
 
-All numbers are in the units of ``system`` and ``state``, SI or those of ``nondimensional``.
+All numbers are in the units of ``system`` and ``state``.
 """
 
 from __future__ import annotations
@@ -19,9 +19,8 @@ class Scales:
     """Scales of a run.
 
     ``time`` is that of ``time_scale``; ``motion``, in m and m/s, the scale of DOPRI5's error: at least 1, or the size
-    of the motion; ``angle_rounding`` the rounding error in rad of the angle of a disc after the span, 0 for a pin;
-    ``force`` > 0 the scale of Newton's residual: the forces on the body in N or the moments in N m, whichever are
-    smaller.
+    of the motion; ``angle_rounding`` the rounding error in rad of the angle of a disc; ``force`` > 0 the scale of
+    Newton's residual, the smaller of forces in N and moments in N m.
     """
 
     time: float

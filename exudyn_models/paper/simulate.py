@@ -45,10 +45,10 @@ STOP_STEP_TOLERANCE = 1e-4
 """The same for a support with a stop: a bouncing motion passes the kink of its force many times."""
 
 SMALLEST_STEP_TOLERANCE = 1e-13
-"""Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate, and the step collapses."""
+"""Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate."""
 
 LARGEST_STEP = 6.0
-"""Largest step of DOPRI5 over tolerance^(1/5) time scales: at order 5 errors then fall with the tolerance."""
+"""Largest step of DOPRI5 over tolerance^(1/5) time scales, for errors ~ tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
 """Tolerance of Newton's residual, relative to the forces at the start."""
@@ -124,8 +124,8 @@ def simulate_fixed_step(
     """Return the motion by one Exudyn integrator with the constant step ``step`` (s), for convergence studies.
 
     ``integrator`` is "RK44", "RK67" (explicit, orders 4 and 6), "GeneralizedAlpha" or "TrapezoidalIndex2" (implicit,
-    order 2). An explicit integrator needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is
-    nan. Raises as ``simulate``.
+    order 2). An explicit one needs a step below about 2·mε/μN while the pin sticks. ``solution.tolerance`` is nan.
+    Raises as ``simulate``.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -143,9 +143,8 @@ def simulate_fixed_step(
 class Run:
     """A motion to compute from time 0 on, in units that make it of order one.
 
-    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. Contact, with its ε,
-    state, times and scales are in these units. ``tolerance`` is nan for fixed steps; ``began`` is the start by
-    ``time.perf_counter``.
+    Exudyn allows no negative times, loses digits at large ones, and has absolute tolerances. ``tolerance`` is nan for
+    fixed steps; ``began`` is the start by ``time.perf_counter``.
     """
 
     given: tuple[System, FloatArray, FloatArray]

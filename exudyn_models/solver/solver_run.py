@@ -269,7 +269,7 @@ def _initial_acceleration(model: Model, start: float) -> FloatArray:
 
 
 def after_every_step(mbs: Any, function: Callable[[Any, float], bool]) -> AbstractContextManager[None]:
-    """Call ``function`` after every step and the model's own function; False ends the run."""
+    """Call ``function`` and the model's own function after every step; False ends the run."""
     return user_function(mbs, "PostStep", lambda own: lambda mbs, t: function(mbs, t) and bool(own(mbs, t)))
 
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from reference_model.systems import System
 
 
-MOST_POINTS = 100_000_000  # largest number of points of a grid
+MOST_POINTS = 100_000_000
 
 PLANES = {
     "pin": ("x=-0.3:0.5:257", "vx=-0.4:0.4:257"),
@@ -240,7 +240,6 @@ def _axes(kind: str, names: Mapping[str, str], texts: Sequence[str], defaults: S
 
 
 def _start(system: str, text: str, names: Mapping[str, str]) -> tuple[float, ...]:
-    """Return the default state with the changes "NAME=VALUE,..."; raise ``ValueError`` for an invalid text."""
     from reference_model.systems import finite_number
 
     state = dict(zip(names, STARTS[system], strict=True))
@@ -260,7 +259,6 @@ def _names_of(text: str) -> list[str]:
 
 
 def _check_given_once(given: Mapping[str, Sequence[str]], by: str, names: Sequence[str]) -> None:
-    """Raise ``ValueError`` if an option sets one of ``names``, which ``by`` varies."""
     for option, of_option in given.items():
         for name in of_option:
             if name in names:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from compare.sweep.plan import Plan
     from compare.sweep.store import SweepStore
 
-STORE = "sweep.zarr"  # file name of the store
-CHUNK = 32768  # default number of trajectories per chunk
+STORE = "sweep.zarr"
+CHUNK = 32768
 MOST_UNDECIDED = 0.5  # largest share of undecided trajectories for exit status 0
 
 
@@ -99,7 +99,6 @@ def _check_writable(folder: Files) -> None:
 
 
 def _existing_store(files: Files, plan: Plan, chunk: int | None, resume: bool) -> SweepStore | None:
-    """Return the store to resume, or None; raise ``ValueError`` if it belongs to another plan."""
     from compare.sweep.store import SweepStore, is_free
 
     if is_free(files):

@@ -1,19 +1,17 @@
 """Bullet as an engine: with its friction cone on and off, and with our law as a user force.
 
-Written for PyBullet 3.2.7, in double precision (``pip install pybullet``; wheels for Linux, elsewhere pip builds it).
-The pin or disc is a multibody on two prismatic joints; a disc also has a revolute one. Below it are n feet, spheres
-on vertical joints, each pressed on the plate by its own weight N/n only. For several feet of one rigid body, the
-solver would load only the first. The plate turns at ω on a joint and is heavy enough not to be slowed.
+Written for PyBullet 3.2.7, in double precision. The pin or disc is a multibody on two prismatic joints; a disc also
+has a revolute one. Below it are n feet, spheres on vertical joints, each pressed on the plate by its own weight N/n.
+The plate turns at ω on a joint and is heavy enough not to be slowed.
 
 - Bullet's defaults, disabled here: a damping of the whole body of 0.04, motors in the joints, a joint speed limit of
   100. As shipped, only the motors are off.
 - The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
-A step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world axis, up to
-√2 times too large at any step. With the cone on, friction on a disc deviates from the direction of slip, because each
-component of the slip is divided by its own mobility: a relative error of R²·m/J at any step. The continuous ring is
-not supported.
+A step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world axis. With
+the cone on, friction on a disc deviates from the direction of slip, because each component of the slip is divided by
+its own mobility: a relative error of R²·m/J at any step.
 """
 
 from __future__ import annotations
@@ -40,7 +38,7 @@ ITERATIONS = 50
 
 
 class _World(Model):
-    """A Bullet world with one body, and with a plate unless friction is our force."""
+    """A world with one body, and with a plate unless friction is our force."""
 
     engine = "Bullet"
     most_points = 100  # PyBullet allows 128 links per body

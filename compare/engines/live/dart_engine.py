@@ -1,17 +1,14 @@
 """DART as an engine of the comparison: with four of its contact solvers, and with our law as a user force.
 
-Needs ``pip install dartpy`` (wheels for Linux, and from Python 3.12 on for macOS and Windows). Measured with 6.20.0.
-
-The pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints, each pressed on the
-plate by its own weight N/n only, because rigid contact does not determine the loads on several feet of one body. The
-plate turns at ω on a joint with prescribed motion.
+Measured with 6.20.0. The pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints,
+each pressed on the plate by its own weight N/n. The plate turns at ω on a joint with prescribed motion.
 
 - A step is semi-implicit, of order 1: friction opposes the slip at its end, positions follow from the new velocities.
   Implicit springs of joints would damp like C·h. The support's spring is a force set before each step, with a quarter
   of the error; the dampers are those of the joint.
 - By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
-- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes
-  and up to √2 times too large in between, at any step. The other two solvers use the cone.
+- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes.
+  The other two solvers use the cone.
 - The tolerance of iterative solvers is 1e-10 of an impulse; at 1e-12, rounding can keep them from converging.
 """
 
@@ -131,7 +128,6 @@ def _shift(x: float, y: float, z: float) -> Any:
 
 
 def _touching(body: Any, shape: Any, height: float) -> None:
-    """Add ``shape`` to ``body`` at a ``height`` in m, with μ = 1 and without restitution."""
     node = body.createShapeNode(shape)
     node.setRelativeTransform(_shift(0.0, 0.0, height))
     node.createCollisionAspect()

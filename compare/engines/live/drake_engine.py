@@ -1,18 +1,17 @@
 """Drake as an engine of the comparison: three contact solvers, two integrators, and our law as a force.
 
-Needs ``pip install drake`` (wheels for Linux and newer Pythons on macOS, none for Windows). Measured with 1.51.1.
-
-The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a plate that turns at ω.
-Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any motion.
+Measured with 1.51.1. The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a
+plate that turns at ω. Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any
+motion.
 
 - A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, friction grows smoothly
   up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
 - ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
-- The convex solvers stop when the residual of Newton's iteration is 1e-6 of the total momentum, and ignore a force F
-  if F·h is smaller. A heavy master would hide all friction, so theirs is light and driven: by the gain of its motor
-  or, because cenic ignores that, by a torque through a stiff damper. Below h = 2e-3/rate errors grow.
+- The convex solvers stop when the residual of Newton's iteration is 1e-6 of the total momentum. A heavy master would
+  hide all friction, so theirs is light and driven: by the gain of its motor or, because cenic ignores that, by a
+  torque through a stiff damper. Below h = 2e-3/rate errors grow.
 - With a half-space, Drake crashes from about twenty spheres on, so the plate is a box.
-- Drake's springs between bodies act along a line, so a bushing is used, which has no direction.
+- Drake's springs between bodies act along a line, so a bushing is used.
 """
 
 from __future__ import annotations
@@ -171,7 +170,7 @@ class _OurFriction(LeafSystem):  # type: ignore[misc]
 
 
 class _Motion(Model):
-    """A motion through one plant per step size, because Drake fixes the step when a plant is built."""
+    """A motion through one plant per step size, because Drake fixes the step of a plant."""
 
     engine = "Drake"
 

@@ -11,7 +11,7 @@ from compare.engines.engine import Engine
 from compare.engines.registry import ByName, Scheme, register_scheme
 from compare.output.outside_text import one_of
 
-KINDS = ("pin", "points")  # as in ``compare.engines.KINDS``
+KINDS = ("pin", "points")
 
 
 class Installed(NamedTuple):

@@ -1,9 +1,8 @@
 """MuJoCo as an engine: with its elliptic and pyramidal cones, and with our law as a user force.
 
-Written for MuJoCo 4.0 (``pip install mujoco``; wheels for Linux, macOS and Windows). The pin or disc is on two
-sliding joints; a disc also has a hinge. Springs and dampers are those of the joints. Below it are n feet, spheres on
-vertical joints, each pressed on the plate by its own weight N/n only. The plate is a cylinder on a hinge that turns
-at ω and is heavy enough not to be slowed.
+Written for MuJoCo 4.0. The pin or disc is on two sliding joints with springs and dampers; a disc also has a hinge.
+Below it are n feet, spheres on vertical joints, each pressed on the plate by its own weight N/n. The plate is a
+cylinder on a hinge that turns at ω and is heavy enough not to be slowed.
 
 - Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero, with a compliance of
   1e-4. It acts along v + a₀/b, where a₀ is the acceleration without friction, so b ~ 1/h causes an error of first
@@ -13,13 +12,12 @@ at ω and is heavy enough not to be slowed.
 - The solver's own tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0,
   and the iterations are limited. A pyramid needs more of them, with many points far more than an ellipse.
 
-As shipped, the contact has all of MuJoCo's defaults, such as a pyramid and a relaxation in 20 ms. The feet weigh 9.81
-m/s² times half of the mass. A plate at rest is fixed. One that turns is only a hundred times heavier than the body,
-because of the solver's tolerance, and its speed is set again before each step.
+As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² times half of the mass. A plate at rest
+is fixed. One that turns is only a hundred times heavier than the body, because of the solver's tolerance, and its
+speed is set again before each step.
 
-A pyramid's friction acts along the nearest world axis, up to 45° off, at any step. With the pyramid or with
-Runge–Kutta steps, a sticking pin creeps in proportion to the step; with the ellipse, to its square. The continuous
-ring is not supported.
+A pyramid's friction acts along the nearest world axis. With the pyramid or with Runge–Kutta steps, a sticking pin
+creeps in proportion to the step; with the ellipse, to its square.
 """
 
 from __future__ import annotations
@@ -41,7 +39,7 @@ LEAST_COEFFICIENT = 1e-5  # smallest μ that MuJoCo accepts
 
 @dataclass(frozen=True)
 class _Contact:
-    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's stiffness and damping."""
+    """Attributes of contact and solver, with b·h = ``friction_rate``; 0 leaves MuJoCo's defaults."""
 
     option: str = ""
     friction_rate: float = 0.0
@@ -62,8 +60,6 @@ class _Contact:
 
 
 class _Model(Model):
-    """MuJoCo with contact, or with our force if there is none."""
-
     engine = "MuJoCo"
 
     def build(
@@ -163,7 +159,7 @@ def _xml(system: System, arms: list[complex], option: str, contact: _Contact | N
 
 @contextmanager
 def _passive_force(add: Callable[[Any, Any], None]) -> Iterator[None]:
-    """Set ``add`` as MuJoCo's only, global callback for passive forces, and restore the previous one on exit."""
+    """Set MuJoCo's only, global callback for passive forces temporarily."""
     before = mujoco.get_mjcb_passive()
     mujoco.set_mjcb_passive(add)
     try:

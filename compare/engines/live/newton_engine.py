@@ -1,8 +1,7 @@
 """Newton as an engine: with its position-based and semi-implicit solvers, by Warp on the processor.
 
-Written for Newton 1.8.0 (``pip install newton``), in single precision. A ball that cannot turn is pressed on the
-plate by its weight N, with μ = 1. The plate is a kinematic body that turns at ω. Springs, dampers and stop are a
-force set before each step, so any support is possible. Discs are not supported.
+Written for Newton 1.8.0, in single precision. A ball that cannot turn is pressed on the plate by its weight N, with μ
+= 1. The plate is a kinematic body that turns at ω. Springs, dampers and stop are a force set before each step.
 """
 
 from __future__ import annotations
@@ -24,8 +23,6 @@ RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the p
 
 
 class _Model(Model):
-    """A ball on a plate, advanced by the solver class ``solver``."""
-
     engine = "Newton"
 
     def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:

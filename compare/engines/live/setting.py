@@ -63,8 +63,7 @@ class Setting:
 
     Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
     order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``. ``step``, as in ``compare.engines.Engine``, is short enough for accuracy but
-    faster than real time, and None for an integrator that controls its error.
+    fills each interval of ``times``. ``step`` is None for an integrator that controls its error.
     """
 
     name: str

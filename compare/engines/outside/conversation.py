@@ -37,14 +37,14 @@ from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation
 GREETING_BYTES = 100_000
-TICK = 0.1  # interval in s between checks of the time limit
+TICK = 0.1  # in s, for checks of the time limit
 FAREWELL = 1.0  # time in s for a program to end after its input is closed
-AT_ONCE = 1 << 18  # bytes read from a pipe at once
+AT_ONCE = 1 << 18
 LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's standard error
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
-"""Shell command that waits on its standard input, which closes when this process ends, even if killed."""
+"""Shell command that waits for the end of its standard input, when this process ends, even if killed."""
 
 
 class ProgramError(RuntimeError):
@@ -189,7 +189,7 @@ class Conversation:
                 self._process.kill()
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
-        """Write ``line`` and return the next line; end the program and raise unless it writes exactly one."""
+        """Write ``line`` and return the next line; end the program unless it writes exactly one."""
         self._watch.begin(limit)
         try:
             with suppress(BrokenPipeError):  # _read detects the end of the program
@@ -229,7 +229,7 @@ def _environment() -> dict[str, str]:
 
 
 def _guard_of(group: int) -> subprocess.Popen[bytes]:
-    """Start a process that kills those of ``group`` when this process has ended."""
+    """Start a process that kills those of ``group`` after the end of this process."""
     return subprocess.Popen(
         ("/bin/sh", "-c", END_WITH_US, str(group)),
         stdin=subprocess.PIPE,
@@ -247,7 +247,7 @@ def _write(stream: IO[bytes], line: bytes) -> None:
 
 
 def _read(stream: IO[bytes], most: int) -> bytes:
-    """Return bytes up to the end of a line or of the stream, or slightly more than ``most``."""
+    """Return a line, the rest of the stream, or slightly more than ``most`` bytes."""
     parts: list[bytes] = []
     length = 0
     while length <= most:
@@ -260,7 +260,7 @@ def _read(stream: IO[bytes], most: int) -> bytes:
 
 
 class _Watch:
-    """Thread that calls ``expire`` at a time limit; setting a limit costs next to nothing."""
+    """Thread that calls ``expire`` at a time limit."""
 
     def __init__(self, expire: Callable[[], None]) -> None:
         self._expire = expire
@@ -293,7 +293,7 @@ class _Watch:
 
 
 class _LastWords:
-    """Thread that reads a program's standard error, so that it never blocks, and keeps the end."""
+    """Thread that reads a program's standard error and keeps the end."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._stream = stream

@@ -37,12 +37,11 @@ OPTIONAL = ("offset", *NONLINEAR)  # parameters that a model may omit; they are 
 CREEPS, CREEP, MOST_CREEP = "regularisation", 1e2, 1e-2
 """Parameter for the regularisation speed of points, and the ratio of this speed to tolerance times speed.
 
-Even a model that reports stick may regularise friction at points. The error of the creep must fall with the
-tolerance.
+The error of the creep must fall with the tolerance.
 """
 
 LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without speed
-MOST_BYTES = 2**30  # largest size in bytes of an unpacked archive
+MOST_BYTES = 2**30  # of an unpacked archive
 
 
 class FmuError(RuntimeError):
@@ -141,7 +140,6 @@ def _model(file: str) -> _Model:
 
 
 def _reason(error: Exception, folder: tempfile.TemporaryDirectory[str]) -> str:
-    """Return an error message in one line, with paths relative to ``folder``."""
     return " ".join(str(error).replace(f"{folder.name}{os.sep}", "").split()) or type(error).__name__
 
 

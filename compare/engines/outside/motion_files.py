@@ -2,7 +2,7 @@
 
 ``plan.json`` lists the motions. Each has a file such as ``0f3a.json`` with a question in the form of ``json_lines``.
 The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a header. File
-names are hashes of the questions, so answers fit only one plan.
+names are hashes of the questions.
 """
 
 from __future__ import annotations

@@ -122,7 +122,6 @@ register_scheme("exec", Scheme(program_engine, check_program))
 # --- Files of foreign code, found by their extensions.
 
 MODULES = tuple(set(all_suffixes()) - set(BYTECODE_SUFFIXES))
-"""Extensions of importable files: Python sources and compiled modules."""
 
 
 def code_below(folders: Iterable[str | Path], endings: tuple[str, ...] = MODULES) -> set[Path]:

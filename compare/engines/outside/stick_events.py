@@ -2,7 +2,7 @@
 
 The outputs ``NAMES`` count sticks and releases and give their last times and the position of the last stick.
 ``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the last
-change. They are read at communication points. A step with several events of a kind is rejected and halved.
+change. A step with several events of a kind is rejected and halved.
 """
 
 from __future__ import annotations
@@ -144,7 +144,6 @@ class StickEvents(Events):
         return self._carried(state[: len(self._placed)], time - stuck)
 
     def _carried(self, place: Any, lasted: float) -> FloatArray:
-        """Return the state after the master disc has carried a body from ``place`` for ``lasted`` s."""
         omega = self._system.disc_speed
         z = complex(*place[:2]) * cmath.exp(1j * omega * lasted)
         velocity = 1j * omega * z

@@ -21,7 +21,7 @@ from compare.run.provenance import stamp
 
 WAIT = 3.0  # time limit in s for a scheduler to answer and to have a worker
 IN_FLIGHT = 3  # submitted tasks per thread: enough to keep it busy, and few to lose
-COUNT_INTERVAL = 1.0  # interval in s between counts of threads
+COUNT_INTERVAL = 1.0
 AT_ONCE = 2  # simultaneous tasks in this process, each on all cores
 
 
@@ -30,7 +30,7 @@ class ClusterError(RuntimeError):
 
 
 class Task(NamedTuple):
-    """A call of a function of an importable module; ``compiled`` if it releases the interpreter lock."""
+    """A call of an importable function; ``compiled`` if it releases the interpreter lock."""
 
     key: Hashable
     function: Callable[..., Any]
@@ -69,7 +69,7 @@ class Cluster(AbstractContextManager["Cluster"]):
     threads = 1
 
     def __init__(self, address: str) -> None:
-        self._dask: Any = importlib.import_module("distributed")  # untyped
+        self._dask: Any = importlib.import_module("distributed")
         for logger in ("distributed", "distributed.client", "tornado.application"):
             logging.getLogger(logger).setLevel(logging.CRITICAL)  # ``ClusterError`` reports problems
         self._address = _checked_address(address)
@@ -77,7 +77,7 @@ class Cluster(AbstractContextManager["Cluster"]):
         self._most = 1
         _reach(self._dask, self._address)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the stamp covers relevant versions of libraries
+            warnings.simplefilter("ignore")  # the stamp covers relevant versions
             self._client = self._dask.Client(address, timeout=WAIT, set_as_default=False)
         try:
             self._client.wait_for_workers(1, timeout=WAIT)
@@ -95,7 +95,7 @@ class Cluster(AbstractContextManager["Cluster"]):
             ) from None
 
     def __exit__(self, *_: object) -> None:
-        with suppress(Exception):  # the scheduler may be lost
+        with suppress(Exception):
             self._client.close()
 
     def run(self, tasks: Iterable[Task]) -> Iterator[tuple[Any, Any]]:
@@ -135,8 +135,6 @@ Executor: TypeAlias = InProcess | Cluster
 
 
 def _reach(dask: Any, address: str) -> None:
-    """Raise ``ClusterError`` unless a scheduler answers; Dask's client may wait long."""
-
     async def kind() -> Any:
         async with dask.rpc(address) as server:
             return (await server.identity())["type"]

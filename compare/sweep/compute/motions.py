@@ -12,7 +12,7 @@ from reference_model.ensemble import EndState
 from reference_model.systems import FloatArray
 
 GAP = 0.05
-"""Relative gap in the largest radius between two motions of one kind; a single motion scatters by less."""
+"""Relative gap in the largest radius between two motions; a single motion scatters by less."""
 
 JUMP = 0.3  # largest relative difference between the radii of a motion and those of its extrapolated branch
 
@@ -29,7 +29,7 @@ class Motion(NamedTuple):
 def motions_of(ends: Ends, least: FloatArray, largest: FloatArray) -> list[Motion]:
     """Return the motions that starts end in, without undecided ones; all arguments have shape (n,).
 
-    A gap between radii separates motions of one kind. Stuck motions form one group, because a pin may stick anywhere.
+    A gap between radii separates motions of one kind, except stuck motions, because a pin may stick anywhere.
     """
     found = []
     for end in EndState:

@@ -32,7 +32,7 @@ BLOCK = 1 << 17
 ENDS = [end.name.lower() for end in EndState]
 
 SENSITIVE = ("largest_radius", "whirl")
-"""Results with sensitivities; "whirl" is 1 if a trajectory ends as a whirl, else 0."""
+"""Results with sensitivities; "whirl" is 1 for a whirl, else 0."""
 
 Variables = dict[str, tuple[Any, ...]]
 Values = dict[str, NDArray[Any]]
@@ -47,7 +47,7 @@ class Block(NamedTuple):
 
 
 class Part(NamedTuple):
-    """Trajectories of a block from one round: their indices in the round and in the block."""
+    """Trajectories of a block from one round: their indices in both."""
 
     chunks: Chunks
     where: slice
@@ -67,7 +67,7 @@ class Labelled(NamedTuple):
 
 
 def _layout(plan: Plan) -> tuple[tuple[str, ...], tuple[int, ...], int, int]:
-    """Return dimensions and shape of the labelled arrays, trajectories per row, and rows per block."""
+    """Return dimensions, shape, trajectories per row, and rows per block of the labelled arrays."""
     if isinstance(plan, RandomBasin):
         return ("sample",), (plan.samples,), 1, BLOCK
     if isinstance(plan, Uncertainty):
@@ -143,7 +143,7 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
 def label(
     group: Group, plan: Plan, block: Block, parts: Sequence[Part], grid: tuple[NDArray[Any], ...] | None
 ) -> Labelled:
-    """Write the results of a block; ``grid`` contains a basin's ends and marks of simulated points."""
+    """Write the results of a block; ``grid`` contains a basin's ends and marks."""
     found = {name: _found(name, block, parts) for name in SHOWN}
     sensitive, motions = None, list[list[Motion]]()
     numbers = range(block.first, block.last)
@@ -176,7 +176,7 @@ def label(
 
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
-    """Return a result of a block, shape (n,) or (n, components); NaN or 0 where none was simulated."""
+    """Return a result of a block, shape (n, ...); NaN or 0 where none was simulated."""
     found = [(part.places, part.chunks.read(name, part.where)) for part in parts]
     more = found[0][1].shape[1:] if found else ()
     dtype = np.dtype(RESULTS[name].dtype)
@@ -193,7 +193,7 @@ def _sensitive(plan: Uncertainty, found: Values, states: NDArray[Any]) -> NDArra
 
 
 def labels_of(plan: Plan, found: Sequence[Labelled], grid: Grid | None) -> xr.Dataset:
-    """Return the results of the whole sweep from the ordered summaries of its blocks."""
+    """Return all results from the ordered summaries of blocks."""
     rows = np.concatenate([one.counts for one in found])
     counts = np.sum(rows, axis=0)
     variables: Variables = {
@@ -269,7 +269,7 @@ def branches_of(plan: Continuation) -> xr.Dataset:
 
 
 def curves_of(plan: Map) -> xr.Dataset:
-    """Return the theory's curves in the plane of a map, point by point."""
+    """Return the theory's curves in the plane of a map."""
     found = curves(plan)
     points = np.concatenate([curve.points for curve in found]) if found else np.empty((0, 2))
     of_curve = np.repeat(np.arange(len(found)), [len(curve.points) for curve in found])

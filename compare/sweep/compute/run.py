@@ -27,10 +27,9 @@ from compare.sweep.quantities import components
 from compare.sweep.refinement import Grid
 from compare.sweep.store import SweepStore, flags
 
-CHECKED = 20  # number of trajectories that the plain reference repeats
+CHECKED = 20  # trajectories that the plain reference repeats
 
 CHECK, RESULT, CURVES, BRANCHES = "check", "result", "curves", "branches"
-"""Groups of a store in addition to its rounds."""
 
 Progress = Callable[[str, int, int], None]  # takes the name of the work, the amount done and the total
 
@@ -48,14 +47,13 @@ def run(store: SweepStore, executor: Executor, progress: Progress) -> None:
 
 
 def _theory(plan: Plan) -> dict[str, Callable[[], xr.Dataset]]:
-    """Return the group of results from formulas, with the function that computes it."""
     if isinstance(plan, Map):
         return {CURVES: lambda: curves_of(plan)}
     return {BRANCHES: lambda: branches_of(plan)} if isinstance(plan, Continuation) else {}
 
 
 def finished(store: SweepStore) -> bool:
-    """Return whether the sweep is complete; damaged parts are added to ``store.broken``."""
+    """Return whether the sweep is complete; add damaged parts to ``store.broken``."""
     groups = (CHECK, RESULT, *_theory(store.plan))
     missing = [name for name in groups if store.get(name) is None]
     plan, ends = store.plan.rounds(), None

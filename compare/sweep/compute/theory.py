@@ -20,16 +20,16 @@ from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
 # --- Steady and periodic motions along one parameter
 
 SAMPLES = 64
-"""Number of samples of an orbit for its radii; the radius of a nearly circular orbit varies by 1e-3 between two."""
+"""Number of samples of an orbit; the radius of a nearly circular one varies by 1e-3 between two."""
 
 
 def theory_branches(plan: Continuation) -> list[dict[int, TheoryMotion]]:
-    """Return branches of motions; each maps indices of the axis's values to motions."""
+    """Return branches as maps from indices of values to motions."""
     return matched(list(_motions_along(plan)), lambda one: one.meaning)
 
 
 def _motions_along(plan: Continuation) -> Iterator[list[TheoryMotion]]:
-    """Yield the motions at each value; a whirl with an offset continues that of the previous value."""
+    """Yield the motions at each value; a whirl with an offset continues the previous one."""
     orbit: Orbit | None = None
     for value in plan.x.values.tolist():
         change: dict[str, Any] = {plan.x.name: value}
@@ -76,8 +76,6 @@ class Curve(NamedTuple):
 
 
 class _Margin(NamedTuple):
-    """A function that changes its sign on a curve."""
-
     meaning: str
     of: Callable[[Any], float]
 

@@ -48,7 +48,7 @@ def simulate_chunk(
 
 
 def compute(plan: Plan, numbers: Numbers, threads: int | None) -> dict[str, NDArray[Any]]:
-    """Simulate trajectories on ``threads`` threads (None: all cores); return the arrays named in ``RESULTS``."""
+    """Simulate trajectories on ``threads`` threads (None: all cores); return the arrays ``RESULTS``."""
     from reference_model.ensemble import simulate_ensemble
 
     states, parameters = plan.trajectories(numbers)
@@ -67,8 +67,8 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
     The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
-    duration is doubled up to ``DOUBLINGS`` times, because the kernel knows attractors and sees the end earlier. An
-    undecided trajectory is simulated up to ``time`` only.
+    duration is doubled up to ``DOUBLINGS`` times, because the kernel sees the end earlier. An undecided trajectory is
+    simulated up to ``time`` only.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -90,21 +90,21 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
 
 # --- Ends of trajectories of the plain reference, for the check of a sweep's random sample
 
-WATCHED = 0.5  # share of a trajectory, at its end, that decides the end state
+WATCHED = 0.5  # share of a trajectory that decides the end state
 
 SAMPLES_PER_TURN = 64
 """Samples per turn in the last part; earlier ones only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
-AT_REST = 0.02  # largest distance from the last position, relative to the whole motion, of a centre at rest
+AT_REST = 0.02  # largest distance from the last position, over the whole motion, of a centre at rest
 
 STEADY = 0.01
 """Largest spread (largest − smallest)/(largest + smallest) of the radii of a steady motion at successive turns."""
 
-SAME = 1.4  # largest ratio of the spreads in both halves of a constant modulation
+SAME = 1.4  # largest ratio of the spreads of a constant modulation
 
 DYING = 0.1
-"""Ratio of the slip speeds in both halves of the last part below which slip dies out; for a whirl it stays near 1."""
+"""Ratio of the slip speeds in both halves of the last part below which slip dies out."""
 
 LEAST_TURNS = 24  # least number of turns before the last part of a motion
 
@@ -112,7 +112,7 @@ LEAST_TURNS = 24  # least number of turns before the last part of a motion
 def plain_trajectory(
     system: System, state: FloatArray, time: float, duration: float, tolerance: float
 ) -> Trajectory:
-    """Return the motion of the plain reference from 0 to ``duration`` (s), at times that include ``time`` (s)."""
+    """Return the motion of the plain reference to ``duration`` (s), at times that include ``time`` (s)."""
     since = (1.0 - WATCHED) * duration
     before = _samples(system, 0.0, since, SAMPLES_BEFORE)
     watched = _samples(system, since, duration, SAMPLES_PER_TURN)
@@ -158,8 +158,8 @@ def end_of(trajectory: Trajectory) -> EndState:
     - *Stuck*: the last stick phase lasts a whole turn of the master disc, so no new force can release it; or the
       contact slips ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same radius.
     - *Self-centred*: the centre hardly moves in the last quarter.
-    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis, taken once a turn, is
-      constant for a whirl and varies equally in both halves for a modulated motion.
+    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis is constant for a whirl
+      and varies equally in both halves for a modulated motion.
     """
     system, times = trajectory.system, trajectory.times
     since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))
@@ -195,7 +195,6 @@ def _at_rest(trajectory: Trajectory, since: float) -> bool:
 
 
 def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
-    """Return whether the slip falls below ``DYING`` times the slip before ``middle``, or below its error."""
     slip, times = trajectory.slip_speed, trajectory.times
     before, after = np.max(slip[(times >= since) & (times < middle)]), np.max(slip[times >= middle])
     error = trajectory.solution.tolerance * abs(trajectory.system.disc_speed) * np.max(trajectory.radius)
@@ -203,7 +202,7 @@ def _slip_dies_out(trajectory: Trajectory, since: float, middle: float) -> bool:
 
 
 def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatArray]:
-    """Return times in s and radii in m of passages of the positive x-axis with the master disc, by interpolation."""
+    """Return times and radii of passages of the positive x-axis with the master disc, by interpolation."""
     x, y = trajectory.states.T[:2]
     y = math.copysign(1.0, trajectory.system.disc_speed) * y
     at = np.flatnonzero((y[:-1] < 0.0) & (y[1:] >= 0.0) & (x[1:] > 0.0) & (trajectory.times[:-1] >= since))
@@ -215,7 +214,7 @@ def _passages(trajectory: Trajectory, since: float) -> tuple[FloatArray, FloatAr
 
 
 def _spreads(times: FloatArray, radii: FloatArray, middle: float) -> tuple[float, float]:
-    """Return (largest − smallest)/(largest + smallest) of radii before and after ``middle``, inf for one radius."""
+    """Return (largest − smallest)/(largest + smallest) of radii before and after ``middle``."""
     spreads = []
     for chosen in (radii[times < middle], radii[times >= middle]):
         low, high = (float(np.min(chosen)), float(np.max(chosen))) if chosen.size > 1 else (0.0, math.inf)

@@ -10,7 +10,7 @@ ON_GRID = 1e-9
 
 
 class SensorRows:
-    """Rows of sensors, switched on for steps whose ends are due, because each part would restart the period."""
+    """Switches the rows of sensors on for the steps that need one; each part of a run would restart the period."""
 
     def __init__(self, settings: Any, start: float, step: float) -> None:
         self._settings, self._next, self._step = settings, start, step
