@@ -166,6 +166,8 @@ class AxialStick:
     idle : bool
         Whether the contact rests although it is in a mode of sliding, because locked contacts and joints hold it. Its
         share of the load is then not determined. On one axis it takes all that it can hold.
+    point : int or None
+        Number of a point, from 1, of a contact at several points.
 
     """
 
@@ -177,6 +179,14 @@ class AxialStick:
     mode: Mode | None = None
     running: bool = False
     idle: bool = False
+    point: int | None = None
+
+    def parts(self) -> Sequence[AxialStick]:
+        """Return the laws that stick by themselves: this one, or those of the points."""
+        return (self,)
+
+    def renew(self) -> None:
+        """Use the present load and coefficient from now on, which this class asks the factors for each time."""
 
     @property
     def visible_mode(self) -> Mode:
@@ -252,12 +262,12 @@ class AxialStick:
         """Return the moment in N m that the constraint exerts on the disc in the current motion."""
         return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
-    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc in the current motion, in the master's axes, shape (3,)."""
         moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
         return np.array([0.0, 0.0, moment])
 
-    def capacity_share(self, mbs: Any, t: float) -> float:
+    def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return the moment over the largest one: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
             return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
