@@ -153,7 +153,7 @@ class AxialStick:
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
-    axis it is all that they can hold.
+    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
     """
 
     kinds: Kinds
@@ -164,6 +164,14 @@ class AxialStick:
     mode: Mode | None = None
     running: bool = False
     idle: bool = False
+    point: int | None = None
+
+    def parts(self) -> Sequence[AxialStick]:
+        """Return the laws that stick by themselves: this one, or those of the points."""
+        return (self,)
+
+    def renew(self) -> None:
+        """Use the present load and coefficient from now on, which this class asks the factors for each time."""
 
     @property
     def visible_mode(self) -> Mode:
@@ -239,12 +247,12 @@ class AxialStick:
         """Return the moment in N m of the constraint on the disc."""
         return -float(mbs.GetObjectOutput(self.locks[0], exu.OutputVariableType.Force))
 
-    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         moment = self.held_moment(mbs) if self.mode == Mode.LOCKED else self.moment(t, float(slip[2]))
         return np.array([0.0, 0.0, moment])
 
-    def capacity_share(self, mbs: Any, t: float) -> float:
+    def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return moment over capacity: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
             return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))

@@ -9,10 +9,11 @@ from typing import Any, TypeAlias, cast
 
 import numpy as np
 
-from exudyn_models.forces.friction_laws import Contact
+from exudyn_models.forces.friction_laws import NONE_HELD, Contact
 from exudyn_models.forces.jit import taking_lists
 from exudyn_models.forces.laws.curves import curve_of_table
 from exudyn_models.forces.laws.functions import LawFunction, checked_not_negative, law_function
+from exudyn_models.forces.laws.places import ring_places, table_of
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under, law_of
 from reference_model.systems import FloatArray, finite_number
 
@@ -67,6 +68,7 @@ class LoadAndCoefficient:
         if self.static_ratio > 1.0 or curve is not None:
             self._reads.add("slip_speed")
         self.depends_on_motion = not self._reads <= {"time"}
+        self.depends_on_radius = "radius" in self._reads
         self.depends_on_direction = "relative_spin" in self._reads
         self.depends_on_slip = not self._reads <= {"time", "radius"}
         #: Whether it calls no Python function.
@@ -82,6 +84,16 @@ class LoadAndCoefficient:
         return LoadAndCoefficient(
             self.geometry, self.friction_coefficient, self.normal_load, plates=int(self._plates)
         )
+
+    def at_pins(self, shares: FloatArray) -> list[LoadAndCoefficient]:
+        """Return the sliding friction of pins that carry these ``shares`` of the load, shape (n,)."""
+        pin = 0.0, 1, 1.0, self.geometry[3], NONE_HELD, table_of(ring_places(0.0, 1))
+        pins = []
+        for share in shares.tolist():
+            pins.append(LoadAndCoefficient(pin, self.friction_coefficient, self.normal_load))
+            pins[-1]._plates = share * self._plates
+            pins[-1].change(self.friction_coefficient, self.normal_load)
+        return pins
 
     def contact_at(self, t: float) -> Contact:
         """Return the contact with μN at the time t (s), or with 1 N if μN depends on the motion."""

@@ -22,7 +22,7 @@ from exudyn_models.forces.friction_laws import (
     Contact,
     mean_radius,
 )
-from exudyn_models.forces.laws.places import places_in, regularisation_at
+from exudyn_models.forces.laws.places import places_in, regularisation_at, slip_maps
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import ROUNDING, Kinds, slip_and_place_of_nodes
 from reference_model.systems import FloatArray
@@ -64,11 +64,7 @@ def slip_dampers(contact: Contact, angle: float) -> FloatArray:
     if points <= CONTINUOUS:
         radius = mean_radius(contact)
         return np.diag([1.0, 1.0, radius * radius])[None] / epsilon
-    x, y, loads = places_in(table).T
-    arms = np.exp(1j * angle) * (x + 1j * y)
-    maps = np.zeros((points, 2, 3))
-    maps[:, 0, 0] = maps[:, 1, 1] = 1.0
-    maps[:, 0, 2], maps[:, 1, 2] = -arms.imag, arms.real
+    maps, loads = slip_maps(table, angle), places_in(table)[:, 2]
     shares = maps.transpose(0, 2, 1) @ maps * loads[:, np.newaxis, np.newaxis]
     alone = shares / regularisation_at(table, epsilon)
     if held == NONE_HELD:

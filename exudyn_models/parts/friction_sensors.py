@@ -22,7 +22,7 @@ from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact, present_item
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
-from exudyn_models.solver.stick.planar_stick import PlanarStick
+from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import FloatArray
 
 Quantity = Literal[
@@ -82,17 +82,17 @@ class RingFriction:
 
         Raises ``ValueError`` if a number is out of range; both then stay unchanged.
         """
-        factors = self._contact.factors
-        if self._thermal is not None and friction_coefficient is not None:
+        contact, factors, stick = self._contact, self._contact.factors, self._contact.stick
+        if friction_coefficient is None:
+            friction_coefficient = factors.friction_coefficient
+        elif self._thermal is not None:
             friction_coefficient = self._thermal.with_temperature(friction_coefficient)
-        factors.change(
-            factors.friction_coefficient if friction_coefficient is None else friction_coefficient,
-            factors.normal_load if normal_load is None else normal_load,
-        )
-        contact, stick = self._contact, self._contact.stick
-        if isinstance(stick, PlanarStick):
-            stick.sliding = force_and_jacobian(contact.kinds, contact.reference, factors)
-        if stick is not None:  # its own functions ask the factors each time
+        normal_load = factors.normal_load if normal_load is None else normal_load
+        if isinstance(stick, PointSticks):
+            stick.check(friction_coefficient, normal_load)
+        factors.change(friction_coefficient, normal_load)
+        if stick is not None:
+            stick.renew()
             return
         force, jacobian = force_and_jacobian(contact.kinds, contact.reference, factors)
         contact.functions.update(force=force, jacobian=jacobian)
@@ -149,7 +149,7 @@ class RingFriction:
                 if self._contact.stick is not None and quantity == "mode":
                     return [float(self._contact.stick.visible_mode)]
                 if self._contact.stick is not None and quantity == "capacity_share":
-                    return [self._contact.stick.capacity_share(mbs, t)]
+                    return [self._contact.stick.capacity_share(mbs, t, angle)]
                 if quantity in ("capacity_share", "mode"):
                     creep = self._creep(t, slip, angle, radius)
                     return [
@@ -159,7 +159,7 @@ class RingFriction:
                 friction = (
                     self._friction(t, slip, angle, radius)
                     if stick is None
-                    else stick.wrench(mbs, t, slip, radius)
+                    else stick.wrench(mbs, t, slip, radius, angle)
                 )
             finally:
                 asked = False

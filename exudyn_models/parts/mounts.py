@@ -8,7 +8,7 @@ forms apply.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import exudyn as exu
@@ -107,6 +107,20 @@ def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
     at_nodes = master.is_at_node and disc.is_at_node and (master.kind in FLAT or disc.start[2] == 0.0)
     plain = at_nodes or _share_an_axis(master, disc)
     return nodes, (master.kind, disc.kind, None if plain else (*master.numbers, *disc.numbers))
+
+
+def kinds_at(mbs: Any, master: Side, disc: Side, places: FloatArray) -> list[Kinds]:
+    """Return the kinds and mounts of pins at ``places`` on the disc: x and y in m first, shape (n, 2 or more).
+
+    They lie in the plane of contact, with x along that of the two axes of the disc whose angle the contact has.
+    """
+    axis = _axes_and_spin(mbs, master)[0] @ master.rotation[:, 2] @ _axes_and_spin(mbs, disc)[0]
+    x, y, _ = disc.rotation.T
+    along = x if (x @ axis) ** 2 < 0.5 else y  # as in ``slip_and_place``
+    along = along - (along @ axis) * axis
+    along /= np.linalg.norm(along)
+    arms = places[:, :1] * along + places[:, 1:2] * np.cross(axis, along)
+    return [nodes_and_kinds(master, replace(disc, place=disc.place + arm))[1] for arm in arms]
 
 
 def _share_an_axis(master: Side, disc: Side) -> bool:

@@ -31,7 +31,7 @@ initial velocities of the nodes, so it finds the equilibrium of a disc on a turn
 *Exact stick.* Without ε, constraints hold the slip until the load exceeds the static friction. This requires
 ``solve_dynamic`` with an implicit solver. The contact does not creep, and the steps can be as large as the motion
 allows. Switching times are as accurate as the solver's steps. A contact on one axis that reverses twice within one
-step goes undetected.
+step goes undetected. Each of several points sticks alone, and evaluates functions with its own slip speed.
 """
 
 from __future__ import annotations
@@ -46,18 +46,19 @@ import numpy as np
 from exudyn_models.forces.axial_pairs import ON_ONE_AXIS, AxialStick, constant_law
 from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
 from exudyn_models.forces.friction_laws import Contact as Geometry
-from exudyn_models.forces.laws.places import ring_places, table_of
+from exudyn_models.forces.laws.places import places_in, ring_places, table_of
 from exudyn_models.forces.laws.pressures import Pressure, density_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Kinds
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import add_friction_connector, rotor_markers
 from exudyn_models.parts.friction_sensors import RingFriction
-from exudyn_models.parts.mounts import Side, check_axes, checked_sides, nodes_and_kinds
+from exudyn_models.parts.mounts import Side, check_axes, checked_sides, kinds_at, nodes_and_kinds
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact
 from exudyn_models.solver.items import items
 from exudyn_models.solver.stick.planar_stick import PlanarStick
+from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import FloatArray, Place, checked_places, finite_number, positive_number
 
 UNREGULARISED = 1e-200
@@ -161,7 +162,10 @@ def _add_friction(
         check_axes(mbs, *sides)
     nodes, kinds = nodes_and_kinds(*sides)
     reference = np.hstack([mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes])
-    contact = (_sticking if sticks else _regularised)(kinds, reference, factors)
+    pins = _pins(mbs, sides, kinds, factors) if sticks else []
+    contact = (
+        _sticking(kinds, reference, factors, pins) if sticks else _regularised(kinds, reference, factors)
+    )
     item = add_friction_connector(mbs, nodes, contact)
     if contact.stick is not None:
         contact.stick.locks = _add_locks(mbs, nodes, contact, contact.stick)
@@ -177,25 +181,38 @@ def _regularised(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficien
     return Contact(kinds, reference, factors, functions, None, constant_law(kinds, factors) is not None)
 
 
-def _sticking(kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient) -> Contact:
+def _pins(mbs: Any, sides: tuple[Side, Side], kinds: Kinds, factors: LoadAndCoefficient) -> list[Kinds]:
+    """Return the kinds of pins at the contact's points, if each of them may stick alone, else an empty list."""
+    radius, points, _, _, held, table = factors.geometry
+    if held != NONE_HELD:
+        raise ValueError(
+            f"contact_points = {points}: points of which one is held (held = {held + 1}) need a regularisation, "
+            "because friction of the held point is viscous; without it every point sticks and slides by itself"
+        )
+    if points <= CONTINUOUS or radius == 0.0 or kinds in ON_ONE_AXIS:
+        return []
+    return kinds_at(mbs, *sides, places_in(table))
+
+
+def _sticking(
+    kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient, pins: Sequence[Kinds]
+) -> Contact:
     ratio, factors = factors.static_ratio, factors.without_peak()
+    stick: AxialStick
     if kinds in ON_ONE_AXIS:
         stick = AxialStick(kinds, reference, factors, ratio)
-    elif factors.geometry[1] > 1:
-        raise ValueError(
-            f"contact_points = {factors.geometry[1]}: each point may stick alone, so points on bodies that can slide "
-            "sideways need a regularisation, or one contact with contact_radius=0 for each, at a marker there"
-        )
+    elif pins:
+        stick = PointSticks.at(pins, kinds, reference, factors, ratio)
     else:
-        sliding = force_and_jacobian(kinds, reference, factors)
-        stick = PlanarStick(kinds, reference, factors, ratio, sliding=sliding)
+        stick = PlanarStick(kinds, reference, factors, ratio)
     return Contact(
         kinds, reference, factors, {"force": stick.force, "jacobian": stick.jacobian}, stick, False
     )
 
 
 def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialStick) -> tuple[int, ...]:
-    if not isinstance(stick, PlanarStick):
+    parts = [part for part in stick.parts() if isinstance(part, PlanarStick)]
+    if not parts:
         lock = items.ObjectConnectorCoordinate(
             name=contact.lock_name(0),
             markerNumbers=rotor_markers(mbs, nodes),
@@ -208,15 +225,15 @@ def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialSti
     markers = [mbs.AddMarker(items.MarkerNodeCoordinates(nodeNumber=node)) for node in nodes]
     locks = (
         items.ObjectConnectorCoordinateVector(
-            name=contact.lock_name(i),
+            name=contact.lock_name(number),
             markerNumbers=markers,
             scalingMarker0=np.zeros((1, 1)),  # one equation
             velocityLevel=True,
-            constraintUserFunction=partial(stick.constraint, i),
-            jacobianUserFunction=partial(stick.constraint_jacobian, i),
+            constraintUserFunction=partial(part.constraint, i),
+            jacobianUserFunction=partial(part.constraint_jacobian, i),
             activeConnector=False,
         )
-        for i in range(3)
+        for number, (part, i) in enumerate((part, i) for part in parts for i in range(part.most_locks))
     )
     return tuple(int(mbs.AddObject(lock)) for lock in locks)
 

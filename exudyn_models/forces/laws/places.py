@@ -55,6 +55,16 @@ def places_in(table: float) -> FloatArray:
     return _KNOWN[table][1:].reshape(-1, 3)
 
 
+def slip_maps(table: float, angle: float) -> FloatArray:
+    """Return the maps from (u, S) to the slip of each point, shape (n, 2, 3), at the ``angle`` (rad) of the disc."""
+    x, y, _ = places_in(table).T
+    arms = np.exp(1j * angle) * (x + 1j * y)
+    maps = np.zeros((len(arms), 2, 3))
+    maps[:, 0, 0] = maps[:, 1, 1] = 1.0
+    maps[:, 0, 2], maps[:, 1, 2] = -arms.imag, arms.real
+    return maps
+
+
 @compiled
 def place_at(table: float, point: int) -> tuple[complex, float]:
     """Return place (m) and share of a point."""

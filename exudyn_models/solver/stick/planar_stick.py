@@ -12,7 +12,7 @@ lies within the limit surface, which is that of the potential P(B·v).
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,6 +21,7 @@ import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
+from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
     SlipMotion,
     linear_friction,
@@ -42,12 +43,11 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
-    ``sliding`` are the user functions for Coulomb's force and its Jacobian. ``on_axis`` it is an ``AxialStick``. Its
-    locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``, shape (3, k); joints leave those in ``allowed``
-    free. ``direction``, shape (3,), is the slip at its release: normal to the limit surface, with P = 1 m/s.
+    If ``on_axis`` it is an ``AxialStick``. Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``,
+    shape (3, k); joints leave those in ``allowed`` free. ``direction``, shape (3,), is the slip at its release: normal
+    to the limit surface, with P = 1 m/s.
     """
 
-    sliding: tuple[Callable[..., Any], ...] = ()
     on_axis: bool = True
     basis: FloatArray = field(default_factory=lambda: SPIN)
     allowed: FloatArray = field(default_factory=lambda: SPIN)
@@ -67,6 +67,16 @@ class PlanarStick(AxialStick):
 
     def __post_init__(self) -> None:
         self.set_basis(self.basis)
+        self.renew()
+
+    def renew(self) -> None:
+        """Use the present load and coefficient from now on."""
+        self._sliding = force_and_jacobian(self.kinds, self.reference, self.factors)
+
+    @property
+    def most_locks(self) -> int:
+        """Largest number of constraints that hold the contact."""
+        return 3 if self.mean_radius > 0.0 else 2
 
     def span(self, slips: FloatArray) -> FloatArray:
         """Return a basis of ``slips``, shape (3, n); a pin does not resist spin."""
@@ -116,7 +126,7 @@ class PlanarStick(AxialStick):
     def load_share(self, wrench: FloatArray, friction: float) -> tuple[float, FloatArray]:
         """Return the share of ``friction`` (N) that a ``wrench`` needs, and the resisted slip with P = 1 m/s."""
         contact, radius, load, columns = self.factors.geometry, self.mean_radius, -wrench, self.allowed
-        if columns.shape[1] == (3 if radius else 2):  # the slip of the centre has the direction of the force
+        if columns.shape[1] == self.most_locks:  # the slip of the centre has the direction of the force
             force = math.hypot(load[0], load[1])
             along = [load[0] / force, load[1] / force, 0.0] if force else [1.0, 0.0, 0.0]
             columns = np.array([along, [0.0, 0.0, 1.0 / radius]] if radius else [along]).T
@@ -131,16 +141,16 @@ class PlanarStick(AxialStick):
         """Return the static friction in N."""
         return self.static_ratio * self.factors.friction_force(t, 0.0, 0.0, 0.0)
 
-    def capacity_share(self, mbs: Any, t: float) -> float:
+    def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return load over capacity: 1 while the contact slides, 0 while it is open."""
         if self.on_axis or not self.rests:
             return super().capacity_share(mbs, t)
         return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]
 
-    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float) -> FloatArray:
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
         if self.on_axis:
-            return super().wrench(mbs, t, slip, radius)
+            return super().wrench(mbs, t, slip, radius, angle)
         if self.rests:
             return self.held_wrench(mbs)
         return self.sliding_wrench(t, slip, radius) if self.slides else np.zeros(3)
@@ -152,7 +162,7 @@ class PlanarStick(AxialStick):
         if not self.slides or self.idle:
             return [0.0] * len(q)
         if not self.predicts and not self.frozen:
-            return self.sliding[0](mbs, t, item, q, q_t)
+            return self._sliding[0](mbs, t, item, q, q_t)
         return self._linear(t, q, q_t, 0.0, 0.0)[0].tolist()
 
     def start_step(self, q: FloatArray, q_t: FloatArray) -> None:
@@ -206,7 +216,7 @@ class PlanarStick(AxialStick):
         if self.predicts or self.frozen:
             self.predicts = False
             return np.asarray(self._linear(t, q, q_t, -position_factor, -velocity_factor)[1])
-        found: FloatArray = self.sliding[1](mbs, t, item, q, q_t, position_factor, velocity_factor)
+        found: FloatArray = self._sliding[1](mbs, t, item, q, q_t, position_factor, velocity_factor)
         return found
 
     def constraint(

@@ -35,7 +35,7 @@ class SlidingSteps:
     def __init__(self, mbs: Any, contacts: Sequence[PlanarContact], step: float) -> None:
         self._mbs, self._contacts, self._step = mbs, contacts, step
         self._by_slip = self._growing = math.inf
-        self._directions: dict[int, FloatArray] = {}
+        self._directions: dict[PlanarContact, FloatArray] = {}
         self.pauses = self.rests = False
 
     @property
@@ -76,7 +76,7 @@ class SlidingSteps:
         for contact in self._contacts:
             if contact.free_to_slide:
                 motion = contact.slid(self._mbs)
-                self._directions[contact.item] = contact.scaled(motion.gradient)
+                self._directions[contact] = contact.scaled(motion.gradient)
                 shortest = contact.rest_share * self._step
                 self.rests |= motion.rests_within(shortest)
                 if motion.rate_potential > 0.0:

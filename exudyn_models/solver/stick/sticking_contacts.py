@@ -36,6 +36,8 @@ class ModeChange:
         Object number of the contact's connector.
     before, after : Mode
         Mode until and from that time.
+    point : int or None
+        Number of the point, from 1, of a contact at several points.
 
     """
 
@@ -43,6 +45,7 @@ class ModeChange:
     contact: int
     before: Mode
     after: Mode
+    point: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +82,8 @@ class StickingContact:
 
     def restore_user_functions(self, mbs: Any) -> None:
         """Undo ``omit_user_functions``."""
+        if self.stick.constant_forces is None:
+            return
         mbs.SetObjectParameter(self.item, "forceVector", np.zeros(len(self.places)))
         mbs.SetObjectParameter(self.item, "forceUserFunction", self.stick.force)
         mbs.SetObjectParameter(self.item, "jacobianUserFunction", self.stick.jacobian)
@@ -283,9 +288,10 @@ def _sliding_mode(slip: FloatArray) -> Mode:
 def sticking_contacts(mbs: Any) -> list[StickingContact]:
     """Return the contacts of a model that stick exactly."""
     return [
-        StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+        StickingContact(item, part, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
         if contact.stick is not None
+        for part in contact.stick.parts()
     ]
 
 

@@ -104,7 +104,7 @@ ON_POINTS = [  # with slip, stick and release; a point rests alone for 0.3 s in 
 
 
 @pytest.mark.parametrize(("points", "parameters", "start"), ON_POINTS)
-def test_pins_on_a_body_stick_pivot_and_break_loose_as_the_points_of_the_reference(points, parameters, start):
+def test_points_stick_pivot_and_break_loose_as_in_the_reference(points, parameters, start):
     stiffness, friction, speed, offset, inertia = parameters
     disc = DiscOnDisc(
         mass=1.0, stiffness=stiffness, damping=0.05, friction_force=friction, disc_speed=speed, offset=offset,
@@ -117,9 +117,8 @@ def test_pins_on_a_body_stick_pivot_and_break_loose_as_the_points_of_the_referen
         master = rotor(mbs, 1e9, speed)  # heavy enough to keep its speed
         node = planar_body(mbs, 1.0, inertia, start[:3], start[3:])
         add_radial_support(mbs, None, node, stiffness=stiffness, damping=0.05, offset=[offset, 0.0])
-        for angle in 2.0 * math.pi * np.arange(points) / points:
-            place = [0.15 * math.cos(angle), 0.15 * math.sin(angle)]
-            add_pin(mbs, master, place, friction / points)
+        law = {"contact_radius": 0.15, "contact_points": points, "friction_coefficient": 1.0}
+        add_ring_friction(mbs, master, node, normal_load=friction, **law)
         changes = run(mbs, 4.0, step)
         assert [after == LOCKED for *_, after in changes] == [True] * points + [False] * points
         times = [time for time, *_ in changes[points - 1 :]]  # the last rest, and the releases

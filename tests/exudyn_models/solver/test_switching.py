@@ -6,7 +6,7 @@ import math
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import ball, drive, new_model, planar_body, rotations, rotor, settings_of
+from free_bodies import ball, drive, new_model, rotations, rotor, settings_of
 from free_bodies import changes_of as run
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
@@ -268,12 +268,8 @@ def test_changes_at_a_break_are_among_the_changes():
     ]
 
 
-def test_explicit_solvers_and_points_on_bodies_that_can_slide_sideways_are_refused():
+def test_explicit_solvers_are_refused():
     mbs, _ = braked(2.0, lambda t: 0.0)
     mbs.Assemble()
     with pytest.raises(ValueError, match="solverType = RK44: it is explicit"):
         solve_dynamic(mbs, settings_of(1.0, 10), SOLVERS.RK44)
-    mbs = new_model()
-    law = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 10.0, "contact_points": 3}
-    with pytest.raises(ValueError, match=r"contact_points = 3: .* need a regularisation"):
-        add_ring_friction(mbs, None, planar_body(mbs, 1.0, 1.0, [0.0] * 3, [1.0] * 3), **law)

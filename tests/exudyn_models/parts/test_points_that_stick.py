@@ -1,0 +1,158 @@
+"""One contact at several points that stick exactly: its loads, sensors, modes and refusals."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from free_bodies import ball, coordinate, items, new_model, planar_body, settings_of
+from test_orientations import ACROSS, AXES, REVERSED
+
+from exudyn_models import add_ring_friction, solve_dynamic
+from reference_model import Points
+from reference_model.contact import largest_wrench
+
+SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
+FEET = [(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)]
+MASS, INERTIA, FRICTION = 1.0, 2e-3, 2.0
+LAW = {"friction_coefficient": 0.2, "contact_points": FEET}
+SENSORS = "transmitted_moment", "radial_force", "power", "mode", "capacity_share", "centre_slip"
+REST = [0.0] * 3
+
+
+def body_on_feet(velocity=REST, **options):
+    """Return a model of a body on feet, its node and its contact."""
+    mbs = new_model()
+    node = planar_body(mbs, MASS, INERTIA, REST, velocity)
+    return mbs, node, add_ring_friction(mbs, None, node, **LAW | {"normal_load": 10.0} | options)
+
+
+def push(mbs, node, load, size):
+    """Push the body with ``size`` (time) times a force (N) and a moment (N m)."""
+    for place, share in enumerate(load):
+        marker = coordinate(mbs, node, place)
+        mbs.AddLoad(
+            items.LoadCoordinate(
+                markerNumber=marker, loadUserFunction=lambda mbs, t, _, share=share: share * size(t)
+            )
+        )
+
+
+def run(mbs, end, steps=100, **options):
+    return solve_dynamic(mbs, settings_of(end, steps), SOLVER, **options)
+
+
+@pytest.mark.parametrize("load", [[1.0, 0.0, 0.01], [0.3, -0.4, -0.05], [0.0, 1.0, 0.0], [0.0, 0.0, 0.1]])
+@pytest.mark.parametrize("plates", [1, 2])
+def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
+    """The sensors show the load and the share of the largest one, and the static friction releases the body."""
+    force, moment = largest_wrench(Points(FEET), complex(*load[:2]), load[2])
+    largest = np.linalg.norm([force.real, force.imag, moment]) / np.linalg.norm(load)
+    ratio, size = 1.25, FRICTION * plates * largest
+    mbs, node, contact = body_on_feet(static_ratio=ratio, plates=plates)
+    sensors = [contact.add_sensor(one) for one in ("transmitted_moment", "radial_force", "capacity_share")]
+    push(mbs, node, load, lambda t: size * t)
+    mbs.Assemble()
+    assert run(mbs, 1.0, updateInitialValues=True) == []
+    held, pushed, share = (mbs.GetSensorValues(sensor) for sensor in sensors)
+    assert [*pushed[:2], float(held)] == pytest.approx(-size * np.array(load), abs=1e-12)
+    assert float(share) == pytest.approx(1.0 / ratio, rel=1e-6)
+    settings = settings_of(1.5, 50, start=1.0)
+    changes = solve_dynamic(mbs, settings, SOLVER)
+    assert len(changes) > 1
+    first, second, *_ = (change.time for change in changes)  # the body may pivot about the third foot for a while
+    assert [first, second] == pytest.approx([ratio, ratio], abs=1e-6)
+    assert {change.contact for change in changes} == {int(contact.item)}
+
+
+def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load():
+    motion = [0.4, 0.2, 6.0]
+    shown = []
+    for epsilon in (None, 1e-9):
+        mbs, _, contact = body_on_feet(motion, regularisation=epsilon)
+        sensors = [contact.add_sensor(one) for one in SENSORS]
+        contact.change(normal_load=20.0)
+        run(mbs, 1e-6, 1)
+        shown.append(np.concatenate([np.atleast_1d(mbs.GetSensorValues(sensor)) for sensor in sensors]))
+    np.testing.assert_allclose(*shown, rtol=1e-9, atol=1e-12)
+
+
+def test_modes_and_heat_are_those_of_the_body_that_slides_pivots_and_rests():
+    motion = [0.4, 0.2, 6.0]
+    mbs, _, contact = body_on_feet(motion)
+    mode, share, heat = (contact.add_sensor(one) for one in ("mode", "capacity_share", "heat"))
+    first, *others = run(mbs, 0.4, 400)
+    times, modes = mbs.GetSensorStoredData(mode).T
+    assert first.point == 1
+    assert (modes[times < others[-1].time - 1e-9] == 1).all()  # it pivots after the first change
+    assert modes[-1] == 0
+    shares = mbs.GetSensorStoredData(share)[:, 1]
+    np.testing.assert_allclose(shares[times < others[-1].time - 1e-9], 1.0)
+    assert shares[-1] == pytest.approx(0.0, abs=1e-9)
+    energy = MASS * (motion[0] ** 2 + motion[1] ** 2) / 2.0 + INERTIA * motion[2] ** 2 / 2.0
+    assert float(mbs.GetSensorValues(heat)) == pytest.approx(energy, rel=1e-5)
+
+
+@pytest.mark.parametrize("axes", [AXES[0], REVERSED, ACROSS, AXES[9]])
+def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_disc(axes):
+    ends = []
+    for epsilon in (None, 1e-7):
+        mbs = new_model()
+        disc = ball(
+            mbs, exu.NodeType.RotationRxyz, MASS, INERTIA, REST, [0.4, 0.2, 0.0], [0.0, 0.0, 6.0], axes
+        )
+        add_ring_friction(mbs, None, disc, normal_load=10.0, regularisation=epsilon, **LAW)
+        run(mbs, 0.05)
+        ends.append(mbs.systemData.GetODE2Coordinates_t())
+    np.testing.assert_allclose(*ends, rtol=0.0, atol=1e-8)
+
+
+def test_points_of_a_body_that_a_joint_holds_on_its_axis_share_the_moment():
+    mbs = new_model()
+    node = planar_body(mbs, MASS, INERTIA, REST, [0.0, 0.0, 10.0])
+    ground = coordinate(mbs, None)
+    for place in (0, 1):
+        mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=[ground, coordinate(mbs, node, place)]))
+    law = {"contact_radius": 0.1, "contact_points": 3, "friction_coefficient": 0.2}
+    contact = add_ring_friction(mbs, None, node, normal_load=10.0, **law)
+    push(mbs, node, [0.0, 0.0, 1.0], lambda t: max(0.0, t - 0.2))
+    changes = run(mbs, 0.45)
+    stop, release = np.unique([change.time for change in changes])
+    assert [stop, release] == pytest.approx([10.0 * INERTIA / 0.2, 0.4], abs=1e-9)
+    assert {int(change.contact) for change in changes} == {int(contact.item)}
+
+
+def test_a_deleted_contact_lets_all_its_points_go():
+    mbs, node, contact = body_on_feet()
+    push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
+    mbs.Assemble()
+    assert run(mbs, 0.1) == []
+    mbs.DeleteObject(contact.item, deleteDependentItems=False)
+    mbs.Assemble()
+    run(mbs, 0.1)
+    assert mbs.systemData.GetODE2Coordinates_t() == pytest.approx([0.1 / MASS, 0.0, 0.0])
+
+
+def test_a_single_point_off_the_centre_sticks_there():
+    """A body that swings about its only point keeps its spin, because a point exerts no moment about itself."""
+    mbs = new_model()
+    node = planar_body(mbs, MASS, INERTIA, REST, [0.0, -0.3, 3.0])
+    law = {"contact_radius": 0.1, "contact_points": 1, "friction_coefficient": 1.0}
+    add_ring_friction(mbs, None, node, normal_load=10.0, **law)
+    assert run(mbs, 0.4, 400) == []
+    vx, vy, spin = mbs.systemData.GetODE2Coordinates_t()
+    assert spin == pytest.approx(3.0, rel=1e-5)
+    assert [vx, vy] == pytest.approx([0.3 * np.sin(1.2), -0.3 * np.cos(1.2)], abs=1e-4)
+
+
+def test_points_with_a_load_of_radius_or_with_one_that_is_held_are_refused():
+    with pytest.raises(ValueError, match=r"contact_points = 3: .* need a regularisation"):
+        body_on_feet(held=2)
+    with pytest.raises(ValueError, match=r"contact_points = 3: .* need a regularisation"):
+        body_on_feet(normal_load=lambda radius: 1.0 + radius)
+    mbs, _, contact = body_on_feet([0.4, 0.2, 6.0])
+    moment = contact.add_sensor("transmitted_moment")
+    run(mbs, 1e-6, 1)
+    before = float(mbs.GetSensorValues(moment))
+    with pytest.raises(ValueError, match=r"contact_points = 3: .* need a regularisation"):
+        contact.change(friction_coefficient=lambda radius: 0.3, normal_load=20.0)
+    run(mbs, 1e-6, 1)
+    assert float(mbs.GetSensorValues(moment)) == before
