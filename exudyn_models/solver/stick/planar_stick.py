@@ -44,8 +44,8 @@ class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
     If ``on_axis`` it is an ``AxialStick``. Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``,
-    shape (3, k); joints leave those in ``allowed`` free. ``direction``, shape (3,), is the slip at its release: normal
-    to the limit surface, with P = 1 m/s.
+    shape (3, k); joints leave those in ``allowed`` free. ``direction``, shape (3,), is the slip at its release,
+    normal to the limit surface, with P = 1 m/s.
     """
 
     on_axis: bool = True
