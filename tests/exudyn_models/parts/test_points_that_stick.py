@@ -58,7 +58,9 @@ def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     settings = settings_of(1.5, 50, start=1.0)
     changes = solve_dynamic(mbs, settings, SOLVER)
     assert len(changes) > 1
-    first, second, *_ = (change.time for change in changes)  # the body may pivot about the third foot for a while
+    first, second, *_ = (
+        change.time for change in changes
+    )  # the body may pivot about the third foot for a while
     assert [first, second] == pytest.approx([ratio, ratio], abs=1e-6)
     assert {change.contact for change in changes} == {int(contact.item)}
 
