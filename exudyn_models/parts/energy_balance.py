@@ -132,9 +132,13 @@ def add_energy_balance(
 def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
     powers = list(named.values())
 
-    def rates(mbs: Any, t: float, item: int, works: Any) -> list[float]:
+    def of_all(mbs: Any, t: float, item: int, works: Any) -> list[float]:
         return [power(mbs, t) / unit for power in powers]
 
+    def of_one(mbs: Any, t: float, item: int, works: Any) -> list[float]:
+        return [powers[0](mbs, t) / unit]
+
+    rates = of_one if len(powers) == 1 else of_all
     watch_powers(rates, list(named), unit)
     node = add_integrals(mbs, rates, [0.0] * len(powers))
     return node_sensor(mbs, node, exu.OutputVariableType.Coordinates)
@@ -142,10 +146,12 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
     bodies: list[int] = []
+    objects = 0
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
-        if not bodies:  # objects have outputs only after assembly
-            bodies.extend(_bodies(mbs))
+        nonlocal objects
+        if objects != (present := mbs.systemData.NumberOfObjects()):  # they have outputs only after assembly
+            bodies[:], objects = _bodies(mbs), present
         return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
 
     return mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **IN_MEMORY))

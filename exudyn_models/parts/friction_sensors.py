@@ -5,21 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import cached_property
 from operator import mul
 from typing import Any, Literal, cast, get_args
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import on_one_axis
+from exudyn_models.forces.axial_pairs import constant_law, on_one_axis
 from exudyn_models.forces.friction_laws import friction_of, mean_radius, potential_of
 from exudyn_models.forces.load_and_coefficient import Coefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
-from exudyn_models.solver.contacts import Contact, present_item
+from exudyn_models.solver.contacts import Contact, places_of, present_item
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.stick.point_sticks import PointSticks
@@ -91,6 +90,7 @@ class RingFriction:
         if isinstance(stick, PointSticks):
             stick.check(friction_coefficient, normal_load)
         factors.change(friction_coefficient, normal_load)
+        contact.power = None
         if stick is not None:
             stick.renew()
             return
@@ -172,32 +172,44 @@ class RingFriction:
         return values
 
     def power(self, mbs: Any, t: float) -> float:
-        """Return the heating power of friction in W, for ``add_energy_balance``."""
-        get_coordinates, get_velocities, first, second = self._access
-        values = get_velocities()
-        velocities = values[first].tolist()
-        if second:
-            velocities += values[second].tolist()
-        coordinates = velocities  # ignored by rotors on one axis
-        if get_coordinates:
-            values = get_coordinates()
-            coordinates = values[first].tolist()
-            if second:
-                coordinates += values[second].tolist()
-        forces = self._contact.functions["force"](mbs, t, 0, coordinates, velocities)
-        return -float(sum(map(mul, forces, velocities)))
+        """Return the heating power of friction in W, in the form that ``add_energy_balance`` expects."""
+        return (self._contact.power or self._new_power())(t)
 
-    @cached_property  # a look-up costs as much as a call
-    def _access(self) -> tuple[Any, Any, slice, slice | None]:
-        data = self.mbs.systemData
-        on_axis = on_one_axis(self._contact.kinds, self._contact.factors)
-        first, second, *_ = *self._places, None
-        return None if on_axis else data.GetODE2Coordinates, data.GetODE2Coordinates_t, first, second
+    def _new_power(self) -> Callable[[float], float]:
+        """Return the power in W as a function of the time in s, for the model as it is assembled now."""
+        mbs, contact, places = self.mbs, self._contact, self._places
+        get_coordinates, get_velocities = (
+            mbs.systemData.GetODE2Coordinates,
+            mbs.systemData.GetODE2Coordinates_t,
+        )
+        force, place, pair = contact.functions["force"], places[0], len(self.nodes) == 2
+        on_axis = on_one_axis(contact.kinds, contact.factors)
+        law = constant_law(contact.kinds, contact.factors) if contact.built_in else None
+
+        def of_constant_moment(t: float) -> float:
+            velocities = get_velocities()[place].tolist()
+            spin = abs(velocities[-1] - velocities[0] if pair else velocities[0])
+            return float(moment * (spin if spin > creep else spin * spin / creep))
+
+        def of_any(t: float) -> float:
+            values = get_velocities()
+            velocities = [value for place in places for value in values[place].tolist()]
+            coordinates = velocities  # ignored by rotors on one axis
+            if not on_axis:
+                values = get_coordinates()
+                coordinates = [value for place in places for value in values[place].tolist()]
+            return -float(sum(map(mul, force(mbs, t, 0, coordinates, velocities), velocities)))
+
+        contact.power = of_any
+        if law and len(places) == 1:  # half the cost
+            (moment, creep), contact.power = law, of_constant_moment
+        return contact.power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:
         def rate(mbs: Any, t: float, item: int, heat: Any) -> list[float]:
-            return [self.power(mbs, t)]
+            return [(contact.power or self._new_power())(t)]
 
+        contact = self._contact
         watch_powers(rate, ["heat"])
         node = add_integrals(self.mbs, rate, [0.0])
         return node_sensor(self.mbs, node, exu.OutputVariableType.Coordinates, **options)
@@ -218,12 +230,10 @@ class RingFriction:
         )
         return self._contact.reference + q, q_t
 
-    @cached_property  # nodes added later do not change it
-    def _places(self) -> list[Any]:
-        item = present_item(self.mbs, self._contact, self.item)
-        places = np.array(self.mbs.systemData.GetObjectLTGODE2(item))
-        runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
-        return [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
+    @property
+    def _places(self) -> list[slice]:
+        """Slices of the nodes' coordinates among those of the assembled model."""
+        return places_of(self.mbs, self._contact, self.item)
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, or None without friction."""

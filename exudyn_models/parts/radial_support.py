@@ -37,6 +37,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
+from exudyn_models.solver.contacts import Support, places_of, register_support
 from exudyn_models.solver.items import IN_MEMORY, items
 from reference_model.systems import FloatArray, finite_number
 
@@ -58,12 +59,14 @@ class RadialSupport:
     _reference: FloatArray = field(repr=False)
     _offset: Offset = field(repr=False)
     _law: Law = field(repr=False)
+    _support: Support = field(repr=False)
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, for ``add_energy_balance``."""
         # On the ground with the global axes, ẇ is the node's velocity, which costs less.
         if len(self.nodes) == 1 and self._kinds[2] is None:
-            vx, vy, *_ = mbs.GetNodeOutput(self.nodes[0], exu.OutputVariableType.Coordinates_t).tolist()
+            (place,) = places_of(mbs, self._support, self.item)
+            vx, vy, *_ = mbs.systemData.GetODE2Coordinates_t()[place].tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
 
@@ -96,9 +99,10 @@ class RadialSupport:
     def _state(
         self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
     ) -> tuple[FloatArray, FloatArray, float, float]:
+        data, places = mbs.systemData, places_of(mbs, self._support, self.item)
         q, q_t = (
-            np.hstack([mbs.GetNodeOutput(node, variable, configuration) for node in self.nodes])
-            for variable in (exu.OutputVariableType.Coordinates, exu.OutputVariableType.Coordinates_t)
+            np.hstack([values[place] for place in places])
+            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
         )
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
@@ -157,11 +161,13 @@ def add_radial_support(
     kinds, hidden = _kinds_and_hidden(pair)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]
     reference = np.hstack([np.zeros(hidden), *own])
+    support = register_support(mbs)
     if hidden == ON_GROUND and hardening == 0.0 and stop_stiffness == 0.0:
-        item = _add_springs(mbs, nodes[0], place, law)
+        item = _add_springs(mbs, nodes[0], place, law, support.name)
     else:
-        item = add_connector(mbs, nodes, *support_functions(hidden, kinds, reference, place, law))
-    return RadialSupport(mbs, item, nodes, kinds, reference, place, law)
+        functions = support_functions(hidden, kinds, reference, place, law)
+        item = add_connector(mbs, nodes, *functions, support.name)
+    return RadialSupport(mbs, item, nodes, kinds, reference, place, law, support)
 
 
 def _checked_law(
@@ -195,11 +201,12 @@ def _checked_offset(offset: Sequence[float]) -> Offset:
     return finite_number("offset[0]", x), finite_number("offset[1]", y)
 
 
-def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law) -> Any:
+def _add_springs(mbs: Any, node: Any, offset: Offset, law: Law, name: str) -> Any:
     stiffness, *_, damping = law
     ground = mbs.AddObject(items.ObjectGround(referencePosition=[*offset, 0.0]))
     return mbs.AddObject(
         items.CartesianSpringDamper(
+            name=name,
             markerNumbers=[
                 mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=ground)),
                 mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)),

@@ -6,8 +6,11 @@ starts their numbers again.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
+
+import numpy as np
 
 from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
@@ -15,7 +18,22 @@ from exudyn_models.forces.slip_kinematics import Kinds
 from exudyn_models.forces.stick_dampers import StickDampers
 from reference_model.systems import FloatArray
 
-_CONTACTS = "friction contacts"
+_CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
+
+
+class Placed(Protocol):
+    """A connector with a ``name`` and the ``places`` of its coordinates, which hold until objects are deleted."""
+
+    name: str
+    places: list[slice] | None
+
+
+@dataclass(eq=False)
+class Support:
+    """The connector of a radial support."""
+
+    name: str = ""
+    places: list[slice] | None = None
 
 
 @dataclass(eq=False)
@@ -23,7 +41,8 @@ class Contact:
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
-    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
+    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``. The ``power`` (W) as a function of the time (s)
+    and the ``places`` of the nodes' coordinates hold until objects are deleted.
     """
 
     kinds: Kinds
@@ -33,6 +52,8 @@ class Contact:
     stick: AxialStick | None
     built_in: bool
     name: str = ""
+    power: Callable[[float], float] | None = None
+    places: list[slice] | None = None
 
     @property
     def dampers(self) -> StickDampers:
@@ -51,29 +72,54 @@ def register(mbs: Any, contact: Contact) -> None:
     known[contact.name] = contact
 
 
+def register_support(mbs: Any) -> Support:
+    """Store a support in its model; return it with the name that its connector must have."""
+    known: list[Support] = mbs.sys.setdefault(_SUPPORTS, [])
+    known.append(Support(f"radial support {len(known)}"))
+    return known[-1]
+
+
+def places_of(mbs: Any, placed: Placed, item: Any) -> list[slice]:
+    """Return slices of the coordinates of a connector, which was ``item`` when it was added, in its assembled model.
+
+    Raises ``ValueError`` if it was deleted.
+    """
+    if placed.places is None:
+        places = np.array(mbs.systemData.GetObjectLTGODE2(present_item(mbs, placed, item)))
+        runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
+        placed.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
+    return placed.places
+
+
 def contacts_of(mbs: Any) -> dict[int, Contact]:
     """Return the contacts of a model by the present object numbers of their connectors.
 
     Updates the locks, and deactivates those of deleted contacts. Raises ``ValueError`` if a contact has lost its
     locks.
     """
+    for support in mbs.sys.get(_SUPPORTS, []):
+        support.places = None  # other objects may have been deleted
     known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
     if not known:
         return {}
     numbers = {mbs.GetObject(item)["name"]: item for item in range(mbs.systemData.NumberOfObjects())}
     for contact in known.values():
+        contact.power = contact.places = None
         if contact.stick is not None:
             _renew_locks(mbs, contact, contact.stick, numbers)
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
 
 
-def present_item(mbs: Any, contact: Contact, item: Any) -> Any:
-    """Return the object number of a contact's connector, at first ``item``; raise ``ValueError`` if it is gone."""
+def present_item(mbs: Any, placed: Placed, item: Any) -> Any:
+    """Return the object number of a connector, which was ``item`` when it was added.
+
+    Raises ``ValueError`` if it was deleted.
+    """
     count = mbs.systemData.NumberOfObjects()
-    for number in (item, *range(count)):
-        if int(number) < count and mbs.GetObjectParameter(number, "name") == contact.name:
+    for number in (item, *range(count)):  # mostly the first
+        if int(number) < count and mbs.GetObjectParameter(number, "name") == placed.name:
             return number
-    raise ValueError(f"{contact.name!r} was deleted: it cannot be changed or measured")
+    raise ValueError(f"{placed.name!r} was deleted: it cannot be changed or measured")
 
 
 def _renew_locks(mbs: Any, contact: Contact, stick: AxialStick, numbers: dict[str, int]) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from free_bodies import drive, new_model, planar_body, rate_of, rotor, settings_of
 
-from exudyn_models import add_ring_friction, solve_dynamic
+from exudyn_models import add_energy_balance, add_radial_support, add_ring_friction, solve_dynamic
 
 FRICTION = {"contact_radius": 0.1, "friction_coefficient": 0.3}
 
@@ -69,3 +69,55 @@ def test_a_contact_without_its_constraints_is_refused():
     mbs.DeleteObject(int(friction.item) + 1, deleteDependentItems=False)
     with pytest.raises(ValueError, match=r"object 1, 'friction contact 0': constraints .* were deleted"):
         run(mbs)
+
+
+@pytest.mark.parametrize("regularisation", [None, 1e-9])
+@pytest.mark.parametrize("planar", [False, True])
+def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_two_runs(
+    planar, regularisation
+):
+    mbs = new_model()
+    body = planar_body(mbs, 1.0, 0.5, [0.0] * 3, [1.0, 2.0, 7.0])
+    law = FRICTION | {"normal_load": 400.0, "regularisation": regularisation}
+    friction = add_ring_friction(mbs, None, wheel(mbs, planar), **law)
+    quantities = "relative_spin", "transmitted_moment", "power", "heat"
+    sensors = [friction.add_sensor(quantity) for quantity in quantities]
+    for _ in range(2):
+        run(mbs)
+        shown = [float(mbs.GetSensorValues(sensor)) for sensor in sensors]
+        spin = 3.0 - 12.0 * 0.1 / 0.5
+        heat = 0.5 * (3.0**2 - spin**2) / 2.0
+        assert shown == pytest.approx([spin, -12.0, 12.0 * spin, heat], rel=1e-6)
+        if body is not None:
+            mbs.DeleteObject(int(body))  # with its node
+            body = None
+
+
+@pytest.mark.parametrize("base", [False, True])
+@pytest.mark.parametrize("again", [False, True], ids=["before a run", "between runs"])
+def test_a_support_shows_its_own_disc_after_an_object_is_deleted(base, again):
+    """The springs hold the disc at a deflection of 2 mm, which only its own coordinates show."""
+    mbs = new_model()
+    other = planar_body(mbs, 1.0, 0.5, [0.3, 0.4, 0.0], [0.0] * 3)
+    housing = planar_body(mbs, 1e12, 1e12, [0.0] * 3, [0.0] * 3) if base else None
+    disc = planar_body(mbs, 1.0, 0.5, [0.002, 0.0, 0.0], [0.0] * 3)
+    drive(mbs, disc, 2.0)
+    support = add_radial_support(mbs, housing, disc, stiffness=1e3, damping=5.0)
+    quantities = "deflection", "force", "stored_energy", "power"
+    sensors = [support.add_sensor(quantity) for quantity in quantities]
+    add_energy_balance(mbs, gains={}, losses={"damper": support.power}, stored=[support.stored_energy])
+    if again:
+        run(mbs)
+    mbs.DeleteObject(int(other))  # with its node
+    run(mbs)
+    shown = np.concatenate([np.atleast_1d(mbs.GetSensorValues(sensor)) for sensor in sensors])
+    assert shown == pytest.approx([0.002, 0.0, -2.0, 0.0, 0.0, 2e-3, 0.0], abs=1e-9)
+
+
+def test_a_deleted_support_cannot_be_measured():
+    mbs = new_model()
+    support = add_radial_support(mbs, None, wheel(mbs, True), stiffness=1e3)
+    mbs.DeleteObject(support.item, deleteDependentItems=False)
+    mbs.Assemble()
+    with pytest.raises(ValueError, match=r"^'radial support 0' was deleted"):
+        support.stored_energy(mbs)
