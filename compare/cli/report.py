@@ -104,6 +104,12 @@ OneClaim = Annotated[
 ]
 
 
+Replace = Annotated[
+    bool,
+    typer.Option("--replace", help="Allow a partial report to replace a full one in the folder of --output."),
+]
+
+
 Logs = Annotated[
     Path | None,
     typer.Option(
@@ -124,6 +130,7 @@ def report(
     study_limit: Limit = None,
     min_conclusive: LeastConclusive = 1,
     output: Folder = Path(FULL),
+    replace_full: Replace = False,
     jobs: Jobs = None,
     resume: Resume = False,
     data: Logs = None,
@@ -131,7 +138,8 @@ def report(
     """Measure the claims of studies and write a report.
 
     It writes index.html, results.json, junit.xml and figures. Without --output, a full report goes into the folder
-    report, and a partial one (some studies or engines, one claim, the quick level) into report-part.
+    report, and a partial one (some studies or engines, one claim, the quick level) into report-part. A partial report
+    replaces a full one only with --replace.
 
     The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
     if too few claims agree or some were not finished in time. It is 4 if an engine named with --engine has no
@@ -152,10 +160,14 @@ def report(
 
     _check_logs(data)
     studies = _requested_studies(context, names or [], claim, level, resume)
-    output = _folder(context, output, part=bool(names or claim or engine or level != "full"))
+    part = bool(names or claim or engine or level != "full")
+    output = _folder(context, output, part)
     with refused(), Workers() as workers:
         seed = seed_of(level, seed)
         chosen = tuple(replace(one, seed=seed) for one in loaded(engine or [], workers))
+        if part and not replace_full:
+            everything = studies_of(context, [])
+            _check_kept(output, everything, () if claim else studies, [one.name for one in chosen])
         check_folder(output)
         check_folder(store := store_of(output))
 
@@ -213,6 +225,21 @@ def _folder(context: typer.Context, output: Path, part: bool) -> Path:
     """Return the folder; "report-part" is the default of a partial report, so the full one is kept."""
     source = context.get_parameter_source("output")
     return Path("report-part") if part and source is not None and source.name == "DEFAULT" else output
+
+
+def _check_kept(
+    output: Path, everything: Sequence[Study], studies: Sequence[Study], engines: Sequence[str]
+) -> None:
+    """Raise ``ValueError`` if ``output`` contains all studies, with measurements that the new report would lack."""
+    from compare.claims.claim import THEORY
+    from compare.report.results_json import seconds_of_last_run
+
+    old = seconds_of_last_run(output)
+    kept = {(study.name, column) for study in studies for column in (THEORY, *engines)}
+    if {one.name for one in everything if not one.only} <= {study for study, _ in old} and old.keys() - kept:
+        raise ValueError(
+            f"{output} contains a full report; choose another --output, or replace the report with --replace"
+        )
 
 
 def _write(result: Run, output: Path) -> Matrix:
