@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
+from compare.run.levels import LIMITS, seed_of
+
 if TYPE_CHECKING:
     from compare.claims.claim import Claim
     from compare.claims.study import Study
@@ -36,9 +38,6 @@ PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses in addition to those of pytest: too few claims pass or some are not finished; no verdict."""
-
-LIMITS = {"quick": 17.0, "full": 120.0}
-"""Time limits in s for one study of one engine, by level. The quick level has about seven studies."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -123,7 +122,6 @@ def pytest_configure(config: pytest.Config) -> None:
         return
     from compare.engines import known_name
     from compare.run.bench import Bench
-    from compare.run.runner import seed_of
     from compare.studies import studies
 
     level, limit = config.getoption("friction_discs_level"), config.getoption("friction_discs_limit")

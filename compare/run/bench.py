@@ -2,70 +2,33 @@
 
 from __future__ import annotations
 
-import time
-from collections import defaultdict
-from collections.abc import Callable
-from typing import Any
-
 from compare.claims.study import Findings, Study
-from compare.run.runner import measured, pace
+from compare.run.measuring import Course, measured
 from compare.run.workers import Failure, Workers
-
-START_UP = 60.0
-"""Additional time in s for the start of a process, which imports the engine and the study."""
-
-NO_CLAIM = "-"
-"""Selector that fits no claim."""
 
 
 class Bench:
-    """Measure one claim at a time, within the time that the other claims of its study leave.
-
-    At the quick level, a claim that would take too long is not attempted.
-    """
+    """Measure one claim at a time, see ``Course``."""
 
     def __init__(self, limit: float, seed: int | None, *, quick: bool) -> None:
         self.seed = seed
         self._workers = Workers(1)
         self._limit, self._quick = limit, quick
-        self._ready: tuple[str, str] | None = None
-        self._spent: defaultdict[tuple[str, str], float] = defaultdict(float)
-        self._pace: dict[str, float] = {}
+        self._courses: dict[tuple[str, str], Course] = {}
+        self._last: Course | None = None
 
     def outcome(self, study: Study, engine: str, part: str) -> Findings | Failure:
-        """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure.
-
-        Later claims reuse the motions of earlier claims, because one process measures them all.
-        """
-        key = (study.name, engine)
-        left = self._limit - self._spent[key]
-        longer = f"the study {study.name} takes longer than {self._limit:g} s with {engine}; "
-        longer += "use --level full" if self._quick else "use a larger --study-limit"
-        if left <= 0.0:
-            return Findings(not_simulated=longer)
-        if self._quick and (estimate := study.duration(part) * self._pace_of(engine)) > left:
-            return Findings(
-                not_simulated=f"would take about {estimate:.2g} s with {engine}; use --level full"
-            )
-        if self._ready != key:  # imports do not count
-            self._ask(self._limit + START_UP, engine, measured, study, engine, (NO_CLAIM,), self.seed)
-        began = time.monotonic()
-        found: Findings | Failure = self._ask(left, engine, measured, study, engine, (part,), self.seed)
-        self._spent[key] += time.monotonic() - began
-        self._ready = key if isinstance(found, Findings) else None  # a failure may have ended the process
-        out_of_time = self._spent[key] >= self._limit and not isinstance(found, Findings)
-        return Findings(not_simulated=longer) if out_of_time and self._quick else found
-
-    def _pace_of(self, engine: str) -> float:
-        """Return the wall-clock time for a second of motion, 0 if the engine has no fixed step or no result."""
-        if engine not in self._pace:
-            found = self._ask(self._limit + START_UP, engine, pace, engine)
-            self._pace[engine] = found if isinstance(found, float) else 0.0
-        return self._pace[engine]
-
-    def _ask(self, limit: float, engine: str, function: Callable[..., Any], *arguments: Any) -> Any:
-        self._workers.limit = limit
-        return self._workers.ask(function, *arguments, owner=engine)
+        """Return the findings of one ``part`` of ``study`` for the engine of that name, or the failure."""
+        new = Course(study, engine, self._limit, self._quick, self.seed)
+        course = self._courses.setdefault((study.name, engine), new)
+        course.ready = course.ready and self._last is course
+        self._last, steps, found = course, course.claim(part), None
+        while True:
+            try:
+                work, self._workers.limit = steps.send(found)
+            except StopIteration as end:
+                return Findings(not_simulated=end.value) if isinstance(end.value, str) else end.value
+            found = self._workers.ask(measured, *work, owner=engine)
 
     def close(self) -> None:
         """End the measuring process."""
