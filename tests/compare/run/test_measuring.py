@@ -95,6 +95,8 @@ def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(repo
     assert [case.get("name") for case in cases if case.find("skipped") is not None] == [LONG]
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     assert 'id="partly-long/long"' in page
+    line = short.__code__.co_firstlineno
+    assert f"test_measuring.py:{line}</code>" in page
     assert LIMITS["quick"] < 1e9
     # the full level attempts the claim even with --resume
     ended, results, _ = reporting("--resume", "--engine", "stepping", study=light)
