@@ -23,7 +23,7 @@ from compare.run.levels import LIMITS, seed_of
 if TYPE_CHECKING:
     from compare.claims.claim import Claim
     from compare.claims.study import Study
-    from compare.run.bench import Bench
+    from compare.run.measuring import Bench
 
 STUDIES = Path(__file__).with_name("studies")
 
@@ -121,7 +121,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not _engines(config):
         return
     from compare.engines import known_name
-    from compare.run.bench import Bench
+    from compare.run.measuring import Bench
     from compare.studies import studies
 
     level, limit = config.getoption("friction_discs_level"), config.getoption("friction_discs_limit")

@@ -78,6 +78,8 @@ def test_a_failed_claim_is_shown_alone(reporting, capsys):
     assert "partly-long stepping failed: stepping is too weak (test_measuring.py:" in out
     assert "2 checks against independent evidence agree, 0 differ, 0 inconclusive, 1 failed (" in out
     assert [claim["verdict"] for claim in results["studies"][0]["claims"]] == ["agrees", "agrees"]
+    unit = results["studies"][0]["units"]["stepping"]
+    assert (unit["state"], unit["reason"]) == ("failed", "stepping is too weak")  # a baseline may contain it
     (case,) = (one for one in cases if one.find("error") is not None)
     assert case.get("name") == HEAVY
     assert "test_measuring.py:" in case.find("error").text
