@@ -50,7 +50,7 @@ class Course:
             return longer
         if not self.ready:  # imports do not count
             yield self._work(NO_CLAIM), self.limit + START_UP
-        began, left = time.monotonic(), self.limit - self.spent
+        began, left = time.monotonic(), max(round(self.limit - self.spent, 1), 0.1)  # for people to read
         found: Findings | Failure = yield self._work(part, left if self.quick else math.inf), left
         self.spent += time.monotonic() - began
         self.ready = isinstance(found, Findings)  # a failure may have ended the process
