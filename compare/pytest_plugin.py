@@ -17,10 +17,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import pytest
 
+from compare.run.levels import LIMITS, seed_of
+
 if TYPE_CHECKING:
     from compare.claims.claim import Claim
     from compare.claims.study import Study
-    from compare.run.bench import Bench
+    from compare.run.measuring import Bench
 
 STUDIES = Path(__file__).with_name("studies")
 
@@ -35,9 +37,6 @@ PROPERTY, ENGINE = "friction-discs", "friction-discs engine"
 
 NOTHING_SHOWN, NOTHING_MEASURED = 6, 7
 """Exit statuses beyond those of pytest: too few claims pass or some are not finished; no verdict."""
-
-LIMITS = {"quick": 17.0, "full": 120.0}
-"""Time limits in s for one study of one engine, by level."""
 
 
 # The option names may clash with another plugin, so they exist only in runs of this package.
@@ -121,8 +120,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not _engines(config):
         return
     from compare.engines import known_name
-    from compare.run.bench import Bench
-    from compare.run.runner import seed_of
+    from compare.run.measuring import Bench
     from compare.studies import studies
 
     level, limit = config.getoption("friction_discs_level"), config.getoption("friction_discs_limit")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from compare.claims.claim import Basis, Kind
@@ -46,6 +47,12 @@ class Declared:
     def of_engine(self) -> bool:
         """True if the claim is about an engine."""
         return takes_engine(self.function)
+
+    @property
+    def place(self) -> tuple[Path, int]:
+        """File and line of the function."""
+        code = inspect.unwrap(self.function).__code__
+        return Path(code.co_filename), code.co_firstlineno
 
     def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """Yield each member of the family with additional arguments of its function."""

@@ -20,6 +20,7 @@ from compare.claims.prose import Prose, Table
 from compare.claims.validation import Validation
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Figure
+from compare.output.outside_text import Failure
 from reference_model.orbits import NoOrbitError
 from reference_model.systems import FloatArray, System
 
@@ -40,12 +41,22 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 class Findings:
     """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``.
+    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``. ``gaps`` contains the failure
+    of each claim that failed, or the reason of each claim that was not attempted, by its sentence.
     """
 
     claims: tuple[Claim, ...] = ()
     data: Data = field(default_factory=dict)
     not_simulated: str = ""
+    gaps: dict[str, Failure | str] = field(default_factory=dict)
+
+    def and_claim(self, sentence: str, found: Findings | Failure | str) -> Findings:
+        """Return these findings and those of another claim, or its gap."""
+        if not isinstance(found, Findings):
+            return replace(self, gaps=self.gaps | {sentence: found})
+        reasons = dict.fromkeys(f"{self.not_simulated}; {found.not_simulated}".strip("; ").split("; "))
+        claims = (*self.claims, *found.claims)
+        return Findings(claims, self.data | found.data, "; ".join(reasons), self.gaps | found.gaps)
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,8 @@ def matrix(
     pictures = write_pictures(rows, output)
     with printing():
         _print_table(rows)
-        print(*pictures, sep="\n")
+        for picture in pictures:
+            print(picture)
     return _status(rows[others:])
 
 
@@ -188,16 +189,16 @@ def _print_table(rows: Sequence[Row]) -> None:
     from compare.diagnosis.findings import MOTIONS
 
     names = [name for name in MOTIONS if any(name in row.motions for row in rows)]
-    table = Table(
-        "engine",
-        *names,
-        caption="Error in m ± the engine's own estimate. ✓ the estimate explains the error; ✗ it does not; "
-        "? the estimate is too large to distinguish friction laws; ! no result",
-        highlight=False,
-    )
+    if not names:
+        return
+    table = Table("engine", *names, highlight=False)
     for row in rows:
         table.add_row(row.engine, *(_cell(row, name) for name in names))
     Console(highlight=False).print(table)
+    print(
+        "Error in m ± the engine's own estimate. ✓ the estimate explains the error; ✗ it does not; ? the estimate is "
+        "too large to distinguish friction laws; ! no result"
+    )
 
 
 def _cell(row: Row, name: str) -> str:

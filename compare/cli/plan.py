@@ -59,8 +59,8 @@ def plan(
         kinds = tuple(dict.fromkeys(one_of("kind of system", one, KINDS) for one in kind or ["pin"]))
         check_folder(output)
 
+    from compare.run.levels import seed_of
     from compare.run.plan import Planned, write_plan
-    from compare.run.runner import seed_of
     from compare.run.workers import Failure
 
     for study in studies:

@@ -6,6 +6,7 @@ import difflib
 import re
 import signal
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 MOST = 2000
@@ -74,7 +75,28 @@ def _shortened(text: str, most: int) -> str:
     return f"{text[:kept]}{LEFT_OUT}{text[-kept:]}"
 
 
-# --- Exit codes of processes, in words.
+# --- Failures of engines and of processes, in words.
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A failed piece of work: the reason and the locations in the code ("pin.py:12 in simulate"), innermost last.
+
+    ``unfinished`` is True if only the time limit ended it.
+    """
+
+    reason: str
+    where: tuple[str, ...] = ()
+    unfinished: bool = False
+
+    def __post_init__(self) -> None:
+        """Make the texts printable, because most of them come from an engine."""
+        object.__setattr__(self, "reason", printable(self.reason))
+        object.__setattr__(self, "where", tuple(map(printable, self.where)))
+
+    def __str__(self) -> str:
+        """Return the reason, followed by the innermost location in brackets."""
+        return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
 
 
 def cause_of_end(code: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 
 from compare.claims.claim import Claim
-from compare.report.matrix import Matrix, Row, State, state_of
+from compare.report.matrix import Matrix, Row, State, failure_of, state_of
 from compare.report.numbers import account, worst
 from compare.run.runner import Run
 from compare.run.workers import Failure
@@ -54,7 +54,7 @@ def _cases(suite: ET.Element, run: Run, study: str, row: Row, column: str) -> No
     if not cell.claims:
         case = _case(suite, study, column, row.sentence)
         if cell.state is State.FAILED:
-            _error(case, cell.reason, run.outcomes.get((study, column)))
+            _error(case, cell.reason, failure_of(run, study, column, row.sentence))
         else:
             ET.SubElement(case, "skipped", message=cell.reason)
 

@@ -248,24 +248,33 @@ def matrix(run: Run) -> Matrix:
 
 def _rows(run: Run, study: Study) -> list[Row]:
     columns = run.columns(study)
-    claims: dict[tuple[str, str], dict[str, list[Claim]]] = {}  # in order of first occurrence
+    known = {one.sentence_of(case): (one, case) for one in study.declared for case, _ in one.cases()}
+    cells: dict[tuple[str, str], dict[str, Cell]] = {}  # in order of first occurrence
     for column in columns:
         outcome = run.outcomes.get((study.name, column))
         if isinstance(outcome, Findings):
+            claims: dict[tuple[str, str], list[Claim]] = {}
             for claim in outcome.claims:
-                claims.setdefault((claim.sentence, claim.equation), {}).setdefault(column, []).append(claim)
+                claims.setdefault((claim.sentence, claim.equation), []).append(claim)
+            for key, found in claims.items():
+                cells.setdefault(key, {})[column] = _cell(found)
+            for sentence, why in outcome.gaps.items():
+                cells.setdefault((sentence, known[sentence][0].equation), {})[column] = single_gap(why)
     gaps = {column: gap for column in columns if (gap := gap_of(run, study.name, column)) is not None}
     rows: list[Row] = []
-    for (sentence, equation), found in claims.items():
-        theory_only = set(found) == {THEORY}
-        cells = {}
-        for column in columns:
-            if column in found:
-                cells[column] = _cell(found[column])
-            elif column in gaps and column != THEORY and not theory_only:
-                cells[column] = gaps[column]
-        identity = _identity(study, next(iter(found.values()))[0], rows)
-        rows.append(Row(study, identity, sentence, equation, cells))
+    for (sentence, equation), by_column in cells.items():
+        fillers = {} if set(by_column) == {THEORY} else gaps.keys() - {THEORY}
+        shown = {
+            column: by_column.get(column) or gaps[column]
+            for column in columns
+            if column in by_column or column in fillers
+        }
+        if sentence in known:
+            declared, case = known[sentence]
+            identity = declared.identity(study.name, case)
+        else:
+            identity = _identity(study, next(iter(by_column.values())).claims[0], rows)
+        rows.append(Row(study, identity, sentence, equation, shown))
     rows = [
         replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
         for row in rows
@@ -322,8 +331,22 @@ def gap_of(run: Run, study: str, column: str) -> Cell | None:
     if isinstance(outcome, Findings) and outcome.not_simulated:
         return Cell(State.NOT_SIMULATED, reason=outcome.not_simulated)
     if isinstance(outcome, Failure):
-        return Cell(State.MISSING if outcome.unfinished else State.FAILED, reason=outcome.reason)
+        return single_gap(outcome)
     return Cell(State.MISSING, reason="not finished before the interruption") if outcome is None else None
+
+
+def single_gap(why: Failure | str) -> Cell:
+    """Return the cell of a claim that failed, or that was not attempted for the reason ``why``."""
+    if isinstance(why, str):
+        return Cell(State.NOT_SIMULATED, reason=why)
+    return Cell(State.MISSING if why.unfinished else State.FAILED, reason=why.reason)
+
+
+def failure_of(run: Run, study: str, column: str, sentence: str) -> Failure | None:
+    """Return the failure of a claim, or of its study, with its locations in the code; None if it did not fail."""
+    outcome = run.outcomes.get((study, column))
+    found = outcome.gaps.get(sentence) if isinstance(outcome, Findings) else outcome
+    return found if isinstance(found, Failure) else None
 
 
 def _cell(claims: list[Claim]) -> Cell:

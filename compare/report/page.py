@@ -20,6 +20,7 @@ from compare.report.at_a_glance import cases, contrast, glances
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Matrix, Row, State, state_of
 from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
 from compare.report.results_json import erratum_id
+from compare.run.provenance import ROOT, address_of
 from compare.run.runner import Run
 from compare.run.store import Drawing
 from compare.run.workers import Failure
@@ -59,6 +60,7 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             worst=worst,
             in_short=in_short,
             state_of=state_of,
+            measuring=_measuring,
             particular=_particular,
             common=_common,
             findings=[study for study in matrix.studies if _is_answered(study, matrix.of(study))],
@@ -163,6 +165,17 @@ def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
         (state, f"{', '.join(columns)}: {text}", target) for (state, text, target), columns in found.items()
     ]
     return sorted(lines, key=lambda line: WORST_FIRST.index(line[0]))
+
+
+def _measuring(row: Row) -> tuple[str, str] | None:
+    """Return file and line of the function that measures a claim, and its web address; None if unknown."""
+    for declared in row.study.declared:
+        if row.identity in (declared.identity(row.study.name, case) for case, _ in declared.cases()):
+            file, line = declared.place
+            inside = file.is_relative_to(ROOT)
+            path = file.relative_to(ROOT).as_posix() if inside else file.name
+            return f"{path}:{line}", address_of(path, line) if inside else ""
+    return None
 
 
 def _particular(row: Row, claim: Claim) -> str:

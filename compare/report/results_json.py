@@ -28,7 +28,17 @@ from compare.claims.prose import slug
 from compare.claims.study import Study
 from compare.output.outside_text import all_printable, printable
 from compare.report.at_a_glance import glances
-from compare.report.matrix import VERDICTS, Cell, Matrix, RecordedMatrix, Row, State, gap_of
+from compare.report.matrix import (
+    VERDICTS,
+    WORST_FIRST,
+    Cell,
+    Matrix,
+    RecordedMatrix,
+    Row,
+    State,
+    gap_of,
+    single_gap,
+)
 from compare.report.numbers import worst
 from compare.report.quotes import filled
 from compare.run.runner import Run
@@ -308,10 +318,13 @@ def _deciding(claim: Claim) -> dict[str, Any]:
 
 
 def _unit(run: Run, study: str, column: str) -> dict[str, Any]:
-    gap = gap_of(run, study, column)
+    outcome, whole = run.outcomes.get((study, column)), gap_of(run, study, column)
+    gaps = [whole] if whole is not None else []
+    gaps += [single_gap(why) for why in getattr(outcome, "gaps", {}).values()]
+    states = {gap.state for gap in gaps}
     return {
-        "state": "finished" if gap is None else gap.state.value,
-        "reason": gap.reason if gap is not None and (study, column) in run.outcomes else "",
+        "state": next((state.value for state in WORST_FIRST if state in states), "finished"),
+        "reason": "; ".join(dict.fromkeys(gap.reason for gap in gaps)) if outcome is not None else "",
         "seconds": run.seconds.get((study, column)),
     }
 

@@ -16,7 +16,7 @@ from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 from functools import cache
 from importlib.machinery import ModuleSpec
-from importlib.metadata import PackageNotFoundError, distribution, distributions, version
+from importlib.metadata import PackageNotFoundError, distribution, distributions, metadata, version
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +72,21 @@ def commit() -> str:
     except PackageNotFoundError:
         return ""
     return str(json.loads(source).get("vcs_info", {}).get("commit_id", ""))
+
+
+REPOSITORIES = ("Repository", "Source")
+"""Labels of the repository's address among the addresses in ``pyproject.toml``."""
+
+
+def address_of(path: str, line: int) -> str:
+    """Return the web address of a line of a source file; "" if no address of a repository is configured."""
+    with suppress(PackageNotFoundError):
+        for one in metadata("friction-discs").get_all("Project-URL", []):
+            label, _, address = one.partition(", ")
+            if label in REPOSITORIES:
+                revision = commit().removesuffix("-dirty") or "HEAD"
+                return f"{address.rstrip('/')}/blob/{revision}/{path}#L{line}"
+    return ""
 
 
 def processor() -> str:

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Collection, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Collection, Generator, Hashable, Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from compare.claims.claim import THEORY
 from compare.claims.errata import Erratum, Evidence
 from compare.claims.study import Data, Findings, Study
-from compare.engines import (
-    Engine,
-    UnsupportedSystemError,
-    engines,
-    is_registered,
-    known_name,
-    owner_of,
-    told_apart,
-)
-from compare.output.outside_text import printable
+from compare.engines import Engine, engines, is_registered, known_name, owner_of, told_apart
+from compare.run.levels import LIMITS
+from compare.run.measuring import Course, Work, measured
 from compare.run.provenance import engine_stamp, engine_version
 from compare.run.store import Drawing, DrawingStore, Store, drawing_stamp, drawn
 from compare.run.workers import Done, Failure, Workers
-from reference_model.systems import PinOnDisc
 
 Progress = Callable[[int, int, str, float], None]
 """Takes the numbers of finished and of all pieces of work, the names of the running ones and the time left in s."""
@@ -82,12 +74,12 @@ class Run:
         return len(self.outcomes) + len(self.drawings) + len(self.evidence)
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of the findings by engine."""
+        """Return the arrays of complete findings by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
         return {
             column: outcome.data
             for column, outcome in found.items()
-            if isinstance(outcome, Findings) and outcome.data
+            if isinstance(outcome, Findings) and outcome.data and not outcome.gaps
         }
 
 
@@ -98,6 +90,7 @@ def run(
     folder: Path,
     jobs: int = 1,
     limit: float | None = None,
+    quick: bool = False,
     resume: bool = False,
     errata: tuple[Erratum, ...] = (),
     expected: Mapping[tuple[str, str], float] | None = None,
@@ -106,9 +99,9 @@ def run(
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
     Findings and drawings are written as they arrive; drawings of equal data are reused. A piece of work that takes
-    longer than ``limit`` (s) fails. ``resume`` reuses findings with the same digest of code and libraries.
-    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete, with ``interrupted``
-    set.
+    longer than ``limit`` (s) fails. If ``quick``, claims that would take a foreign engine too long are not attempted.
+    ``resume`` reuses findings with the same digest of code and libraries. ``expected`` are the durations of an
+    earlier run. After Ctrl-C the results are incomplete, with ``interrupted`` set.
     """
     result = Run(
         studies,
@@ -120,7 +113,8 @@ def run(
         seed=next((engine.seed for engine in engines), None),
     )
     with Workers(jobs, limit) as workers:
-        runner = _Runner(result, workers, jobs, Store(folder), DrawingStore(folder), expected or {}, progress)
+        stores = Store(folder), DrawingStore(folder)
+        runner = _Runner(result, workers, jobs, quick, *stores, expected or {}, progress)
         workers.watch = runner.show
         try:
             runner.work({engine.name: engine for engine in engines}, resume)
@@ -134,6 +128,7 @@ class _Runner:
     result: Run
     workers: Workers
     jobs: int
+    quick: bool
     store: Store
     drawings: DrawingStore
     expected: Mapping[tuple[str, str], float]
@@ -141,6 +136,7 @@ class _Runner:
     began: dict[Hashable, float] = field(default_factory=dict)
     stamps: dict[str, str | None] = field(default_factory=dict)
     drawn_from: dict[str, str] = field(default_factory=dict)
+    courses: dict[Hashable, tuple[Course, Generator[Work, Any, Findings]]] = field(default_factory=dict)
 
     def work(self, engines: Mapping[str, Engine], resume: bool) -> None:
         result = self.result
@@ -155,7 +151,7 @@ class _Runner:
             if found is not None:
                 result.outcomes[key], result.seconds[key] = found
             else:
-                self.workers.submit(key, measured, study, engine, owner=owner_of(engine))
+                self._submit(key, study, engine)
         for study in result.studies:
             self._draw_if_complete(study.name)
         for i, erratum in enumerate(result.errata):
@@ -163,6 +159,26 @@ class _Runner:
         for finished in self.workers.finished():
             self._take(finished)
         self.show([])
+
+    def _submit(self, key: Hashable, study: Study, engine: Engine | None) -> None:
+        """Submit a study as a whole, or claim by claim if only a part of it may exceed a time limit."""
+        limit = LIMITS["quick"] if self.quick and self.workers.limit is None else self.workers.limit
+        if engine is None or is_registered(engine.name) or limit is None or not study.sentences():
+            self.workers.submit(key, measured, study, engine, owner=owner_of(engine))
+            return
+        course = Course(study, engine, limit, self.quick)
+        self.courses[key] = course, course.claims()
+        self._next(key, engine.name)
+
+    def _next(self, key: Hashable, owner: str, found: Any = None) -> Done | None:
+        """Submit the next claim of a study that is measured claim by claim; return the findings after the last."""
+        course, steps = self.courses[key]
+        try:
+            work, limit = steps.send(found)
+        except StopIteration as end:
+            return Done(key, end.value, course.spent)
+        self.workers.submit(key, measured, *work, owner=owner, limit=limit, first=found is not None)
+        return None
 
     def show(self, running: Collection[Hashable]) -> None:
         result, now = self.result, time.monotonic()
@@ -190,10 +206,13 @@ class _Runner:
             if isinstance(done.value, Drawing):
                 self.drawings.keep(name, self.drawn_from[name], done.value)
             return
-        self.result.outcomes[kind, name] = done.value
-        self.result.seconds[kind, name] = done.seconds
-        if isinstance(done.value, Findings):
-            self.store.keep(kind, name, self.stamps[name], done.value, done.seconds)
+        last = self._next(done.key, name, done.value) if done.key in self.courses else done
+        if last is None:
+            return
+        self.result.outcomes[kind, name] = last.value
+        self.result.seconds[kind, name] = last.seconds
+        if isinstance(last.value, Findings) and not last.value.gaps:
+            self.store.keep(kind, name, self.stamps[name], last.value, last.seconds)
         self._draw_if_complete(kind)
 
     def _draw_if_complete(self, name: str) -> None:
@@ -212,55 +231,6 @@ class _Runner:
 def _name_of(key: Any) -> str:
     first, second = key
     return "errata" if first == "errata" else f"{second} figures" if first == "draw" else f"{first} {second}"
-
-
-QUICK_SEED = 1
-"""Seed of the quick level, whose motions are mostly of 1 kg and slow in SI units."""
-
-
-def seed_of(level: str, seed: int | None) -> int | None:
-    """Return the given ``seed`` of the units of motions, or that of the level."""
-    return QUICK_SEED if level == "quick" and seed is None else seed
-
-
-def measured(
-    study: Study, engine: Engine | str | None, only: Collection[str] = (), seed: int | None = None
-) -> Findings:
-    """Run the study's ``measure``, or its theory if ``engine`` is None.
-
-    An engine given by name is imported here, in a process that may hang or crash. ``only`` selects claims as in
-    ``Study.measure``. Raises ``TypeError`` if the result is not ``Findings``.
-    """
-    findings: object = None
-    if isinstance(engine, str):
-        engine = replace(engines([engine])[0], seed=seed)
-    if engine is not None:
-        try:
-            findings = study.measure(engine, only=only)
-        except UnsupportedSystemError as error:
-            findings = Findings(not_simulated=str(error))
-    elif study.has_theory:
-        findings = study.measure_theory(only=only)
-    if not isinstance(findings, Findings):
-        raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
-    return replace(findings, not_simulated=printable(findings.not_simulated))
-
-
-PACED = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.1, disc_speed=0.0, offset=0.0)
-
-PACE_STEPS = 500
-
-
-def pace(name: str) -> float:
-    """Return the wall-clock time for a second of motion in the engine ``name``; 0 without a fixed step."""
-    (engine,) = engines([name])
-    if engine.step is None:
-        return 0.0
-    start, lasts = (1.0, 0.0, 0.0, 0.0), PACE_STEPS * engine.step
-    engine.simulate(PACED, start, (0.0, lasts))  # the first call may compile
-    began = time.perf_counter()
-    engine.simulate(PACED, start, (0.0, lasts))
-    return (time.perf_counter() - began) / lasts
 
 
 # --- Engines by name. Their modules are imported in another process, because an import may end its process.

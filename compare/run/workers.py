@@ -24,6 +24,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from compare.output.outside_text import Failure as Failure
 from compare.output.outside_text import cause_of_end, printable
 
 ONE_THREAD = dict.fromkeys(
@@ -48,25 +49,6 @@ TICK = 0.005
 
 
 @dataclass(frozen=True)
-class Failure:
-    """A failed piece of work: the reason and the locations in the code ("pin.py:12 in simulate"), innermost last.
-
-    ``unfinished`` is True if only the time limit ended it.
-    """
-
-    reason: str
-    where: tuple[str, ...] = ()
-    unfinished: bool = False
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "reason", printable(self.reason))
-        object.__setattr__(self, "where", tuple(map(printable, self.where)))
-
-    def __str__(self) -> str:
-        return f"{self.reason} ({self.where[-1]})" if self.where else self.reason
-
-
-@dataclass(frozen=True)
 class Done:
     """A finished piece of work with its result or ``Failure``."""
 
@@ -81,12 +63,13 @@ class _Work:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     owner: str
+    limit: float | None
 
 
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager; leaving it kills all processes.
 
-    A piece of work that takes longer than ``limit`` (s) fails. The limit may change while no work is pending.
+    A piece of work that takes longer than ``limit`` (s) fails.
     ``watch`` is called with the keys of the running work when they may have changed.
     """
 
@@ -115,13 +98,14 @@ class Workers:
         *arguments: Any,
         first: bool = False,
         owner: str = "",
+        limit: float | None = None,
     ) -> None:
-        """Append ``function(*arguments)`` to the queue, or prepend it if ``first``.
+        """Append ``function(*arguments)`` to the queue, or prepend it if ``first``; ``limit`` replaces the usual one.
 
         A process that has worked for an ``owner``, such as a foreign engine, never works for another one, because
         foreign code may have changed its modules.
         """
-        work = _Work(key, function, arguments, owner)
+        work = _Work(key, function, arguments, owner, self.limit if limit is None else limit)
         if first:
             self._queue.appendleft(work)
         else:
@@ -161,22 +145,21 @@ class Workers:
             if worker is None:
                 worker = _Worker(self._temporary.name)
                 self._processes.append(worker)
+            worker.limit = work.limit
             worker.start(work.key, message, work.owner)
 
     def _collect(self) -> Iterator[Done]:
         """Wait for the first result or time limit, and yield all up to then."""
         busy = {worker.connection: worker for worker in self._processes if worker.key is not None}
-        left = None
-        if self.limit is not None and busy:
-            oldest = min(worker.started for worker in busy.values())
-            left = max(0.0, oldest + self.limit - time.monotonic())
+        ends = [worker.started + worker.limit for worker in busy.values() if worker.limit is not None]
+        left = max(0.0, min(ends) - time.monotonic()) if ends else None
         ready = wait(list(busy), left) if busy else []
         for connection, worker in busy.items():
             if connection in ready:
                 done = worker.result()
-            elif self.limit is not None and time.monotonic() >= worker.started + self.limit:
-                late = Failure(f"not finished within {self.limit:g} s", unfinished=True)
-                done = Done(worker.key, late, self.limit)
+            elif worker.limit is not None and time.monotonic() >= worker.started + worker.limit:
+                late = Failure(f"not finished within {worker.limit:g} s", unfinished=True)
+                done = Done(worker.key, late, worker.limit)
                 worker.end()
             else:
                 continue
@@ -188,7 +171,8 @@ class Workers:
 class _Worker:
     """A process and the connection to it; ``key`` identifies its current work, None while it is idle.
 
-    It received the work at ``started``, in s of the monotonic clock, and writes temporary files to ``temporary``.
+    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it. It writes temporary
+    files to ``temporary``.
     """
 
     def __init__(self, temporary: str) -> None:
@@ -197,6 +181,7 @@ class _Worker:
         self.key: Hashable | None = None
         self.owner = ""
         self.started = 0.0
+        self.limit: float | None = None
         self.dead = False
         self._process = context.Process(target=_serve, args=(other_end,), daemon=True)
         self._errors = _Errors()

@@ -90,7 +90,7 @@ def test_a_claim_omitted_without_a_reason_has_its_own_status(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_partial_report_does_not_replace_the_full_one(tmp_path, monkeypatch):
+def test_a_partial_report_does_not_replace_the_full_one(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("compare.engines.registry._REGISTRY", {"good": fake_studies.GOOD})
     studies = (fake_studies.AGREEMENT, fake_studies.PARTLY)
@@ -104,5 +104,17 @@ def test_a_partial_report_does_not_replace_the_full_one(tmp_path, monkeypatch):
         assert cli.status(["report", *part], studies) == 0
         assert measured("report") == ["agreement", "partly"]
     assert measured("report-part") == ["agreement", "partly"]
-    assert cli.status(["report", "partly", "--output", "report"], studies) == 0
+    capsys.readouterr()
+    for part in (["partly"], ["--level", "quick"], ["--engine", "fake_studies:straight"]):
+        assert cli.status(["report", *part, "--output", str(tmp_path / "report")], studies) == 2
+        assert capsys.readouterr().err == (
+            f"{tmp_path / 'report'} contains a full report; choose another --output, or replace the report with "
+            "--replace\n"
+        )
+        assert measured("report") == ["agreement", "partly"]
+    assert (
+        cli.status(["report", "--engine", "good", "--output", "report"], studies) == 0
+    )  # measures it all again
+    assert cli.status(["report", "partly", "--output", "report", "--replace"], studies) == 0
     assert measured("report") == ["partly"]
+    assert cli.status(["report", "agreement", "--output", "report"], studies) == 0  # it was partial

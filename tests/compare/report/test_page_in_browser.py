@@ -54,6 +54,25 @@ NAMED = """[...document.querySelectorAll('table')].every(table => table.caption)
         || document.getElementById(it.getAttribute('aria-labelledby')))"""
 
 
+WORDS = ("agrees", "differs", "inconclusive", "not simulated", "rough")
+
+
+def test_the_verdicts_are_explained_above_the_first_table_by_keyboard_and_in_print(page):
+    words = page.locator("details.words")
+    assert page.evaluate(
+        "document.querySelector('.words').compareDocumentPosition(document.querySelector('table')) & 4"
+    )
+    page.evaluate("document.querySelector('.words summary').focus()")
+    for shown in (False, True):
+        assert words.locator("dl").first.is_visible() == shown
+        page.keyboard.press("Enter")
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert words.locator("dl").first.is_visible()
+    terms = " ".join(words.locator("dt").all_inner_texts())
+    assert all(word in terms for word in WORDS)
+
+
 def test_the_page_fits_is_legible_and_makes_no_requests(opened):
     page, asked = opened
     assert overhang(page) <= 0

@@ -12,6 +12,7 @@ import pytest
 from processes import environment
 
 from compare.run import provenance
+from compare.studies import STUDIES
 
 
 @pytest.fixture
@@ -81,3 +82,22 @@ def test_a_users_settings_of_exudyn_are_off_and_reports_state_it(first, settings
     done = subprocess.run(command, env=variables, capture_output=True, text=True)
     expected = f"{settings == 'on'} [[]] {settings}\n"
     assert done.stdout.endswith(expected), done.stdout + done.stderr
+
+
+def test_lines_of_the_source_have_addresses_in_the_repository(monkeypatch):
+    addresses = {"Project-URL": ["Exudyn, https://a.example/exudyn", "Repository, https://b.example/discs/"]}
+    monkeypatch.setattr(provenance, "commit", lambda: "0123abc-dirty")
+    monkeypatch.setattr(provenance, "metadata", lambda name: SimpleNamespace(get_all=addresses.get))
+    assert provenance.address_of("compare/a.py", 7) == "https://b.example/discs/blob/0123abc/compare/a.py#L7"
+    addresses["Project-URL"].pop()
+    assert provenance.address_of("compare/a.py", 7) == ""
+
+
+def test_every_claim_is_measured_by_a_line_that_declares_it():
+    for study in STUDIES:
+        for declared in study.declared:
+            file, line = declared.place
+            assert file.is_relative_to(provenance.ROOT)
+            assert f"def {declared.function.__name__}(" in "".join(
+                file.read_text().splitlines(True)[line - 1 :]
+            )

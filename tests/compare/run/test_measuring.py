@@ -1,0 +1,112 @@
+"""A claim that fails or would take too long costs no other claim of its study."""
+
+import json
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+
+import fake_studies
+import pytest
+
+from compare.claims.measured import Measured
+from compare.claims.prose import Prose
+from compare.claims.study import Study
+from compare.cli.app import status
+from compare.engines import Engine, registry
+from compare.run.levels import LIMITS
+from compare.run.measuring import measured
+from compare.run.runner import run
+
+STUDY = Study("partly-long", Prose("One short claim, one long, one impossible"), quick=True)
+
+
+@STUDY.claim("One is one", resolution=1.0)
+def short(engine):
+    return Measured(predicted=1.0, value=1.0, error=0.0)
+
+
+@STUDY.claim("A long motion ends", equation="(7)", resolution=1.0, duration=1e9)
+def long(engine):
+    return Measured(predicted=2.0, value=2.0, error=0.0)
+
+
+@STUDY.claim("A heavy body moves", resolution=1.0)
+def heavy(engine):
+    raise RuntimeError(f"{engine.name} is too weak")
+
+
+def stepping(*arguments, step):
+    return fake_studies.straight(*arguments)
+
+
+STEPPING = Engine("stepping", stepping, step=1e-3)
+LONG, HEAVY = "A long motion ends", "A heavy body moves"
+
+
+def test_a_claim_that_raises_or_would_take_too_long_is_a_gap():
+    found = measured(STUDY, STEPPING, within=10.0)
+    assert [claim.sentence for claim in found.claims] == ["One is one"]
+    assert found.gaps[LONG].startswith("would take about ")
+    assert found.gaps[LONG].endswith(" s with stepping; use --level full")
+    assert str(found.gaps[HEAVY]).startswith("stepping is too weak (test_measuring.py:")
+
+
+@pytest.mark.parametrize("engine", [STEPPING, fake_studies.GOOD])
+def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted(engine):
+    assert measured(STUDY, STEPPING).gaps.keys() == {HEAVY}
+    assert measured(STUDY, fake_studies.GOOD, within=10.0).gaps.keys() == {HEAVY}
+
+
+@pytest.fixture
+def reporting(monkeypatch, tmp_path, in_this_process):
+    """Return a function that reports on studies with the engine and returns status, results and cases."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "_REGISTRY", {STEPPING.name: STEPPING, "good": fake_studies.GOOD})
+    monkeypatch.setattr("compare.run.runner.is_registered", lambda name: name == "good")
+
+    def report(*arguments, study=STUDY):
+        ended = status(["report", "--jobs", "1", "--output", "out", *arguments], (study,))
+        results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+        return ended, results, ET.parse(tmp_path / "out" / "junit.xml").findall(".//testcase")
+
+    return report
+
+
+def test_a_failed_claim_is_shown_alone(reporting, capsys):
+    ended, results, cases = reporting("--engine", "stepping")
+    assert ended == 1
+    out = capsys.readouterr().out
+    assert "partly-long stepping failed: stepping is too weak (test_measuring.py:" in out
+    assert "2 checks against independent evidence agree, 0 differ, 0 inconclusive, 1 failed (" in out
+    assert [claim["verdict"] for claim in results["studies"][0]["claims"]] == ["agrees", "agrees"]
+    unit = results["studies"][0]["units"]["stepping"]
+    assert (unit["state"], unit["reason"]) == ("failed", "stepping is too weak")  # a baseline may contain it
+    (case,) = (one for one in cases if one.find("error") is not None)
+    assert case.get("name") == HEAVY
+    assert "test_measuring.py:" in case.find("error").text
+
+
+def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(reporting, tmp_path, capsys):
+    light = replace(STUDY, declared=[one for one in STUDY.declared if one.sentence != HEAVY])
+    ended, results, cases = reporting("--level", "quick", "--engine", "stepping", study=light)
+    assert ended == 0
+    out = capsys.readouterr().out
+    assert "partly-long stepping not simulated: would take about " in out
+    assert f"1 not simulated ({'out'}" in out
+    assert [claim["id"] for claim in results["studies"][0]["claims"]] == ["partly-long/short"]
+    assert results["studies"][0]["units"]["stepping"]["reason"].startswith("would take about ")
+    assert [case.get("name") for case in cases if case.find("skipped") is not None] == [LONG]
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert 'id="partly-long/long"' in page
+    line = short.__code__.co_firstlineno
+    assert f"test_measuring.py:{line}</code>" in page
+    assert LIMITS["quick"] < 1e9
+    # the full level attempts the claim even with --resume
+    ended, results, _ = reporting("--resume", "--engine", "stepping", study=light)
+    assert len(results["studies"][0]["claims"]) == 2
+
+
+def test_findings_with_gaps_draw_nothing(tmp_path, in_this_process):
+    """A figure may need the data of the missing claims."""
+    result = run((STUDY,), (STEPPING,), folder=tmp_path, quick=True)
+    assert result.data(STUDY) == {}
+    assert result.outcomes[STUDY.name, "stepping"].claims
