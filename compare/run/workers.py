@@ -171,8 +171,8 @@ class Workers:
 class _Worker:
     """A process and the connection to it; ``key`` identifies its current work, None while it is idle.
 
-    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it. It writes temporary
-    files to ``temporary``.
+    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it. It writes
+    temporary files to ``temporary``.
     """
 
     def __init__(self, temporary: str) -> None:
