@@ -58,7 +58,7 @@ HYPOTHESES: dict[str, theory.Law] = {
 """Other explanations of the error; their sizes are assumed, not fitted."""
 
 ROUNDING = 1e-12
-"""Rounding error of a wrench over the sliding force and the pusher's radius."""
+"""Rounding error of a wrench over the sliding force and the pusher's radius, and of a direction in degrees."""
 
 LIMIT = 1e-9
 """Relative error of a point on the limit surface, whose slip minimises a convex function."""
@@ -190,7 +190,8 @@ def _of(
     total = np.concatenate([one.total for one in sources])
 
     def middle(kind: str) -> float:
-        return float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
+        found = float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
+        return found if found > ROUNDING else 0.0
 
     return Validation(
         sentence=sentence.format(f"{median:.1f} ± {uncertainty:.1f}"),
