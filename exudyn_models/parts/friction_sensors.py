@@ -177,32 +177,35 @@ class RingFriction:
 
     def _new_power(self) -> Callable[[float], float]:
         """Return the power in W as a function of the time in s, for the model as it is assembled now."""
-        mbs, contact, places = self.mbs, self._contact, self._places
+        mbs, contact, (first, second, *_) = self.mbs, self._contact, (*self._places, None)
         get_coordinates, get_velocities = (
             mbs.systemData.GetODE2Coordinates,
             mbs.systemData.GetODE2Coordinates_t,
         )
-        force, place, pair = contact.functions["force"], places[0], len(self.nodes) == 2
+        force, pair = contact.functions["force"], len(self.nodes) == 2
         on_axis = on_one_axis(contact.kinds, contact.factors)
         law = constant_law(contact.kinds, contact.factors) if contact.built_in else None
+        moment, creep = law or (0.0, 1.0)
 
         def of_constant_moment(t: float) -> float:
-            velocities = get_velocities()[place].tolist()
+            velocities = get_velocities()[first].tolist()
             spin = abs(velocities[-1] - velocities[0] if pair else velocities[0])
             return float(moment * (spin if spin > creep else spin * spin / creep))
 
         def of_any(t: float) -> float:
             values = get_velocities()
-            velocities = [value for place in places for value in values[place].tolist()]
+            velocities = values[first].tolist()
+            if second:
+                velocities += values[second].tolist()
             coordinates = velocities  # ignored by rotors on one axis
             if not on_axis:
                 values = get_coordinates()
-                coordinates = [value for place in places for value in values[place].tolist()]
+                coordinates = values[first].tolist()
+                if second:
+                    coordinates += values[second].tolist()
             return -float(sum(map(mul, force(mbs, t, 0, coordinates, velocities), velocities)))
 
-        contact.power = of_any
-        if law and len(places) == 1:  # half the cost
-            (moment, creep), contact.power = law, of_constant_moment
+        contact.power = of_constant_moment if law and not second else of_any  # at half the cost
         return contact.power
 
     def _add_heat(self, options: dict[str, Any]) -> Any:

@@ -37,7 +37,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
-from exudyn_models.solver.contacts import Support, places_of, register_support
+from exudyn_models.solver.contacts import Connector, places_of, register_support
 from exudyn_models.solver.items import IN_MEMORY, items
 from reference_model.systems import FloatArray, finite_number
 
@@ -59,13 +59,13 @@ class RadialSupport:
     _reference: FloatArray = field(repr=False)
     _offset: Offset = field(repr=False)
     _law: Law = field(repr=False)
-    _support: Support = field(repr=False)
+    _connector: Connector = field(repr=False)
 
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, for ``add_energy_balance``."""
         # On the ground with the global axes, ẇ is the node's velocity, which costs less.
         if len(self.nodes) == 1 and self._kinds[2] is None:
-            (place,) = places_of(mbs, self._support, self.item)
+            (place,) = places_of(mbs, self._connector, self.item)
             vx, vy, *_ = mbs.systemData.GetODE2Coordinates_t()[place].tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
@@ -99,7 +99,7 @@ class RadialSupport:
     def _state(
         self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
     ) -> tuple[FloatArray, FloatArray, float, float]:
-        data, places = mbs.systemData, places_of(mbs, self._support, self.item)
+        data, places = mbs.systemData, places_of(mbs, self._connector, self.item)
         q, q_t = (
             np.hstack([values[place] for place in places])
             for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
@@ -161,13 +161,13 @@ def add_radial_support(
     kinds, hidden = _kinds_and_hidden(pair)
     own = [mbs.GetNodeParameter(node, "referenceCoordinates") for node in nodes]
     reference = np.hstack([np.zeros(hidden), *own])
-    support = register_support(mbs)
+    connector = register_support(mbs)
     if hidden == ON_GROUND and hardening == 0.0 and stop_stiffness == 0.0:
-        item = _add_springs(mbs, nodes[0], place, law, support.name)
+        item = _add_springs(mbs, nodes[0], place, law, connector.name)
     else:
         functions = support_functions(hidden, kinds, reference, place, law)
-        item = add_connector(mbs, nodes, *functions, support.name)
-    return RadialSupport(mbs, item, nodes, kinds, reference, place, law, support)
+        item = add_connector(mbs, nodes, *functions, connector.name)
+    return RadialSupport(mbs, item, nodes, kinds, reference, place, law, connector)
 
 
 def _checked_law(

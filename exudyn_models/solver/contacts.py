@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -21,23 +21,16 @@ from reference_model.systems import FloatArray
 _CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
 
 
-class Placed(Protocol):
+@dataclass(eq=False, kw_only=True)
+class Connector:
     """A connector with a ``name`` and the ``places`` of its coordinates, which hold until objects are deleted."""
-
-    name: str
-    places: list[slice] | None
-
-
-@dataclass(eq=False)
-class Support:
-    """The connector of a radial support."""
 
     name: str = ""
     places: list[slice] | None = None
 
 
 @dataclass(eq=False)
-class Contact:
+class Contact(Connector):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
@@ -51,9 +44,7 @@ class Contact:
     functions: dict[str, Any]
     stick: AxialStick | None
     built_in: bool
-    name: str = ""
     power: Callable[[float], float] | None = None
-    places: list[slice] | None = None
 
     @property
     def dampers(self) -> StickDampers:
@@ -72,23 +63,23 @@ def register(mbs: Any, contact: Contact) -> None:
     known[contact.name] = contact
 
 
-def register_support(mbs: Any) -> Support:
+def register_support(mbs: Any) -> Connector:
     """Store a support in its model; return it with the name that its connector must have."""
-    known: list[Support] = mbs.sys.setdefault(_SUPPORTS, [])
-    known.append(Support(f"radial support {len(known)}"))
+    known: list[Connector] = mbs.sys.setdefault(_SUPPORTS, [])
+    known.append(Connector(name=f"radial support {len(known)}"))
     return known[-1]
 
 
-def places_of(mbs: Any, placed: Placed, item: Any) -> list[slice]:
+def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
     """Return slices of the coordinates of a connector, which was ``item`` when it was added, in its assembled model.
 
     Raises ``ValueError`` if it was deleted.
     """
-    if placed.places is None:
-        places = np.array(mbs.systemData.GetObjectLTGODE2(present_item(mbs, placed, item)))
+    if connector.places is None:
+        places = np.array(mbs.systemData.GetObjectLTGODE2(present_item(mbs, connector, item)))
         runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
-        placed.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
-    return placed.places
+        connector.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
+    return connector.places
 
 
 def contacts_of(mbs: Any) -> dict[int, Contact]:
@@ -110,16 +101,16 @@ def contacts_of(mbs: Any) -> dict[int, Contact]:
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
 
 
-def present_item(mbs: Any, placed: Placed, item: Any) -> Any:
+def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
     """Return the object number of a connector, which was ``item`` when it was added.
 
     Raises ``ValueError`` if it was deleted.
     """
     count = mbs.systemData.NumberOfObjects()
     for number in (item, *range(count)):  # mostly the first
-        if int(number) < count and mbs.GetObjectParameter(number, "name") == placed.name:
+        if int(number) < count and mbs.GetObjectParameter(number, "name") == connector.name:
             return number
-    raise ValueError(f"{placed.name!r} was deleted: it cannot be changed or measured")
+    raise ValueError(f"{connector.name!r} was deleted: it cannot be changed or measured")
 
 
 def _renew_locks(mbs: Any, contact: Contact, stick: AxialStick, numbers: dict[str, int]) -> None:

@@ -18,10 +18,10 @@ SENSORS = "transmitted_moment", "radial_force", "power", "mode", "capacity_share
 REST = [0.0] * 3
 
 
-def body_on_feet(velocity=REST, **options):
+def body_on_feet(velocity=REST, angle=0.0, **options):
     """Return a model of a body on feet, its node and its contact."""
     mbs = new_model()
-    node = planar_body(mbs, MASS, INERTIA, REST, velocity)
+    node = planar_body(mbs, MASS, INERTIA, [0.0, 0.0, angle], velocity)
     return mbs, node, add_ring_friction(mbs, None, node, **LAW | {"normal_load": 10.0} | options)
 
 
@@ -44,10 +44,12 @@ def run(mbs, end, steps=100, **options):
 @pytest.mark.parametrize("plates", [1, 2])
 def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     """The sensors show the load and the share of the largest one, and the static friction releases the body."""
-    force, moment = largest_wrench(Points(FEET), complex(*load[:2]), load[2])
+    angle, ratio = 0.7, 1.25
+    on_feet = complex(*load[:2]) * np.exp(-1j * angle)
+    force, moment = largest_wrench(Points(FEET), on_feet, load[2])
     largest = np.linalg.norm([force.real, force.imag, moment]) / np.linalg.norm(load)
-    ratio, size = 1.25, FRICTION * plates * largest
-    mbs, node, contact = body_on_feet(static_ratio=ratio, plates=plates)
+    size = FRICTION * plates * largest
+    mbs, node, contact = body_on_feet(angle=angle, static_ratio=ratio, plates=plates)
     sensors = [contact.add_sensor(one) for one in ("transmitted_moment", "radial_force", "capacity_share")]
     push(mbs, node, load, lambda t: size * t)
     mbs.Assemble()
@@ -78,13 +80,13 @@ def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load():
 
 
 def test_modes_and_heat_are_those_of_the_body_that_slides_pivots_and_rests():
-    motion = [0.4, 0.2, 6.0]
+    motion = [0.2, 0.3, -4.0]
     mbs, _, contact = body_on_feet(motion)
     mode, share, heat = (contact.add_sensor(one) for one in ("mode", "capacity_share", "heat"))
     first, *others = run(mbs, 0.4, 400)
     times, modes = mbs.GetSensorStoredData(mode).T
-    assert first.point == 1
-    assert (modes[times < others[-1].time - 1e-9] == 1).all()  # it pivots after the first change
+    assert (first.point, first.time) == (1, pytest.approx(0.1131, abs=1e-4))
+    assert (modes[times < others[-1].time - 1e-9] == -1).all()  # it pivots after the first change
     assert modes[-1] == 0
     shares = mbs.GetSensorStoredData(share)[:, 1]
     np.testing.assert_allclose(shares[times < others[-1].time - 1e-9], 1.0)
