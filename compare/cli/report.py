@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -138,8 +138,7 @@ def report(
     """Measure the claims of studies and write a report.
 
     It writes index.html, results.json, junit.xml and figures. Without --output, a full report goes into the folder
-    report, and a partial one (some studies or engines, one claim, the quick level) into report-part. A partial report
-    replaces a full one only with --replace.
+    report, and a partial one (some studies or engines, one claim, the quick level) into report-part.
 
     The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
     if too few claims agree or some were not finished in time. Claims that the quick level does not attempt do not
@@ -154,9 +153,8 @@ def report(
       friction-discs report --claim fig06/rests --engine exudyn
     """
     from compare.claims.errata import ERRATA
-    from compare.report.results_json import seconds_of_last_run
     from compare.run.levels import seed_of
-    from compare.run.runner import loaded, run
+    from compare.run.runner import loaded
     from compare.run.workers import Workers
 
     _check_logs(data)
@@ -164,27 +162,21 @@ def report(
     part = bool(names or claim or engine or level != "full")
     output = _folder(context, output, part)
     with refused(), Workers() as workers:
-        seed = seed_of(level, seed)
-        chosen = tuple(replace(one, seed=seed) for one in loaded(engine or [], workers))
+        chosen = loaded(engine or [], workers, seed_of(level, seed))
         if part and not replace_full:
-            everything = studies_of(context, [])
-            _check_kept(output, everything, () if claim else studies, [one.name for one in chosen])
+            _check_kept(output, studies_of(context, []), () if claim else studies, chosen)
         check_folder(output)
-        check_folder(store := store_of(output))
-
-    with measurements() as progress:
-        result = run(
-            studies,
-            chosen,
-            folder=store,
-            jobs=jobs or cores(),
-            limit=study_limit,
-            quick=level == "quick",
-            resume=resume,
-            errata=() if context.obj is not None or names or claim or level != "full" else ERRATA,
-            expected=seconds_of_last_run(output, Path(FULL)),
-            progress=progress,
-        )
+        check_folder(store_of(output))
+    result = _run(
+        studies,
+        chosen,
+        output,
+        jobs=jobs or cores(),
+        limit=study_limit,
+        quick=level == "quick",
+        resume=resume,
+        errata=() if context.obj is not None or names or claim or level != "full" else ERRATA,
+    )
     matrix = _write(result, output)
     _print_results(result, matrix, chosen, output / "index.html", with_numbers=claim is not None)
     return _status(result, matrix, min_conclusive, [one.name for one in chosen] if engine else [])
@@ -228,18 +220,29 @@ def _folder(context: typer.Context, output: Path, part: bool) -> Path:
 
 
 def _check_kept(
-    output: Path, everything: Sequence[Study], studies: Sequence[Study], engines: Sequence[str]
+    output: Path, everything: Sequence[Study], studies: Sequence[Study], engines: Sequence[Engine]
 ) -> None:
     """Raise ``ValueError`` if ``output`` contains all studies, with measurements that the new report would lack."""
     from compare.claims.claim import THEORY
     from compare.report.results_json import seconds_of_last_run
 
     old = seconds_of_last_run(output)
-    kept = {(study.name, column) for study in studies for column in (THEORY, *engines)}
+    kept = {(study.name, column) for study in studies for column in (THEORY, *(one.name for one in engines))}
     if {one.name for one in everything if not one.only} <= {study for study, _ in old} and old.keys() - kept:
         raise ValueError(
             f"{output} contains a full report; choose another --output, or replace the report with --replace"
         )
+
+
+def _run(studies: tuple[Study, ...], engines: tuple[Engine, ...], output: Path, **options: Any) -> Run:
+    """Measure the studies and show the progress, with the durations of the last report."""
+    from compare.report.results_json import seconds_of_last_run
+    from compare.run.runner import run
+
+    expected = seconds_of_last_run(output, Path(FULL))
+    with measurements() as progress:
+        more = options | {"folder": store_of(output), "expected": expected, "progress": progress}
+        return run(studies, engines, **more)
 
 
 def _write(result: Run, output: Path) -> Matrix:

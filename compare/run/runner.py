@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Collection, Generator, Hashable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -236,15 +236,18 @@ def _name_of(key: Any) -> str:
 # --- Engines by name. Their modules are imported in another process, because an import may end its process.
 
 
-def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
+def loaded(names: Iterable[str], workers: Workers, seed: int | None = None) -> tuple[Engine, ...]:
     """Return the engines of the given names, loaded by the ``workers``.
 
+    ``seed`` is that of their units, see ``Engine.seed``.
     Raises ``ValueError`` for a name that is unknown or that the process could not load.
     """
     names = [known_name(name) for name in dict.fromkeys(names)]
     if all(map(is_registered, names)):
-        return engines(names)
-    return told_apart(names, [_loaded(name, workers) for name in names])
+        found = engines(names)
+    else:
+        found = told_apart(names, [_loaded(name, workers) for name in names])
+    return tuple(replace(engine, seed=seed) for engine in found)
 
 
 def _loaded(name: str, workers: Workers) -> Engine:
