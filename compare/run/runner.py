@@ -35,7 +35,7 @@ class Run:
     """The requested measurements and their results so far.
 
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
-    - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
+    - ``contact_only``: names of the engines that are measured only in studies of the contact (``Study.contact``).
     - ``about``, ``versions``: descriptions and versions of the engines.
     - ``outcomes``: findings or failure for each finished (study, engine or "theory").
     - ``seconds``: duration of each measurement in s.
@@ -105,10 +105,9 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Findings and drawings are written as they arrive; drawings of equal data are reused. A piece of work that takes
-    longer than ``limit`` (s) fails. ``resume`` reuses findings with the same digest of code and libraries.
-    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete, with ``interrupted``
-    set.
+    Findings and drawings are written as they arrive; drawings of equal data are reused. Work that takes longer than
+    ``limit`` (s) fails. ``resume`` reuses findings with the same digest of code and libraries. ``expected`` are the
+    durations of an earlier run. After Ctrl-C the results are incomplete, with ``interrupted`` set.
     """
     result = Run(
         studies,
@@ -215,7 +214,7 @@ def _name_of(key: Any) -> str:
 
 
 QUICK_SEED = 1
-"""Seed of the quick level, whose motions are mostly of 1 kg and slow in SI units."""
+"""Seed of random units at the quick level, whose motions mostly have 1 kg and low speeds in SI units."""
 
 
 def seed_of(level: str, seed: int | None) -> int | None:
@@ -269,7 +268,7 @@ def pace(name: str) -> float:
 def loaded(names: Iterable[str], workers: Workers) -> tuple[Engine, ...]:
     """Return the engines of the given names, loaded by the ``workers``.
 
-    Raises ``ValueError`` for a name that is unknown or that the process could not load.
+    Raises ``ValueError`` for an unknown name, or one that the process could not load.
     """
     names = [known_name(name) for name in dict.fromkeys(names)]
     if all(map(is_registered, names)):
