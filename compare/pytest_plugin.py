@@ -1,8 +1,8 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
 A separate process measures the claims. A test fails if the claim differs or the engine has no answer. A claim is "not
-attempted" if the engine does not support it or its study has no time left, "inconclusive" if the errors leave it
-open, and "not finished" if it exceeds the limit. None of these is a pass.
+attempted" if the engine does not support it or its study has no time left, "inconclusive" if errors are too large,
+and "not finished" beyond the time limit. None of these is a pass.
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive.
 """
@@ -202,7 +202,7 @@ class ClaimTest(pytest.Item):
 
     @classmethod
     def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
-        """Return the test of ``sentence``, named with the engine unless ``alone``."""
+        """Return the test of ``sentence``; its name contains the engine unless ``alone``."""
         test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
         test.study, test.engine, test.sentence = parent.study, engine, sentence
         test.user_properties.append((ENGINE, engine))

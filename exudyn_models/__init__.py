@@ -2,10 +2,10 @@
 
 All public names are exported here. They come from these packages:
 
-- ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing this package also
-  defines ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
-- ``solver``: ``solve_dynamic`` is ``mbs.SolveDynamic`` with checks and clear errors. ``largest_stable_step`` is for
-  explicit solvers with a fixed step.
+- ``parts``: friction, radial support, heat capacity and energy balance for your model. Importing it also defines
+  ``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``.
+- ``solver``: ``solve_dynamic``, which is ``mbs.SolveDynamic`` with checks, and ``largest_stable_step`` for explicit
+  solvers with a fixed step.
 - ``drivetrain``: engine, clutch and vehicle made of these parts, and an example, ``PASSENGER_CAR``.
 - ``paper``: the paper's pin and disc. ``simulate`` has the signature and result of the reference.
 - ``forces``: the compiled force laws.

@@ -22,7 +22,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion of a pin or a disc under exact Coulomb friction (eq. 1 and 6, eq. 19 to 21).
 
-    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system;
+    Raises ``ValueError`` if an argument is invalid or the compiled kernel does not support the system, and
     ``SimulationError`` if the integrator fails.
 
     Parameters

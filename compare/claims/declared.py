@@ -17,13 +17,13 @@ from compare.claims.prose import slug
 class Declared:
     """All properties of a claim that do not depend on the engine.
 
-    - ``function``: ``function(engine) -> Measured``, or without an argument for the theory. It returns None if the
-      claim does not apply to the engine. In a family it also takes one of the values of ``each``.
+    - ``function``: ``function(engine) -> Measured``, without an argument for the theory, or None if the claim does
+      not apply to the engine. In a family it also takes a value of ``each``.
     - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
     - ``swept``: parameters of the system that the claim varies.
     - ``each``: names and values of the members of a family; empty for a single claim.
-    - ``duration``: total duration in s of the motions of a long claim, with more weight for finer steps, else 0. The
-      quick level skips claims that would take too long.
+    - ``duration``: total duration in s of a long claim's motions, weighted for finer steps, else 0. The quick level
+      skips claims that would take too long.
 
     All others are those of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the
     member's name.

@@ -31,8 +31,8 @@ SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
 If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
-that fall slowly or irregularly with the tolerance, unless both are equal by chance to within an eighth. The change
-against a *larger* tolerance is too small for one number in twenty of the reference and one in fifty of Exudyn.
+that fall slowly or irregularly, unless both agree by chance to within an eighth. The change against a *larger*
+tolerance is too small for one number in twenty of the reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4
@@ -69,9 +69,9 @@ def refined(
     """Return ``quantity(tolerance)`` and an estimate of its error, of the same shape.
 
     The estimate is ``SAFETY`` times the change against ``quantity(tolerance / COARSENING)``, at least rounding error.
-    If the numbers of a row (along the last axis) are ``alike``, of one unit and size, it is also at least the largest
-    change in the row, because a single number may hardly change by chance. If the smaller tolerance changes nothing,
-    because the engine does not follow it, the next larger one that does is used.
+    If the numbers of a row (the last axis) are ``alike`` in unit and size, it is also at least the row's largest
+    change, because a single number may hardly change by chance. If the engine does not follow the smaller tolerance,
+    the next larger one with an effect is used.
     """
     found = np.asarray(quantity(tolerance), dtype=float)
     for factor in (1.0 / COARSENING, COARSENING, COARSENING**2):

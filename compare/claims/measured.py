@@ -78,9 +78,8 @@ def answers_of(margins: ArrayLike, errors: ArrayLike = 0.0, *, may_be_open: int 
     """Return the measurement of a claim that must hold in all of n cases; it differs if one case certainly fails.
 
     It is inconclusive if no case fails but more than ``may_be_open`` are undecided. ``margins``, n numbers or truth
-    values, are the distances of quantities from their thresholds, positive if the case holds; NaN is a failure. An
-    error of NaN is a failure too, and an infinite error leaves a case undecided. ``more`` contains fields of
-    :class:`Measured`.
+    values, are the distances of quantities from their thresholds, positive if the case holds. A margin or error of
+    NaN is a failure, and an infinite error leaves a case undecided. ``more`` contains fields of :class:`Measured`.
     """
     margins, errors = np.broadcast_arrays(_as_numbers(margins), np.asarray(errors, dtype=float))
     yes, unsure = margins > errors, (np.abs(margins) <= errors) | np.isposinf(errors)

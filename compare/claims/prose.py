@@ -37,9 +37,9 @@ SECTIONS = {
 class Prose:
     """The texts of a study.
 
-    ``title`` is one line, ``paper`` the statements of the paper, ``section`` the heading of the study's group in the
-    overview. The first screen shows ``finding``, the answer to a question that the paper leaves open, while all
-    claims agree. ``figures`` contains captions by the names of figures and animations.
+    ``title`` is one line, ``paper`` the statements of the paper, ``section`` the heading of the study's group.
+    While all claims agree, the first screen shows ``finding``, the answer to a question that the paper leaves open.
+    ``figures`` contains captions by the names of figures and animations.
     """
 
     title: str

@@ -96,8 +96,8 @@ class Study:
 
     - ``only``: names of the engines that the study is about; empty for all.
     - ``system``, ``source``: system whose parameters repeat the measurements, and their origin.
-    - ``seconds``: approximate time in s for one engine; the longest work starts first to keep all cores busy.
-    - ``quick``: True if the study belongs to the quick level, which takes seconds and covers every kind of claim.
+    - ``seconds``: approximate time in s for one engine; the longest work starts first.
+    - ``quick``: True for the quick level, which takes seconds and covers every kind of claim.
     - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
       claims leave out cases that depend on other code.
     - ``declared``: claims in the order of the report.
@@ -131,8 +131,8 @@ class Study:
         ``animations``  ``animate(data: ByEngine) -> {name: GIF}``, see ``compare.report.animation``
         ``curves``      ``curves() -> Data``: curves of formulas for the figures
         ``tables``      ``tables() -> (Table, ...)``: additional tables for the report, not measured
-        ``recorded``    ``recorded() -> (Recorded, ...)``: a separate matrix in the report, counted separately; all
-                        make the same claims in the same order
+        ``recorded``    ``recorded() -> (Recorded, ...)``: a separate matrix in the report; all make the same claims
+                        in the same order
         ``validations`` ``validations() -> (Validation, ...)``: comparisons with measurements
         =============== ==========================================================================================
 

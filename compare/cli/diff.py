@@ -37,8 +37,8 @@ def diff(old: Old, new: New, baseline: Baseline = None, write_baseline: WriteBas
 
     The command lists claims that changed by more than their error bars, are new or are missing.
 
-    The exit status is 0 if no claim outside the baseline changed, got worse or is missing, and 1 otherwise. It is 2
-    for bad input, and 4 if NEW contains no verdict for one of its engines.
+    The exit status is 0 if no claim outside the baseline changed, got worse or is missing, else 1. It is 2 for bad
+    input, and 4 if NEW contains no verdict for one of its engines.
 
     \b
     Examples:

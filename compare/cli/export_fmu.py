@@ -38,9 +38,9 @@ class Unit:
 def export() -> None:
     """Write a contact as a functional mock-up unit (FMU).
 
-    Simulink, Dymola and other FMI importers can read the unit. It supports model exchange and co-simulation. It
-    contains its C sources and a library for this platform. Values from --set are its initial parameters; an importer
-    may change them.
+    Simulink, Dymola and other FMI importers can read the unit. It supports model exchange and co-simulation, and
+    contains its C sources and a library for this platform. --set gives initial parameters, which an importer may
+    change.
 
     \b
     Examples:

@@ -140,10 +140,10 @@ def report(
     It writes index.html, results.json, junit.xml and figures. Without --output, a full report goes into the folder
     report, and a partial one (some studies or engines, one claim, the quick level) into report-part.
 
-    The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, and 3
-    if too few claims agree or some were not finished in time. Claims that the quick level does not attempt do not
-    count. It is 4 if an engine named with --engine has no verdict, or omits a claim without a reason. It is 130 after
-    Ctrl-C; --resume then completes the report. --resume does not notice changes to data files of your own engine.
+    The exit status is 0 if no claim differs, and 1 if one differs or an engine failed. It is 2 for bad input, 3 if
+    too few claims agree or some were not finished in time, and 4 if an engine named with --engine has no verdict or
+    omits a claim without a reason. Claims that the quick level does not attempt do not count. It is 130 after Ctrl-C;
+    --resume then completes the report, but does not notice changes to data files of your own engine.
 
     \b
     Examples:

@@ -1,4 +1,4 @@
-"""Parts of an engine's diagnosis, measured separately so that a hanging part does not affect the others."""
+"""Parts of an engine's diagnosis, measured separately, so a hanging part does not affect the others."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from compare.engines import USUAL_TOLERANCE, Engine
 from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
-PER_STEP = 0.2  # largest deviation from −1 of the order of a force whose impulse per step is bounded
-SAME = 0.8  # least ratio of the creep at any rung to the largest, if it does not depend on the rung
-HELD = 0.05  # mean speed over a Coulomb block's, below which a block is held
+PER_STEP = 0.2  # largest deviation from −1 of a force's order that shows a bounded impulse per step
+SAME = 0.8  # creep is independent of the rung if no value is below this share of the largest
+HELD = 0.05  # a block is held if its mean speed is below this share of a Coulomb block's
 
 MOST_HELD, BISECTIONS = 32.0, 20
 

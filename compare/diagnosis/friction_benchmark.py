@@ -22,7 +22,7 @@ class Case:
 
     The force on the mass is ``force`` − stiffness·position − damping·velocity, plus friction of at most ``friction``.
     ``start`` is (x, y, vx, vy), and ``plate_speed`` an angular speed. A ring lies on the plate under uniform
-    pressure. It has the ``radius`` R and the moment of inertia m·R², and turns with ``spin`` at the start.
+    pressure. It has the ``radius`` R, the moment of inertia m·R² and the initial ``spin``.
     """
 
     name: str

@@ -1,7 +1,7 @@
 """Short motions that reveal the friction force, its history, the support and the moment of a disc.
 
-The change of momentum gives the friction force without a friction law or an exact solution. A constant force
-decelerates a block that slides straight on a plane at rest, so any step distinguishes cone, box and pyramid.
+The change of momentum gives the friction force without a friction law or an exact solution. The force on a block that
+slides straight on a plane at rest is constant, so any step distinguishes cone, box and pyramid.
 """
 
 from __future__ import annotations
@@ -141,10 +141,10 @@ def slides(
 ) -> FloatArray:
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
-    They are the mean friction force over μN, the mean directions of slip and of the place, and the conditions: mass,
-    load, mean slip speed, disc speed and distance from the axis. Then follow the given initial speed in m/s, and the
-    one that follows from speed and force when the measurement begins. The last two are the error of the force due to
-    the declared precision, and the smallest slip over the first.
+    They are the mean friction force over μN, the mean directions of slip and position, the conditions (mass, load,
+    mean slip speed, disc speed, distance from the axis), the given initial speed in m/s, the initial speed that
+    follows from speed and force when the measurement begins, the error of the force due to the declared precision,
+    and the ratio of the smallest slip to the first.
     """
     motions = [(push.system, push.start, push.times(panels)) for push in pushes]
     runs = engine.simulate_many(motions, tolerance=tolerance)
@@ -324,7 +324,7 @@ def discs(points: int | None) -> list[tuple[DiscOnDisc, tuple[float, ...], Float
 
 
 def moments(engine: Engine, points: int | None, tolerance: float) -> FloatArray:
-    """Return force and moment of friction over the exact ones, shape (6, 2); NaN where there is none."""
+    """Return the ratios of force and moment of friction to the exact ones, shape (6, 2); NaN for none."""
     motions, found = discs(points), []
     settled = _settled(engine, motions, tolerance, 1e-12)
     for (_, start, _), (begun, ended, exact) in zip(motions, settled, strict=True):

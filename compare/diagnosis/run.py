@@ -56,8 +56,8 @@ def diagnosed(
 def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engine, str | Row]]:
     """Yield each engine with a sentence about two blocks, one that slides and one that should rest.
 
-    The row of an engine without a result takes the place of the sentence, which is "" for an engine that does not
-    simulate blocks.
+    The sentence is "" for an engine that does not simulate blocks. For an engine without a result it is replaced by
+    its row.
     """
     for engine in engines:
         found = workers.ask(_or_reason, first_check, engine, owner=owner_of(engine))

@@ -42,7 +42,7 @@ class Scales:
     speeds: FloatArray  # (n, 2): initial speed in m/s, given and as measured
 
     def ratios(self, law: Friction) -> NDArray[np.complex128]:
-        """Return measured over expected forces, NaN for unknown directions of other laws."""
+        """Return the ratios of measured to expected forces; NaN where the slip's direction is unknown."""
         force, slip = self.forces @ PLANE, self.slips @ PLANE
         if law.shape == CONE:
             return np.asarray(force / -slip)

@@ -64,8 +64,8 @@ class Engine:
     - ``function``: the engine's ``simulate``; a function of an importable module if several processes are to use it.
     - ``kinds``: systems that it simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
       disc on single points), "ring" (a disc on the continuous ring).
-    - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions in which the reference finds
-      no stick, and which do not start at rest on the master disc.
+    - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions that neither stick in the
+      reference nor start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
     - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
     - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for
@@ -74,8 +74,8 @@ class Engine:
       then takes ``step`` in place of ``tolerance``.
     - ``order``: order of the error in a fixed step.
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
-    - ``contact_only``: True if it shares everything except the contact with its kin. Unless it is requested by name,
-      it is then measured only in studies of the contact, see ``Study.contact``.
+    - ``contact_only``: True if it shares all but the contact with its kin. Unless requested by name, it is then
+      measured only in studies of the contact, see ``Study.contact``.
     - ``about``: one or two sentences for readers of the report.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
@@ -128,8 +128,8 @@ class Engine:
         """Call ``function``, check the trajectory and return it.
 
         Raises ``UnsupportedSystemError`` if the engine does not simulate the motion, ``TypeError`` if ``function``
-        does not return a ``Trajectory``, and ``BadTrajectoryError`` if that has other times or shapes than requested,
-        or numbers that are not finite.
+        does not return a ``Trajectory``, and ``BadTrajectoryError`` if its times or shapes are not those requested,
+        or its numbers are not finite.
         """
         self._refuse(system, initial_state, times)
         answer = self._asked(
@@ -143,8 +143,8 @@ class Engine:
         """Return the motion of each system from its initial state at its times.
 
         If ``function`` has an attribute ``simulate_many``, one call computes all motions. It takes equally long lists
-        of systems, initial states and times, and ``tolerance`` or ``step``, and returns a sequence of trajectories.
-        Errors are those of ``simulate``.
+        of systems, initial states and times, and ``tolerance`` or ``step``, and returns trajectories. Errors are
+        those of ``simulate``.
         """
         motions = list(motions)
         at_once = getattr(self._asked, "simulate_many", None)

@@ -19,9 +19,9 @@ from reference_model.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class ByName:
-    """A function of a module that is imported on the first call, because SciPy and Exudyn load slowly.
+    """A function of a module, imported on the first call because SciPy and Exudyn load slowly.
 
-    ``folder``, if given, is searched for the module after all other folders.
+    The ``folder``, if given, is searched after all others.
     """
 
     module: str
@@ -94,8 +94,8 @@ def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or by default all registered engines except those on request.
 
     A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Names may also be
-    "module:function", which may be in the current folder; "exec:COMMAND"; and an entry point "friction_discs.engines"
-    of an installed package. Raises ``ValueError`` if a name is unknown or cannot be imported.
+    "module:function", also in the current folder, "exec:COMMAND", and an entry point "friction_discs.engines" of an
+    installed package. Raises ``ValueError`` if a name is unknown or cannot be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(

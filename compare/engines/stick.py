@@ -23,10 +23,10 @@ PER_PERIOD = 64  # samples per period or revolution, whichever is shorter
 MOST = 20_000  # largest number of samples before refinement
 
 REST = 1e-2
-"""Slip over the largest speed of the motion, below which a body may stick; refinement lowers it."""
+"""Slip, as a share of the largest speed, below which a body may stick; refinement lowers it."""
 
 CREEP = 3e-4
-"""Largest creep in stick over the largest speed of the motion, at a tolerance of 1e-9.
+"""Largest creep in stick, as a share of the largest speed, at a tolerance of 1e-9.
 
 It is proportional to the tolerance, up to ``REST``.
 """
@@ -35,14 +35,14 @@ CLOSER = 64  # factor between sample densities, and between levels of slip, of s
 LOOKS = 3
 
 LEAST = 1e-7
-"""Least slip for extrapolation over the largest speed of the motion, at a tolerance of 1e-9.
+"""Least slip for extrapolation, as a share of the largest speed, at a tolerance of 1e-9.
 
-It is proportional to the root of the tolerance, so that error estimates include the extrapolation.
+It is proportional to the root of the tolerance, so error estimates include the extrapolation.
 """
 
-ABOVE_NOISE = 32.0  # least slip for extrapolation over the engine's precision, if larger
+ABOVE_NOISE = 32.0  # least slip for extrapolation, in units of the precision, if that exceeds ``LEAST``
 NOISE = 0.1  # relative change of slip between samples that indicates rounding noise instead of creep
-ABOVE_CREEP = 8.0  # least slip for extrapolation over the creep in the stick phase
+ABOVE_CREEP = 8.0  # least slip for extrapolation, in units of the creep in stick
 
 QUIET, QUIETER = 0.1, 0.5
 """Share of a slow span that is certainly stick: at first, when it may contain slow slip, and later."""
@@ -51,7 +51,7 @@ GROWS = 1.2
 """Ratio of the third to the first quartile of creep that grows up to release."""
 
 BELOW_REST = 16.0
-"""``REST`` over the largest growing creep; beyond it, the end of creep looks like the start of slip."""
+"""Ratio of ``REST`` to the largest growing creep; beyond it, the end of creep looks like the start of slip."""
 
 FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 
@@ -59,8 +59,8 @@ FLANK = 16.0  # ratio of the largest to the least slip for extrapolation
 class StatesOnly(Trajectory):
     """The trajectory ``told`` by an engine, with stick phases that are computed from states on first use.
 
-    ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance over
-    1e-9.
+    ``ask`` returns the states of the same motion at any later times. ``coarseness`` is the engine's tolerance
+    divided by 1e-9.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class StatesOnly(Trajectory):
 class _Span:
     """A time span from sample ``first`` to ``last``, in s, with slip below ``level`` in m/s.
 
-    Polynomials of this ``degree`` extrapolate its begin and end from slip above the level.
+    Polynomials of this ``degree`` fitted to slip above the level, yield the times of zero slip.
     """
 
     first: float
@@ -243,10 +243,10 @@ class _Samples:
     def _released(self, span: _Span) -> _Span:
         """Return a span with the level and degree for extrapolating its end, the release.
 
-        The level is the geometric mean of the creep and of ``REST``. If friction is regularised over ε, creep grows
+        The level is the geometric mean of the creep and of ``REST``. If friction is regularised below ε, creep grows
         before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. If the level
-        jumped with the samples, the error would not fall with the step as the error estimate assumes. A cubic has a
-        smaller error.
+        jumped with the samples, the error would not fall with the step as the estimate assumes. A cubic has a smaller
+        error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]

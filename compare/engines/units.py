@@ -1,6 +1,6 @@
-"""Motions in other units: equal to the requested ones in dimensionless form, with other parameters.
+"""Motions in other units: the requested ones in dimensionless form, with other parameters.
 
-The studies' masses are mostly 1 kg and their speeds below 2 m/s; an engine may be wrong at all others. The units are
+The studies' masses are mostly 1 kg and speeds below 2 m/s; an engine may be wrong at all others. The units are
 powers of two, so an engine without absolute constants returns the same digits.
 """
 

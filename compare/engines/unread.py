@@ -20,9 +20,9 @@ SHORT = 1e-3  # duration of the motion in s
 
 
 def unread(function: Callable[..., Any], system: System, start: object, **accuracy: float) -> tuple[str, ...]:
-    """Return the names in ``NONLINEAR`` that are nonzero in ``system`` but that ``function`` never reads.
+    """Return the names in ``NONLINEAR`` that are nonzero in ``system`` but never read by ``function``.
 
-    The result is empty if ``function`` is not a Python function, or if it does not answer.
+    The result is empty if ``function`` is not a Python function or does not answer.
     """
     if not inspect.isfunction(function):  # a program or a file receives all parameters
         return ()

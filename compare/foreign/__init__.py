@@ -155,8 +155,8 @@ COLUMNS = ("tolerance", "steps", "error", "change", "seconds", "wall")
 """Columns of a recorded run.
 
 "error" is the largest error over time in m. "change" is the change in m against the previous run, whose tolerance is
-larger by ``compare.claims.error_estimates.COARSENING``. "seconds" is processor time and "wall" is wall-clock time;
-for an engine in another process both are wall-clock time.
+larger by ``compare.claims.error_estimates.COARSENING``. "seconds" is processor time, or wall-clock time for an engine
+in another process; "wall" is wall-clock time.
 """
 
 TOLERANCE, STEPS, ERROR, CHANGE, SECONDS, WALL = range(len(COLUMNS))

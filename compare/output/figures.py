@@ -14,9 +14,8 @@ Example of a study's ``draw``::
         left.legend()
         return {"fig03-radius": figure}
 
-Formulas are thin black lines on top of the engines' curves. Engines are broad lines (``curve``) or hollow marks
-(``points``), so coinciding results remain visible. Import matplotlib only inside functions, because the command line
-must start without it.
+Formulas are thin black lines above the engines' broad lines (``curve``) or hollow marks (``points``), so coinciding
+results remain visible. Import matplotlib only inside functions, because the command line must start without it.
 """
 
 from __future__ import annotations

@@ -169,7 +169,7 @@ def _numbers(claim: Mapping[str, Any], name: str) -> FloatArray:
     return np.array(claim[name], dtype=float).ravel()
 
 
-# --- A baseline: claims that are known to fail, so a server reports only new failures.
+# --- A baseline: claims known to fail, so a server reports only new failures.
 #
 # A file for people to read and edit::
 #

@@ -66,7 +66,7 @@ class Cell:
     """One engine's answer to one claim: the worst state of usually one claim.
 
     ``reason`` is that of a missing verdict, ``evidence`` the kind of evidence, "" without a verdict. ``implied_by``
-    is the claim that implies this verdict, or the engine whose verdict on the same claim implies it.
+    is the claim, or the engine with the same claim, whose verdict implies this one.
     """
 
     state: State

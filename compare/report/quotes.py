@@ -1,7 +1,7 @@
 """Numbers that texts quote from claims, so every number in a text was measured.
 
 A quote in a study's text is a name in braces, as in "a pair grows at {rate of growth, 3 digits} 1/s". A claim of the
-study gives this name to one of its elements or to all of them (``Claim.named``). Options follow after commas:
+study gives this name to one or all of its elements (``Claim.named``). Options follow after commas:
 
 =============  ======================================================================================================
 (none)         the measured number from the first engine that has it, with the digits that its error allows

@@ -1,7 +1,7 @@
 """The motions that a study requests, if they do not depend on the answers.
 
-An engine that records its questions gives exact and then slightly wrong answers. If the questions are equal, every
-engine would receive them.
+A recording engine gives exact and then slightly wrong answers. If its questions are equal, every engine would receive
+them.
 """
 
 from __future__ import annotations

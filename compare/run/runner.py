@@ -27,7 +27,7 @@ class Run:
     """The requested measurements and their results so far.
 
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
-    - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
+    - ``contact_only``: names of the engines that are measured only in studies of the contact (``Study.contact``).
     - ``about``, ``versions``: descriptions and versions of the engines.
     - ``outcomes``: findings or failure for each finished (study, engine or "theory").
     - ``seconds``: duration of each measurement in s.

@@ -69,8 +69,8 @@ class _Work:
 class Workers:
     """A pool of at most ``jobs`` processes, used as a context manager; leaving it kills all processes.
 
-    A piece of work that takes longer than ``limit`` (s) fails.
-    ``watch`` is called with the keys of the running work when they may have changed.
+    Work that takes longer than ``limit`` (s) fails. ``watch`` gets the keys of the running work when they may have
+    changed.
     """
 
     def __init__(self, jobs: int = 1, limit: float | None = None) -> None:
@@ -232,7 +232,7 @@ class _Worker:
 
 
 class _Errors:
-    """The standard error of a process, which may hold the only reason why it ended."""
+    """The standard error of a process, which may be the only record of why it ended."""
 
     def __init__(self) -> None:
         self._file = tempfile.TemporaryFile()  # noqa: SIM115

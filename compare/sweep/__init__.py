@@ -1,4 +1,4 @@
-"""Sweeps of many trajectories: basins of attraction, maps over two parameters, uncertain parameters.
+"""Sweeps of many trajectories: basins of attraction, maps of two parameters, uncertain parameters.
 
 Their stores need the extra ``sweep``; without it, importing this package raises ``ModuleNotFoundError``.
 """

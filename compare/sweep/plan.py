@@ -34,8 +34,8 @@ BASES = 2  # independent samples for the sensitivities
 class Plan(ABC):
     """Fields that all plans share.
 
-    The ``system`` contains the parameters that are not swept. A trajectory lasts at most ``duration`` (s) and ends
-    once its end is certain; ``tolerance`` is its relative accuracy.
+    The ``system`` contains the fixed parameters. A trajectory lasts at most ``duration`` (s) and ends once its end is
+    certain; ``tolerance`` is its relative accuracy.
     """
 
     kind: ClassVar[str]
@@ -137,9 +137,8 @@ class Map(Plan):
 class Uncertainty(Plan):
     """Random parameters and starts in the design for Sobol indices by Saltelli et al. (2010).
 
-    Each of the ``samples`` rows contains two independent draws A and B and, for each quantity in ``varied``, a
-    mixture: this quantity from B, the others from A. Trajectories are numbered row·(2 + quantities) + position in the
-    row.
+    Each of the ``samples`` rows contains two independent draws A and B and, for each quantity in ``varied``, A with
+    this quantity from B. Trajectories are numbered row·(2 + quantities) + position in the row.
     """
 
     kind = "uncertainty"
@@ -224,7 +223,7 @@ def plan_from_json(content: Mapping[str, Any]) -> Plan:
 
 
 def _rows(seed: int, rows: IntArray, width: int) -> FloatArray:
-    """Return rows of a table of random numbers; all rows in between are computed too."""
+    """Return the given ``rows`` of a table of random numbers; the rows between them are also computed."""
     first, last = int(np.min(rows)), int(np.max(rows))
     return uniform_rows(seed, first, last - first + 1, width)[rows - first]
 

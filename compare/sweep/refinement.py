@@ -2,8 +2,8 @@
 
 A cell of the coarse grid is mixed if its corners end differently. Mixed cells are halved and their new points
 simulated; new points of other cells are assumed to end like the corners. If this is wrong, the boundary continues
-into a mixed cell with corners that were not simulated. They are simulated until no such cell remains, so *all corners
-of every mixed cell of the finest grid were simulated*. Structures between points of the coarse grid are not detected.
+into a mixed cell with corners that were not simulated. These are then simulated, so *all corners of every mixed cell
+of the finest grid were simulated*. Structures between points of the coarse grid are not detected.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Lines: TypeAlias = tuple[IntArray, IntArray]
 class Grid:
     """The finest grid: ends of its points, and marks of simulated points, both of shape (y, x).
 
-    Ends of points on lines that are not yet in use are meaningless.
+    Ends on lines not yet in use are meaningless.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:

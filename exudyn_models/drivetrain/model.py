@@ -1,7 +1,7 @@
 """A dry clutch in its drivetrain, built of public parts: the paper's disc between an engine and a vehicle.
 
-Engine and flywheel press on both facings of the clutch disc. The disc sits on the gearbox's input shaft, which is
-radially elastic and may be offset. A torsional spring and damper connect the disc to the gearbox and the vehicle.
+Engine and flywheel press on both facings of the clutch disc on the gearbox's input shaft, which is radially elastic
+and may be offset. A torsional spring and damper connect the disc to the gearbox and the vehicle.
 """
 
 from __future__ import annotations

@@ -117,7 +117,7 @@ PASSENGER_CAR = Drivetrain(
 - Vehicle: 1300 kg on wheels of 0.3 m behind a ratio of 13 : 1, 0.69 kg m², plus the gearbox.
 - Engine with flywheel, and disc: assumed, below the inertias of a light truck in Applied Sciences 9 (2019) 4287,
   table A3, 0.3 and 0.045 kg m²; clamp loads there reach 10 kN. Facings of 228 by 150 mm are sold for petrol engines
-  of 150 N m; dry ones have μ = 0.2 to 0.4 (Modelica Standard Library, Rotational.Components.Clutch).
+  of 150 N m; dry facings have μ = 0.2 to 0.4 (Modelica Standard Library, Rotational.Components.Clutch).
 - Torsional spring: 17 N m per degree.
 - Radial support, assumed: a steel shaft of 18 mm over a free length of 0.31 m, which gives a natural frequency of
   2865 rpm; 5 % of critical damping; 0.5 mm clearance in the pilot bearing; 0.2 mm between the axes; an unbalance of

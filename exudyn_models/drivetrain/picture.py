@@ -30,10 +30,10 @@ IRON, STEEL = (0.40, 0.43, 0.48, 1.0), (0.72, 0.74, 0.78, 1.0)
 LINING, BRASS = (0.80, 0.42, 0.16, 1.0), (0.95, 0.75, 0.25, 1.0)
 
 SHAFT = 0.11
-"""Radius of the shaft over that of the disc."""
+"""Ratio of the shaft's radius to the disc's."""
 
 BEARING = 1.5
-"""Distance of the bearing over the radius of the disc."""
+"""Ratio of the bearing's distance to the disc's radius."""
 
 VIEW = Rotation.from_euler("yx", [-0.85, 0.4])
 """Orientation of the model: engine in the back on the right, gearbox in front on the left."""

@@ -77,9 +77,8 @@ SECANT = 0.3
 
 There F = K·slip with the secant K, which depends on the direction only. Newton's method starts from the slip without
 acceleration, thousands of times the creep. With the derivative alone it cycles for one load in ten on six points, and
-one in six on three. With a share of 0.3 it converged for all loads, in 7 iterations. On three feet with unequal
-shares 5 of 100 loads take more than 25 iterations, and on four feet in a line 13 of 100; the solver then takes a
-smaller step.
+one in six on three; with a share of 0.3 it converged for all, in 7 iterations. On three feet with unequal shares 5 of
+100 loads take more than 25 iterations, and on four feet in a line 13; the solver then takes a smaller step.
 """
 
 
@@ -213,7 +212,7 @@ def ring_friction_derivatives(
 ) -> FloatArray:
     """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
 
-    If points creep as a whole, these contain a ``SECANT`` share, so that Newton's method converges.
+    If points creep as a whole, these contain a ``SECANT`` share, so Newton's method converges.
     """
     ux = dvx + master_spin * dy
     uy = dvy - master_spin * dx
@@ -303,7 +302,7 @@ def _derivatives_of_points(
 def _potential_of_points(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, FloatArray, int]:
-    """Return P, its derivatives by u_x, u_y, φ̇ − ω and φ, and the held point or else the slowest one."""
+    """Return P, its gradient in (u_x, u_y, φ̇ − ω, φ), and the held point or, without one, the slowest."""
     _, points, _, _, held, table = contact
     mean, lowest, slow = 0.0, math.inf, held
     by_mean = np.zeros(4)
@@ -322,7 +321,7 @@ def _potential_of_points(
 def _slip_of_point(
     ux: float, uy: float, spin: float, angle: float, point: int, table: float
 ) -> tuple[complex, float, complex, tuple[complex, complex, complex, complex]]:
-    """Return arm, share and slip of a point, and the slip's gradient by (u_x, u_y, φ̇ − ω, φ)."""
+    """Return arm, share and slip of a point, and the slip's gradient in (u_x, u_y, φ̇ − ω, φ)."""
     place, share = place_at(table, point)
     arm = place * complex(math.cos(angle), math.sin(angle))
     return arm, share, complex(ux, uy) + 1j * spin * arm, (1.0 + 0j, 1j, 1j * arm, -spin * arm)

@@ -32,7 +32,7 @@ RINGS = 12
 CLUSTERING = 3
 
 FARTHEST = 4.0
-"""Largest r₀ over the outer radius; beyond it the position of r₀ makes no difference."""
+"""Largest ratio of r₀ to the outer radius; beyond it the position of r₀ makes no difference."""
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(RINGS)
 

@@ -37,7 +37,7 @@ JacobianFunction = Callable[[Any, float, int, Floats, Floats, float, float], Flo
 def force_and_jacobian(
     kinds: Kinds, reference: FloatArray, factors: LoadAndCoefficient
 ) -> tuple[ForceFunction, JacobianFunction]:
-    """Return both functions for the nodes' ``reference`` coordinates."""
+    """Return the user functions of force and Jacobian; ``reference`` contains the nodes' coordinates."""
     if on_one_axis(kinds, factors):
         return functions_on_axis(kinds, factors)
     return _compiled_functions(kinds, reference, factors)

@@ -25,7 +25,7 @@ from reference_model.trajectory import LOOK_BACK
 CREEP_NEWTON_TOLERANCE = 1e-6
 """Residual of Newton's method during creep, relative to μN (and μN·R, if that is smaller).
 
-It is a millionth of the creep, and above rounding down to ε ~ 1e-11.
+It is a millionth of the creep, and exceeds rounding errors down to ε ~ 1e-11.
 """
 
 VISCOUS_RANGE = 2.0**40
@@ -87,9 +87,8 @@ def solve_in_turns(
     In creep an explicit method would need steps of 3·mε/μN. In axes that turn with the master disc a creeping body
     almost rests, and steps of a fraction of a turn have an error of a small fraction of the creep.
 
-    A creeping part, the whole contact or one of several points, feels only the viscous part of the law. The model
-    extends this part without limit, so that the kink of the law cannot disturb Newton's method. The creep ends
-    between two steps.
+    For a creeping part (the whole contact or one of several points) the model extends the viscous part of the law
+    without limit, so the law's kink cannot disturb Newton's method. The creep ends between two steps.
 
     All numbers are in units that make the motion of order one; ``seconds`` is the unit of time in s, for messages.
     """

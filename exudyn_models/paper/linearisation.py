@@ -18,8 +18,8 @@ def eigenvalues(system: System, state: ArrayLike) -> NDArray[np.complex128]:
     """Return the eigenvalues in 1/s of the motion about ``state`` with a sliding contact.
 
     There are four for a pin, five for a disc on a continuous ring, where nothing depends on the angle, and six for a
-    disc on points. They are the λ of (λ²M + λD + K)v = 0. Exudyn's own ``ComputeODE2Eigenvalues`` includes the master
-    disc and other free motions.
+    disc on points: the λ of (λ²M + λD + K)v = 0. Exudyn's ``ComputeODE2Eigenvalues`` includes the master disc and
+    other free motions.
 
     ``state``, shape (4,) or (6,) as in ``simulate``, is usually an equilibrium. Raises ``ValueError`` if it does not
     fit the system, or if the contact or a point of it is at rest.

@@ -32,8 +32,8 @@ def simulate_with_native_contact(
 ) -> Trajectory:
     """Return the motion like ``simulate``, with Exudyn's built-in contact of a pin or of a disc on points.
 
-    A disc on points is released gently, like t², so its stick phase, which ends when its slip reaches ε, ends late by
-    about √ε. Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring, ``contact_points`` = None.
+    A stick phase ends when the slip reaches ε. After release the slip of a disc on points grows like t², so the phase
+    ends about √ε late. Raises as ``simulate``, and ``ValueError`` for a disc on the continuous ring.
     """
     state = checked_state(system, initial_state)
     grid = checked_times(times)
@@ -44,7 +44,7 @@ def simulate_with_native_contact(
 
 
 def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:
-    """Return ``WHOLE`` if all points slip slower than δ, else the indices of those that do, or None."""
+    """Return the indices of the points that slip slower than δ, ``WHOLE`` if all do, or None."""
     part, system = contact.creeping(state), contact.system
     if part is None or not isinstance(system, DiscOnDisc):
         return part

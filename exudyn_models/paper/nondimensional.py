@@ -1,4 +1,4 @@
-"""Units of length, time and mass that make a motion of order one, so that tolerances do not depend on SI scales."""
+"""Units of length, time and mass that make a motion of order one, so tolerances do not depend on SI scales."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Units:
 
         Time is scaled by the faster of springs and master disc; without them by a stop, by the dampers, or by how
         fast friction stops the slip. Length is scaled by the position of the centre and the distances that its speed
-        and friction cover in the unit of time, so that a fast spin does not hide its motion.
+        and friction cover in the unit of time, so a fast spin does not hide its motion.
         """
         velocities = system.state_size // 2
         push = system.friction_force / system.mass

@@ -22,10 +22,10 @@ NOTHING = -1
 def detected_phases(contact: RegularisedContact, steps: Steps) -> tuple[Phase, ...]:
     """Return the phases from the first to the last step, without gaps.
 
-    Under the regularised law a sticking part creeps, slower than ε as long as Coulomb friction could hold it. While
-    the contact creeps as a whole the system sticks; while one of several points does, the disc pivots about it. There
-    are three exceptions: friction cannot hold the load, so that slip passes through zero; the creep of a point ends
-    before it has settled; and slip after a release, which may cross ε several times, must first reach 2ε.
+    Under the regularised law a sticking part creeps slower than ε while Coulomb friction could hold it. If the whole
+    contact creeps, the system sticks; if one of several points creeps, the disc pivots about it. There are three
+    exceptions: friction cannot hold the load, so slip passes through zero; the creep of a point ends before it has
+    settled; slip after a release, which may cross ε several times, has not yet reached 2ε.
 
     A phase *starts* when the slip speed, extrapolated linearly from above ε, would be zero. Stick *ends* when the
     load reaches the friction limit, and a pivot when the slip speed of the point reaches its δ. These times have

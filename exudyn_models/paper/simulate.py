@@ -81,14 +81,13 @@ def simulate(
         Accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``. While the contact
         slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
     regularisation
-        ε in m/s below which friction is viscous; by default 100·tolerance of the motion's own speed, reported as
-        ``solution.regularisation``. It should stay well above the tolerance. For very soft springs pass ε explicitly,
-        because μN over √(mass·stiffness) then counts as the speed, however slow the motion.
+        ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as
+        ``solution.regularisation``. Keep it well above the tolerance. For very soft springs pass ε explicitly,
+        because μN/√(mass·stiffness) then counts as the speed, however slow the motion.
     solver : "explicit" or "implicit"
-        "explicit" is DOPRI5, with generalised-α while the contact, or one of several points, sticks, where the
-        regularised law is stiff. Stick takes some 40 steps per turn, pivoting about a point steps ~ √ε. "implicit" is
-        generalised-α throughout: second order, with steps ~ √tolerance and an error proportional to the tolerance but
-        about a thousand times larger.
+        "explicit" is DOPRI5, with generalised-α while the contact or one of its points sticks and the law is stiff.
+        Stick takes some 40 steps per turn, pivoting about a point steps ~ √ε. "implicit" is generalised-α throughout,
+        of second order, with steps ~ √tolerance and an error of about a thousand times the tolerance.
     friction
         Adds the friction between the discs to the model, which is built in the motion's own units.
 

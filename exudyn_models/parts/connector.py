@@ -1,8 +1,7 @@
-"""Connectors over the nodes of *both* bodies, which apply the full reaction to both.
+"""Connectors between the nodes of two bodies, with the full reaction on both.
 
 In general this is a massless ``ObjectGenericODE2``. A force F on the disc comes with −F and the moment −d×F on a
-master at the distance d. Exudyn's marker connectors omit that moment, so they violate conservation of angular
-momentum.
+master at the distance d. Exudyn's marker connectors omit that moment and so do not conserve angular momentum.
 
 Rotors on one axis have no such moment. Under a constant load they use ``ObjectConnectorCoordinateSpringDamperExt``
 with the law of ``axial_pairs``, which takes a fraction of the time of a Python function.
@@ -24,7 +23,7 @@ from exudyn_models.solver.items import coordinate_marker, items
 def add_connector(
     mbs: Any, nodes: Sequence[Any], force: ForceFunction, jacobian: JacobianFunction, name: str = ""
 ) -> Any:
-    """Add a connector over ``nodes``; return its ``ObjectIndex``.
+    """Add a connector between ``nodes``; return its ``ObjectIndex``.
 
     ``force`` returns the forces on all coordinates. ``jacobian`` returns the sum of the derivatives of the *negative*
     forces by coordinates and by velocities, each multiplied by the factor passed to it.
@@ -42,7 +41,7 @@ def add_connector(
 
 
 def add_friction_connector(mbs: Any, nodes: Sequence[Any], contact: Contact) -> Any:
-    """Add and register the connector of a contact over ``nodes``; return its ``ObjectIndex``."""
+    """Add and register the connector of a contact between ``nodes``; return its ``ObjectIndex``."""
     register(mbs, contact)
     if not contact.built_in:
         return add_connector(

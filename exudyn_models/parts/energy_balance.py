@@ -1,7 +1,7 @@
 """The energy balance of a model, which checks any run without a reference solution.
 
 For any bodies and force laws, gains equal losses plus the change of the stored energy. The solver integrates powers
-to works along with all other coordinates, so works are as accurate as the motion.
+along with all coordinates, so works are as accurate as the motion.
 """
 
 from __future__ import annotations

@@ -110,12 +110,12 @@ class RingFriction:
           friction.
         - ``"mode"``: 0 locked, also in creep below capacity; 1 slipping with the disc faster than the master, or
           sideways; −1 slipping with the disc slower; 2 open, without load. Within ``BAND`` of full capacity the mode
-          stays that of the previous evaluation, so that it does not flicker.
+          stays as it was, so it does not flicker.
         - ``"power"``: heating power of friction, in W.
         - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
 
-        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
-        Raises ``ValueError`` for any other quantity.
+        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
+        Raises ``ValueError`` for other quantities.
         """
         if quantity not in get_args(Quantity):
             raise ValueError(f"quantity = {quantity!r}: it must be one of {', '.join(get_args(Quantity))}")
@@ -129,7 +129,7 @@ class RingFriction:
     def _sensor_function(self, quantity: Quantity) -> Callable[..., list[float]]:
         asked, mode = False, _Mode()
 
-        # Slip needs no load, so that a load may depend on a sensor of slip.
+        # Slip needs no load, so a load may depend on a sensor of slip.
         def values(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
             nonlocal asked
             slip, angle, radius, axes = self._slip(mbs, configuration)

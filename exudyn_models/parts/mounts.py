@@ -1,8 +1,7 @@
 """Nodes of the two bodies of a contact, and its place and axes on them.
 
-A body is given by its node, by its object, or by a marker on it, which places the contact anywhere on the body. They
-become ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so that closed
-forms apply.
+A body is given by its node, its object, or a marker on it, which places the contact anywhere on the body. They become
+``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so closed forms apply.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from reference_model.systems import FloatArray
 
-indices: Any = exu  # its type hints do not name them
+indices: Any = exu  # the index types are missing from its type hints
 
 ALL = tuple(KINDS.values())
 
@@ -47,8 +46,8 @@ PARALLEL = 1e-9
 class Side:
     """One body of a contact, by the ``name`` of its argument; ``node`` is None for the ground.
 
-    ``start``, shape (3,), and ``axes``, shape (3, 3), with columns, are the fixed frame of a rotor or the ground;
-    ``place`` and ``rotation`` are the frame of the contact on the body.
+    ``start``, shape (3,), and the columns of ``axes``, shape (3, 3), are the fixed frame of a rotor or the ground;
+    ``place`` and ``rotation`` are likewise the frame of the contact on the body.
     """
 
     name: str
@@ -135,7 +134,7 @@ def _share_an_axis(master: Side, disc: Side) -> bool:
 
 
 def check_axes(mbs: Any, master: Side, disc: Side) -> None:
-    """Raise ``ValueError`` if a body turns across the contact's axis, so that friction does not resist its spin.
+    """Raise ``ValueError`` if a body turns across the contact's axis, so friction would not resist its spin.
 
     Fixed axes must be parallel to it; others may deviate by 45° at the start.
     """

@@ -42,8 +42,8 @@ def add_native_friction(
 ) -> list[Any]:
     """Add friction like ``add_ring_friction``, by one built-in contact per point; return their ``ObjectIndex``.
 
-    The dimensions perpendicular to the plane are arbitrary. They equal those of the triangle, because rounding tilts
-    the normal by the ratio of size to penetration. The remaining rounding error is a slip of 1e-15·spin·``reach``.
+    The dimensions perpendicular to the plane equal the triangle's, because rounding tilts the normal by the ratio of
+    size to penetration. The remaining rounding error is a slip of 1e-15·spin·``reach``.
 
     Parameters
     ----------

@@ -82,8 +82,8 @@ class RadialSupport:
         - ``"stored_energy"``: energy of springs and stop, in J.
         - ``"power"``: heating power of the damper, in W.
 
-        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
-        Raises ``ValueError`` for any other quantity.
+        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
+        Raises ``ValueError`` for other quantities.
         """
         quantities = get_args(Quantity)
         if quantity not in quantities:
@@ -128,9 +128,8 @@ def add_radial_support(
     """Add springs, a stop and a damper that hold the node of a disc to the ground or to another body.
 
     They act across the z-axis of the base and turn with it, like an elastic shaft, equally in all radial directions.
-    They neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False
-    unless the support is linear and on the ground with the global axes, because its nodes are shared with their
-    bodies.
+    They neither hold the disc along the axis nor resist tilting. ``computeMassMatrixInversePerBody`` must stay False,
+    because nodes are shared with their bodies, unless the support is linear and on the ground with global axes.
 
     Parameters
     ----------

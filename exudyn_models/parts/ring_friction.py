@@ -1,14 +1,14 @@
 """Dry friction between two bodies on a ring or at points of it: one part for pins, discs and drivetrains.
 
-*Contact.* It is a circle about the disc's node or marker, or n points on it that turn with the disc: point i at the
-angle φ + 2πi/n, each with an equal share of the normal load N. Points may also lie anywhere and carry unequal shares.
-Or the contact is an annulus under a pressure. The law is Coulomb friction above the slip speed ε, viscous below.
+*Contact.* It is a circle about the disc's node or marker, n points on it that turn with the disc (point i at the
+angle φ + 2πi/n, with equal shares of the normal load N), points anywhere with any shares, or an annulus under a
+pressure. Friction is Coulomb's above the slip speed ε and viscous below.
 
 *Bodies.* Either node is a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or,
 for implicit solvers, a ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. A ``Node1D`` turns about the
 z-axis of its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a
-master at rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies;
-otherwise Exudyn raises an error.
+master at rest. ``computeMassMatrixInversePerBody`` must stay False, or Exudyn raises an error, because nodes are
+shared with their bodies.
 
 The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
@@ -24,14 +24,14 @@ through friction and presses nothing together.
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
 They may read sensors of ``mbs``, as a controller does, but of this contact only the sensors of slip and heat. The
-Jacobian contains their derivatives by all arguments except the time, and none through sensors. If a function returns
-an invalid number in a run, Exudyn raises an ``ExudynError`` with its time and arguments. A static solver keeps the
-initial velocities of the nodes, so it finds the equilibrium of a disc on a turning master.
+Jacobian contains their derivatives by all arguments except time, and none through sensors. If a function returns an
+invalid number, Exudyn raises an ``ExudynError`` with its time and arguments. A static solver keeps the initial
+velocities, so it finds the equilibrium of a disc on a turning master.
 
-*Exact stick.* Without ε, constraints hold the slip until the load exceeds the static friction. This requires
-``solve_dynamic`` with an implicit solver. The contact does not creep, and the steps can be as large as the motion
-allows. Switching times are as accurate as the solver's steps. A contact on one axis that reverses twice within one
-step goes undetected. Each of several points sticks alone, and evaluates functions with its own slip speed.
+*Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
+``solve_dynamic`` with an implicit solver. The contact does not creep, so steps can be as large as the motion allows.
+Switching times are as accurate as the steps. A contact on one axis that reverses twice within a step goes undetected.
+Each of several points sticks alone, and evaluates functions with its own slip speed.
 """
 
 from __future__ import annotations
@@ -110,8 +110,8 @@ def add_ring_friction(
 ) -> RingFriction:
     """Add friction between a master disc and a disc to a model; return a handle with the connector and its sensors.
 
-    The module describes contact, bodies, functions and exact stick. The equations are in ``friction_laws``. Raises
-    ``ValueError`` for an invalid argument or body, or an axis of the contact across that of a body.
+    The module describes contact, bodies, functions and exact stick, ``friction_laws`` the equations. Raises
+    ``ValueError`` for an invalid argument or body, or an axis of the contact across a body's.
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ def checked_contact(
         places = checked_places("contact_points", contact_points)
         if contact_radius is not None:
             raise ValueError(
-                f"contact_radius = {contact_radius}: it cannot be combined with places of points"
+                f"contact_radius = {contact_radius}: it cannot be combined with places of points; leave it out"
             )
         return max(math.hypot(x, y) for x, y, _ in places), places, epsilon
     radius = finite_number("contact_radius", contact_radius)

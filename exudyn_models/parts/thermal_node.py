@@ -1,6 +1,6 @@
 """Temperature of a part that friction heats: a heat capacity with a conductance to its surroundings.
 
-C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. The lost heat is a second coordinate, so that
+C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it. The lost heat is a second coordinate, so
 solvers keep the linear invariant C·(T − T_start) + loss = heat to rounding.
 """
 
@@ -52,7 +52,7 @@ class ThermalNode:
     def add_sensor(self, **options: Any) -> Any:
         """Add a sensor of T and of the heat in J lost to the surroundings; return its ``SensorIndex``.
 
-        ``options`` are those of Exudyn's sensors; the default is to store values for ``mbs.GetSensorStoredData``.
+        ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         """
         return node_sensor(self.mbs, self.node, exu.OutputVariableType.Coordinates, **options)
 

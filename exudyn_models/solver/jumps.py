@@ -1,7 +1,7 @@
 """Detection of load jumps in an implicit run, by the powers of its energy balance.
 
-Coulomb friction causes no jump of a power, because the slip is zero where stick begins or ends. A power that jumps in
-one step, but hardly changes in the neighbouring steps, indicates a load jump or motion that the steps do not resolve.
+Coulomb friction causes no jump of a power, because slip is zero where stick begins or ends. A power that jumps in one
+step, but hardly changes in its neighbours, indicates a load jump or motion that the steps do not resolve.
 """
 
 from __future__ import annotations

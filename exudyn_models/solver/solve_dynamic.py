@@ -6,11 +6,10 @@
 - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
   success with a state that is not finite. A check after every step (about 1.5 μs) ends such a run.
 - *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the stability limit of sticking contacts
-  (``largest_stable_step``). The check assumes that all contacts stick, takes dampers at the initial values, and
-  evaluates loads and coefficients at the start and at a hundred times of the run.
+  (``largest_stable_step``), with dampers at their initial values, and loads and coefficients at a hundred times.
 - *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero. Repeated
-  steps start from their complete first state, see ``repeated_steps``; for this, modified Newton renews its Jacobian
-  instead of restarting, whatever the ``newton`` settings. Steps that skip a peak of friction are repeated with a
+  steps start from their complete first state (``repeated_steps``), so modified Newton renews its Jacobian instead of
+  restarting, whatever the settings. Steps that skip a peak of friction are repeated with a
   smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
 - *Exact stick.* Contacts without a regularisation lock and release at the times of Coulomb's law, see
   ``stick.switching``. Sensors have an additional row at each of these times.

@@ -118,8 +118,8 @@ def solve(
     ``integrator`` is one of ``EXPLICIT`` or ``FIXED_STEP``. ``step``, in s, is the largest step of DOPRI5, and
     ``first_step`` its first. ``tolerance`` is the absolute local error of DOPRI5, or the residual force in N of the
     implicit solvers. A ``quasi_static`` run of generalised-α neglects inertia: forces balance at the end of each
-    step, and accelerations are derivatives of the velocities. If it is ``balanced`` too, the forces give the first
-    acceleration, otherwise it is 0. ``count`` counts the steps of the whole motion and gives the unit of time.
+    step, and accelerations are derivatives of the velocities; the first is 0 or, if ``balanced``, follows from the
+    forces. ``count`` counts the steps of the whole motion and gives the unit of time.
 
     Raises ``SimulationError`` if a state is not finite, Newton's method fails, the step falls below the resolution of
     time, or there are too many steps.

@@ -1,8 +1,8 @@
 """The largest stable step of explicit solvers while contacts stick.
 
-Sticking contacts are dampers between their bodies, see ``stick_dampers``. With them and the dampers of the
-model, the fastest decay rate is the largest eigenvalue λ of M⁻¹·D. The step must stay below Z/λ, with Z the
-``INTERVALS`` of the solver. For one contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
+Sticking contacts are dampers between their bodies (``stick_dampers``). With all dampers the fastest decay rate is the
+largest eigenvalue λ of M⁻¹·D. The step must stay below Z/λ, with Z the ``INTERVALS`` of the solver. For one
+contact of two rotors λ = (μN/ε)·(R²/J₁ + R²/J₂).
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     """Return the largest stable step in s of an explicit solver while all contacts of a model stick.
 
     It refers to the initial values and time 0, and is infinite without contacts. A disc that creeps about a point on
-    or near its own circle of contact chatters from a quarter of this step on; at half of it, by less than 7 % of its
+    or near its circle of contact chatters from a quarter of this step on; at half of it, by less than 7 % of its
     creep. The model is assembled if necessary.
 
     ``solver_type`` is ``ExplicitEuler``, ``ExplicitMidpoint``, ``RK33``, ``RK44``, ``RK67`` or ``VelocityVerlet``.

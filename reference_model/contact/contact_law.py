@@ -1,7 +1,7 @@
 """Coulomb friction between two discs: the interface of all laws, a pin, a ring, and the expansion (22).
 
-A law returns force (N per N of μN) and moment (m) on the disc while its centre slips with u over the master disc,
-which turns with S = ω − φ̇ relative to it. A point at r·exp(iα) from the centre slips with u − i·S·r·exp(iα) (21).
+A law returns force (N per N of μN) and moment (m) on the disc if its centre slips with u over the master disc, which
+turns with S = ω − φ̇ relative to it. A point at r·exp(iα) from the centre slips with u − i·S·r·exp(iα) (21).
 Plane vectors are complex numbers. Laws depend only on the ratio of u and S. Laws of circles are also *isotropic*: the
 force is opposite to u, and nothing depends on the direction of u or on the angle φ.
 """
@@ -27,7 +27,7 @@ from reference_model.systems import (
 )
 
 NONE = 1e-300
-"""Added to speeds before division, so that friction is zero at a point at rest."""
+"""Added to speeds before division, so friction is zero at a point at rest."""
 
 
 class Contact(Protocol):

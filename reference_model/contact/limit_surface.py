@@ -6,7 +6,7 @@ this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·
 |F| <= 1, and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F. If its solution is
 a vertex, u = −i·a_j, the disc begins to turn about the resting point j.
 
-Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra confirmed only partially how
+Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra only partially confirmed how
 two-tier discs come to rest.
 
 S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.

@@ -17,7 +17,7 @@ class EndState(IntEnum):
 
     ``SELF_CENTRED``: a sliding equilibrium. ``STUCK``: permanent stick, also as the limit of ever shorter slips.
     ``WHIRL``: a circle about the axis or, with an offset, a closed orbit without stick. ``MODULATED``: a whirl whose
-    radius oscillates slowly (discs only). ``STICK_SLIP``: sticking and slipping again and again.
+    radius oscillates slowly (discs only). ``STICK_SLIP``: repeated stick and slip.
     """
 
     UNDECIDED = 0

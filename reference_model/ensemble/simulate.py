@@ -39,8 +39,8 @@ def simulate_ensemble(
 ) -> Ensemble:
     """Return the end states of many trajectories under exact Coulomb friction, by compiled, vectorised code.
 
-    The physics is that of :func:`reference_model.simulate`. Results do not depend, bit by bit, on other trajectories
-    or the number of threads. Raises ``ValueError`` if an argument is invalid.
+    The physics is that of :func:`reference_model.simulate`. Results do not depend in any bit on other trajectories or
+    the number of threads. Raises ``ValueError`` if an argument is invalid.
 
     Parameters
     ----------

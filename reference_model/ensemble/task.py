@@ -14,7 +14,7 @@ CHUNK = 512
 """Number of trajectories that a thread takes at a time, so that lanes are rarely empty and threads end together."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
-"""Indices of the pace of a trajectory, which lets a continuation take the same steps as the original.
+"""Indices into the pace of a trajectory, numbers that let a continuation take the original's steps.
 
 They are the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and the
 length of an implicit step.

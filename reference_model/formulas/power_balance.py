@@ -19,7 +19,7 @@ ComplexArray = NDArray[np.complex128]
 SPLINE_DEGREE = 5
 
 CROWDED = 0.05
-"""Distance from the end of a phase, over that of samples, below which samples are omitted."""
+"""Distance from the end of a phase, as a share of the sampling interval, below which samples are omitted."""
 
 
 @dataclass(frozen=True, eq=False)

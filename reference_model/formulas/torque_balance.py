@@ -1,7 +1,7 @@
 """All solutions of the force and moment balances of a disc in steady motion.
 
-Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). At a given ratio
-force μN·F and moment μN·M are known, which leaves one equation to solve over all ratios.
+Isotropic friction depends only on the ratio of slip speed U and rim speed W = R|S|, as in (24). The ratio determines
+force μN·F and moment μN·M, which leaves one equation for the ratio.
 
 The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω, because M has the sign of S. M grows with W : U
 for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
@@ -123,7 +123,7 @@ def least_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact) -> float:
 
 
 def _difference(one: float, other: float) -> float:
-    """Return one − other, but zero within rounding, which would otherwise count as several solutions."""
+    """Return one − other, or zero within rounding error, whose changes of sign would count as solutions."""
     difference = one - other
     return difference if abs(difference) > ROUNDING * max(abs(one), abs(other)) else 0.0
 

@@ -27,7 +27,7 @@ STIFF, APART = 0.25, 5.0
 """Bounds for stiff steps limited by accuracy: step times decay rate, and its ratio to the change of slip."""
 
 SHORT = 0.02
-"""Largest relative change of slip plus scaled time of a short step."""
+"""A step is short if relative change of slip plus scaled time are below this."""
 
 PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
@@ -196,7 +196,7 @@ class Stepper:
         self._stiff_steps = 0
         self._tolerated = tolerated
         self._end = span[1]
-        self._landed: tuple[SwitchingSurface, float] | None = None  # a surface, and the sign beyond it
+        self._landed: tuple[SwitchingSurface, float] | None = None  # surface at the state, and sign beyond it
         self._usual_step = math.inf
         self._since = 0.0
         self._start(span[0], np.array(y), self._end, first_step)

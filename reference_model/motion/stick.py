@@ -20,7 +20,7 @@ from reference_model.motion.pin_equations import SlipMotion
 from reference_model.systems import FloatArray
 
 GRAZING = 1e-8
-"""Relative excess of the pull over friction that does not count as a release.
+"""Relative excess of the pull above friction that does not count as a release.
 
 An excess δ moves the pin by about g·δ²/ω², below rounding.
 """
@@ -88,7 +88,7 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
     def deflection(turn: float) -> float:
         return abs(at(turn) - motion.support.offset)
 
-    held = firmly = 0.0  # last angle with a positive margin, not just within GRAZING
+    held = firmly = 0.0  # last angles with margins >= −GRAZING·g and > 0
     waiting = [2.0 * math.pi]
     while waiting:
         firmly = held if spare(held) > 0.0 else firmly
@@ -119,7 +119,7 @@ def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | 
     moment on this surface grows and the force falls.
     """
     g = motion.centre.friction
-    asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # m times N per kg
+    asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # moment over mass, N m/kg
     most = contact.shares(0.0, 1.0).moment
     if asked > g * most:
         return None

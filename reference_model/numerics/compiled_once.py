@@ -43,7 +43,7 @@ _announced = threading.Lock()
 class CompiledOnce:
     """A function without result, called from Python and compiled when argument types first occur.
 
-    It runs without the interpreter lock. ``package`` is the folder of all sources that are compiled into it.
+    It runs without the interpreter lock. ``package`` is the folder of all sources compiled into it.
     """
 
     def __init__(self, function: Callable[..., None], package: Path) -> None:

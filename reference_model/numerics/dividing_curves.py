@@ -1,8 +1,8 @@
 """Curves in a rectangle where a function of two variables changes sign.
 
-A grid shows where they are. Then each curve is followed: the next point is the zero of the function on an arc ahead
-of the last one. So the function need not be smooth, and may be constant away from its zeros. For such a function
-contourpy's error is 1e-2 of the rectangle with 66,000 values; here it is 5e-13 with 3,400.
+A grid locates them. Then each curve is followed: its next point is the zero of the function on an arc ahead of the
+last one. So the function need not be smooth, and may be constant away from its zeros. For such a function the error
+of contourpy is 1e-2 of the rectangle with 66,000 values; here it is 5e-13 with 3,400.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def _zeros(function: Callable[[float], float], nodes: list[float]) -> Iterator[f
 
 
 def _zero_of_run(nodes: list[float], values: list[float], first: int) -> float:
-    """Return one zero for the run of zeros from node ``first`` on: an end of the interval if it contains it."""
+    """Return one zero of the run of zeros from node ``first`` on: an end of the interval, or else the middle."""
     last = next((i for i in range(first, len(nodes)) if values[i] != 0.0), len(nodes)) - 1
     if first == 0:
         return nodes[0]

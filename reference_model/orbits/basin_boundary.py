@@ -28,7 +28,7 @@ NEAR = 0.3
 """Angle in rad within which a release counts as near that of the orbit; roots do not depend on it."""
 
 SPARE = 0.1
-"""Error of a point over the tolerance of the orbit."""
+"""Error of a point as a multiple of the orbit's tolerance."""
 
 DISTINCT = 0.1
 """Smallest relative difference in radius that distinguishes two motions."""

@@ -25,7 +25,7 @@ DIRECTIONS = 64
 """Number of directions tried first."""
 
 SIZES = np.geomspace(1e-4, 1.0, 96)
-"""Sizes of the shocks tried first, over the speed of the disc at the whirl or at the offset."""
+"""Sizes of the shocks tried first, as shares of the speed of the disc at the whirl or at the offset."""
 
 PERIODS = 500.0
 """Longest time to an end state, in free periods, unless the start lies on the boundary."""

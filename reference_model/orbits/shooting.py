@@ -55,7 +55,7 @@ CONVERGED = 1e-9
 """Largest relative residual of an orbit; Newton's method continues until rounding stops it."""
 
 ABOVE_NOISE = 10.0
-"""Largest residual over the engine's precision, which a residual contains several times."""
+"""Largest residual as a multiple of the engine's precision, which enters a residual several times."""
 
 SLOW = 0.3
 """Share of the residual that may remain after an iteration before new derivatives are needed."""

@@ -65,7 +65,7 @@ def whirl_orbit(
         Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset. If
         the whirl does not cross the x axis, use :meth:`Orbit.from_the_right` of the orbit for a nearby offset.
     at_crossing
-        Fixed value of x at y = 0, in m, with the load μN as an unknown, so that a branch can turn at folds.
+        Fixed value of x at y = 0, in m, with the load μN as an unknown, so a branch can turn at folds.
     tolerance, samples
         That of ``simulate``, and number of intervals of the trajectory.
     precision

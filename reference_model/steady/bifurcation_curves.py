@@ -92,7 +92,9 @@ class ParameterPlane:
             if not low < high:
                 raise ValueError(f"{name} from {low:g} to {high:g}: the range must not be empty")
             if name == "disc_speed" and low < 0.0 < high:
-                raise ValueError(f"disc_speed from {low:g} to {high:g} rad/s: there is no whirl at rest")
+                raise ValueError(
+                    f"disc_speed from {low:g} to {high:g} rad/s: it must exclude 0, there is no whirl at rest"
+                )
         for corner in itertools.product(*zip(self.lower, self.upper, strict=True)):
             whirl_radius(pin_of(self.at(corner)))
 

@@ -133,9 +133,8 @@ def self_centred_equilibria(
     For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
     the deflection d at the force μN·F.
 
-    ``contact`` is the friction law of a disc; None means the law of the parameters. Raises ``ValueError`` for a disc
-    on single points, a contact of a pin, or a centre that slips exactly as fast as the rim of a ring, where
-    eigenvalues do not exist.
+    ``contact`` is the friction law of a disc; None: the law of the parameters. Raises ``ValueError`` for a disc on
+    single points, a contact of a pin, or equal slip of centre and rim of a ring, where eigenvalues do not exist.
     """
     require_system(system)
     if isinstance(system, PinOnDisc):
@@ -186,8 +185,8 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
     On a nonlinear support the frequency grows with the circle, and the pin's circle, with the speed μN/β, is a whirl
-    only if the disc turns faster. The friction of a disc acts only partly along the circle, so its circles are
-    slower, and it may have whirls where a pin sticks.
+    only if the disc turns faster. A disc's friction acts only partly along the circle, so its circles are slower, and
+    it may whirl where a pin sticks.
 
     Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
     :func:`self_centred_equilibria`.
@@ -300,7 +299,7 @@ def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
 
 
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
-    """Return why a disc has no whirl. Its partial friction may drive one where a pin's may not."""
+    """Return why a disc has no whirl. With a nonlinear support it may whirl where a pin does not."""
     return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
 
 

@@ -23,7 +23,7 @@ MOST_STEPS = 5_000_000
 """Largest number of steps, some minutes of work."""
 
 LOOK_BACK, MOST_AHEAD = 20_000, 4 * MOST_STEPS
-"""Number of steps that measure the pace, and largest number that may remain at that pace."""
+"""Number of steps between measurements of the pace, and largest number that may remain at the last pace."""
 
 
 @dataclass

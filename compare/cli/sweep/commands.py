@@ -58,7 +58,7 @@ sweep = typer.Typer(rich_markup_mode=None)
 def sweep_command() -> None:
     """Simulate many trajectories.
 
-    Sweeps compute basins of attraction, maps over parameters, effects of uncertain parameters and motions along a
+    Sweeps compute basins of attraction, maps of parameters, effects of uncertain parameters and motions along a
     parameter.
 
     The defaults are Fig. 5 for a pin and Fig. 11 with X0 = 0 for a disc, as for simulate. Results are written chunk
@@ -298,9 +298,8 @@ AGREEMENT = 1e-6  # largest relative difference between the orbit's result and t
 def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     """Find the smallest shock that moves a pin to the whirl.
 
-    The pin starts in its self-centred equilibrium. The boundary of the basin is the stable manifold of a stick–slip
-    orbit. The shock is the smallest change of velocity that reaches it. A bisection by simulated motions checks the
-    result.
+    The pin starts in its self-centred equilibrium. The shock is the smallest change of velocity that reaches the
+    boundary of the basin, the stable manifold of a stick–slip orbit. A bisection by simulated motions checks it.
 
     \b
     Example:

@@ -4,14 +4,14 @@ Written for PyBullet 3.2.7, in double precision. The pin or disc is a multibody 
 has a revolute one. Below it are n feet, spheres on vertical joints, each pressed on the plate by its own weight N/n.
 The plate turns at ω on a joint and is heavy enough not to be slowed.
 
-- Bullet's defaults, disabled here: a damping of the whole body of 0.04, motors in the joints, a joint speed limit of
-  100. As shipped, only the motors are off.
+- Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. As shipped,
+  only the motors are off.
 - The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
-A step opposes the slip at its end, so it is of order 1. With the cone off, friction is bounded per world axis. With
-the cone on, friction on a disc deviates from the direction of slip, because each component of the slip is divided by
-its own mobility: a relative error of R²·m/J at any step.
+Friction opposes the slip at the end of a step, so it is of order 1. With the cone off, it is bounded per world axis.
+With the cone on, friction on a disc deviates from the direction of slip by a relative error of R²·m/J at any step,
+because each component of the slip is divided by its own mobility.
 """
 
 from __future__ import annotations

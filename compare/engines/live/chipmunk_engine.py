@@ -1,11 +1,11 @@
 """Chipmunk as an engine: pivot joints with a force limit.
 
-Written for pymunk 7.3, in double precision. See ``TopDown`` in ``setting`` for the bodies. As in Chipmunk's own tank
-demo, friction is a pivot joint with a force limit, which bounds the length of the impulse, a cone.
+Written for pymunk 7.3, in double precision. See ``TopDown`` in ``setting`` for the bodies. As in Chipmunk's tank
+demo, friction is a pivot joint whose force limit bounds the length of the impulse, a cone.
 
 - A pivot joint would also pull its two anchors together; a ``max_bias`` of 0 disables that.
-- Chipmunk updates positions before velocities. Forces set before a step would feed energy to springs and have eight
-  times the error. They are set in the velocity update.
+- Chipmunk updates positions before velocities, so forces set before a step would feed energy to springs and have
+  eight times the error. They are set in the velocity update.
 - Several points need 50 iterations, five times the default.
 """
 

@@ -4,8 +4,8 @@ Measured with 6.20.0. The pin or disc is a body on a planar joint. Below it are 
 each pressed on the plate by its own weight N/n. The plate turns at ω on a joint with prescribed motion.
 
 - A step is semi-implicit, of order 1: friction opposes the slip at its end, positions follow from the new velocities.
-  Implicit springs of joints would damp like C·h. The support's spring is a force set before each step, with a quarter
-  of the error; the dampers are those of the joint.
+  Implicit springs of joints would damp like C·h, so the support's spring is a force set before each step, with a
+  quarter of the error. The dampers are the joint's.
 - By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
 - Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes.
   The other two solvers use the cone.

@@ -5,16 +5,16 @@ Below it are n feet, spheres on vertical joints, each pressed on the plate by it
 cylinder on a hinge that turns at ω and is heavy enough not to be slowed.
 
 - Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero, with a compliance of
-  1e-4. It acts along v + a₀/b, where a₀ is the acceleration without friction, so b ~ 1/h causes an error of first
-  order in the step. At b = 2/h it acts along the slip at mid-step. Only the direct form of ``solref`` sets b.
+  1e-4. It acts along v + a₀/b, with the acceleration a₀ without friction, so b ~ 1/h causes a first-order error. At b
+  = 2/h it acts along the slip at mid-step. Only the direct form of ``solref`` sets b.
 - As in every convex contact model, a sliding foot rises at μ times its slip. With a small μ, zero stiffness and a
-  margin wider than the total rise, it neither leaves the plate nor changes its load.
-- The solver's own tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0,
-  and the iterations are limited. A pyramid needs more of them, with many points far more than an ellipse.
+  margin above the total rise, it neither leaves the plate nor changes its load.
+- The solver's tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0, and
+  the number of iterations is limited; a pyramid with many points needs far more than an ellipse.
 
-As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² times half of the mass. A plate at rest
-is fixed. One that turns is only a hundred times heavier than the body, because of the solver's tolerance, and its
-speed is set again before each step.
+As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² times half the mass. A plate at rest is
+fixed. A turning plate is only a hundred times heavier than the body, because of the solver's tolerance, and its speed
+is set before each step.
 
 A pyramid's friction acts along the nearest world axis. With the pyramid or with Runge–Kutta steps, a sticking pin
 creeps in proportion to the step; with the ellipse, to its square.
@@ -50,9 +50,9 @@ class _Contact:
 
     @classmethod
     def rigid(cls, cone: str, friction_rate: float, iterations: int) -> _Contact:
-        """Return contact that converges to Coulomb's law.
+        """Return a contact that converges to Coulomb's law.
 
-        A foot sinks and rises by less than the size of feet and plate, so this has no effect in the plane.
+        Feet and plate are much larger than the vertical motion of a foot, so it does not affect horizontal motion.
         """
         pair = 'margin="5e5" solimp="0.9999 0.9999 1 0.5 2" solref="0 -1" solreffriction="0 -1"'
         option = f'cone="{cone}" iterations="{iterations}" tolerance="0"'

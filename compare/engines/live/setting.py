@@ -61,9 +61,9 @@ class Model:
 class Setting:
     """One setting of an engine, callable as the ``simulate`` of any engine.
 
-    Steps last ``step`` s, if that is given. Otherwise they are 0.1·tolerance^(1/3) / max(k, ω), so errors of first
-    order halve between the tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps
-    fills each interval of ``times``. ``step`` is None for an integrator that controls its error.
+    Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), so first-order errors halve between the
+    tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps fills each interval of
+    ``times``. ``step`` is None for an integrator that controls its error.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """``files:DIR``: motions computed beforehand as an engine, in a folder created by ``plan``.
 
-``plan.json`` lists the motions. Each has a file such as ``0f3a.json`` with a question in the form of ``json_lines``.
-The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a header. File
-names are hashes of the questions.
+``plan.json`` lists the motions. A file such as ``0f3a.json``, named by a hash, contains a question in the form of
+``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
+header.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Stick phases from a model's own record of its last events.
 
 The outputs ``NAMES`` count sticks and releases and give their last times and the position of the last stick.
-``NAMES_OF_POINTS`` give the number of resting points, the number of its changes, and time and state of the last
-change. A step with several events of a kind is rejected and halved.
+``NAMES_OF_POINTS`` give the number of resting points, how often it changed, and time and state of the last change. A
+step with several events of a kind is rejected and halved.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Angular momentum of an isolated drivetrain on every kind of node.
 
-Engine, clutch disc and vehicle act on each other by friction, by an elastic shaft attached off-centre, and by a
-torsional spring. The claims fail if a part lacks the moment of its force about a body, or acts on two bodies along
-different axes.
+Friction, an elastic shaft attached off-centre, and a torsional spring connect engine, clutch disc and vehicle. The
+claims fail if a part lacks the moment of its force about a body, or acts on two bodies along different axes.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ DELAY = 60.0  # final part of a run in s, for the remaining transient
 TOLERANCE = 0.03 * WORKING
 """For positions of rest, whose resolution is 1e-9 of X0."""
 
-SHARES = (0.98, 0.999, 1.05, 1.2)  # μN over the limit (5)
+SHARES = (0.98, 0.999, 1.05, 1.2)  # μN as a multiple of the limit (5)
 SETTLING = 300.0  # duration in s from the axis to the equilibrium
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
@@ -48,7 +48,7 @@ FLOW_DURATION = 0.3
 GRID_SHARES = np.array([0.01, *np.linspace(0.05, 0.95, 19), 0.99, 0.999])
 GRID_SPEEDS = np.geomspace(0.05, 5.0, 25)
 GRID_DAMPINGS = np.geomspace(0.01, 3.0, 12)
-"""Grid for the linearised (1): μN over the limit (5), ω in rad/s and β in N s/m."""
+"""Grid for the linearised (1): μN as a share of the limit (5), ω in rad/s and β in N s/m."""
 
 
 def with_load(load: float) -> PinOnDisc:
@@ -71,7 +71,7 @@ def positions(loads: Sequence[float] | FloatArray) -> FloatArray:
 
 
 def along_and_across(values: Sequence[complex]) -> list[complex]:
-    """Sort the eigenvalues; motion along the circumference, with those of the support alone, comes first."""
+    """Return the eigenvalues of motion along the circumference, those of the support alone, then the others."""
     m, beta, C = PIN.mass, PIN.damping, PIN.stiffness
     along = sorted(values, key=lambda value: abs(m * value**2 + beta * value + C))
     return [

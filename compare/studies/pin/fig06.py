@@ -1,4 +1,4 @@
-"""Fig. 6: equilibrium, permanent stick and whirl over the friction force."""
+"""Fig. 6: equilibrium, permanent stick and whirl against the friction force."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Return the branch of whirls through its folds, and (3) and (9) over the friction force.
+    """Return the branch of whirls through its folds, and (3) and (9) against the friction force.
 
     The branch ends at the crossing ``innermost`` (m), with relative steps ``step``.
     """

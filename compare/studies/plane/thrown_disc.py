@@ -37,7 +37,7 @@ class Throw:
     """A throw with uniform deceleration, of a disc with the inertia J/(mR²).
 
     ``sliding`` and ``rim`` are the initial U and W (m/s); W has the sign of the spin. ``force`` and ``moment`` of
-    friction are over μN and μNR.
+    friction are shares of μN and μNR.
     """
 
     name: str

@@ -1,8 +1,8 @@
 """Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
 
 Torques and capacities are piecewise harmonic, so the motion between events has a closed form. An event is the end of
-a clutch's slip, or a torque that exceeds its holding capacity. After it, a search over all combinations of modes
-finds the consistent one.
+a clutch's slip, or a torque beyond its capacity. Then a search over all combinations of modes finds the consistent
+one.
 """
 
 from __future__ import annotations

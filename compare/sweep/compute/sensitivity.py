@@ -21,7 +21,7 @@ class Indices(NamedTuple):
     """Sobol indices of shape (results, quantities), and half the widths of their confidence intervals.
 
     The first-order index is the share of the variance that vanishes if the quantity is known, the total index the
-    share that remains if all others are known. Both are NaN without variance.
+    share that remains if only the others are known. Both are NaN without variance.
     """
 
     first: FloatArray

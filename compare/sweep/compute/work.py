@@ -67,8 +67,8 @@ def recompute(plan: Plan, number: int, time: float, end: int) -> Plain:
     """Simulate one trajectory with the plain reference; its state is returned at ``time`` (s).
 
     The simulation lasts twice as long as the kernel needed to be certain of ``end``. If it ends differently, the
-    duration is doubled up to ``DOUBLINGS`` times, because the kernel sees the end earlier. An undecided trajectory is
-    simulated up to ``time`` only.
+    duration is doubled up to ``DOUBLINGS`` times, because the kernel sees the end earlier. An undecided trajectory
+    ends at ``time``.
     """
     states, parameters = plan.trajectories(range(number, number + 1))
     changes: dict[str, Any] = {name: float(values[0]) for name, values in parameters.items()}
@@ -96,7 +96,7 @@ SAMPLES_PER_TURN = 64
 """Samples per turn in the last part; earlier ones only give the extent of the motion."""
 
 SAMPLES_BEFORE = 4
-AT_REST = 0.02  # largest distance from the last position, over the whole motion, of a centre at rest
+AT_REST = 0.02  # largest distance of a resting centre from its last position, relative to the motion
 
 STEADY = 0.01
 """Largest spread (largest − smallest)/(largest + smallest) of the radii of a steady motion at successive turns."""
@@ -140,7 +140,7 @@ def twice_as_long(trajectory: Trajectory) -> Trajectory:
 
 
 def watched_until(system: System, certain: float, duration: float) -> float:
-    """Return the duration of a check in s: twice the time ``certain`` (s), at least 2·``LEAST_TURNS`` turns."""
+    """Return the duration of a check in s: twice ``certain`` (s) or ``LEAST_TURNS`` turns, whichever is longer."""
     return max(certain, LEAST_TURNS * _turn(system, duration)) / WATCHED
 
 
@@ -158,8 +158,8 @@ def end_of(trajectory: Trajectory) -> EndState:
     - *Stuck*: the last stick phase lasts a whole turn of the master disc, so no new force can release it; or the
       contact slips ever more slowly. *Stick–slip*: shorter stick phases repeatedly begin at the same radius.
     - *Self-centred*: the centre hardly moves in the last quarter.
-    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis is constant for a whirl
-      and varies equally in both halves for a modulated motion.
+    - *Whirl*, *modulated*: the motion encircles the axis. Its radius at the positive x-axis is constant, or varies
+      equally in both halves.
     """
     system, times = trajectory.system, trajectory.times
     since, middle = (times[-1] - part * (times[-1] - times[0]) for part in (WATCHED, 0.5 * WATCHED))

@@ -23,8 +23,8 @@ COLUMNS = 3
 def peak_over_sliding(share: float, static_ratio: float) -> float:
     """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
-    In between it falls like a square root of P/ε − 1, so that a contact leaves the peak in the time ε; after a linear
-    fall it would take ε·ln(1/ε).
+    In between it falls like a square root of P/ε − 1, so a contact leaves the peak in the time ε; a linear fall would
+    take ε·ln(1/ε).
     """
     if share <= 1.0:
         return static_ratio

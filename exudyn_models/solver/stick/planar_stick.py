@@ -1,12 +1,12 @@
 """Exact stick of a pin, circle or annulus between bodies that may also slide sideways.
 
-In stick, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers are the force and moment
-of friction, which must stay within the limit surface. A sliding contact obeys Coulomb's law without regularisation,
-so ``stick.switching`` lets no step pass its rest.
+In stick, constraints hold the slip (u, S) of ``slip_kinematics`` at zero. Their multipliers, the force and moment of
+friction, must stay within the limit surface. A sliding contact obeys Coulomb's law without regularisation, so
+``stick.switching`` lets no step pass its rest.
 
-Joints may leave the contact only some directions of slip. With such a basis B, shape (3, k), the slip is B·v, and the
-k constraints are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share
-lies within the limit surface, which is that of the potential P(B·v).
+Joints may leave only some directions of slip. With their basis B, shape (3, k), the slip is B·v, and the constraints
+are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the contact holds if any share lies within the
+limit surface of the potential P(B·v).
 """
 
 from __future__ import annotations

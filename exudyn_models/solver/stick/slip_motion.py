@@ -40,7 +40,7 @@ class SlipMotion(NamedTuple):
 
     ``slip`` is (u, S) in m/s and rad/s, ``rate`` its derivative and ``bias`` this rate without accelerations, J̇·q̇.
     ``gradient`` contains the derivatives of P by the slip, zero at rest; all have the shape (3,). ``radius`` is the
-    distance of the disc's centre from the axis of the master, in m; ``rate_potential`` is P of the rate, in m/s². The
+    distance of the disc's centre from the master's axis, in m; ``rate_potential`` is P of the rate, in m/s². The
     rounding error of the slip is proportional to ``largest_term``, the largest speed in m/s that enters it.
     """
 
@@ -69,7 +69,7 @@ class SlipMotion(NamedTuple):
         return self.potential >= RESOLVED * self.largest_term > 0.0
 
     def rests_within(self, time: float) -> bool:
-        """Return whether the slip vanishes within a ``time`` (s), or decreases unresolved."""
+        """Return whether the slip vanishes within a ``time`` (s), or decreases but is not resolved."""
         return self.remaining < time or (self.remaining < math.inf and not self.is_resolved)
 
 

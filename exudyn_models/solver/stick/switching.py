@@ -1,7 +1,7 @@
 """Runs of models whose contacts stick exactly: from one change of mode to the next.
 
-Between two changes the equations of motion are smooth. A step that passes a change is repeated to end at the change.
-There ``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
+Between two changes the equations are smooth. A step that passes a change is repeated to end there, and
+``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ def inlined(function: Function) -> Function:
 def scalar(function: Function) -> Function:
     """Compile ``function`` to be called, not inlined, because it is large or has several callers.
 
-    Each direct or indirect caller compiles it again, so only some functions in a chain of calls should be scalar.
+    Each direct or indirect caller compiles it again, so few functions in a chain of calls should be scalar.
     """
     return cast(Function, extending.register_jitable(**PART)(function))
 

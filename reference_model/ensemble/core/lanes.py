@@ -40,7 +40,7 @@ Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
 Advance = Callable[[Lanes, Kind], None]
 """Makes a trial step in all lanes, or in the first one only."""
 HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
-"""Handles a flag and may change the trial; returns whether the trajectory has ended."""
+"""Handles the event that a lane's flag reports; may change the trial; returns whether the trajectory has ended."""
 Store = Callable[[Lanes, Memory, int, Results], None]
 """Writes the result of a trajectory from the trial of its lane."""
 Idle = Callable[[Lanes, int], None]

@@ -1,4 +1,4 @@
-"""Convergence of successive values of a motion, and measures from one value to the next."""
+"""Convergence of successive values of a motion, and the motion between them."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ Modulated
 Stuck, or stick-slip
     As for a pin, by the radii of a disc on a ring at its releases (:mod:`.pin.end_states`).
 
-Known trapping regions (:mod:`.trapping`) end trajectories earlier. Functions that return a bool return whether the
+Known trapping regions (:mod:`.trapping`) end trajectories earlier. Functions of type bool return whether the
 trajectory ends.
 """
 
@@ -76,7 +76,7 @@ Attracts = Callable[[complex, complex, float, DiscLaw, bool, float], bool]
 """Returns whether a nearby equilibrium or circle attracts, as ``stability.attracts``."""
 
 STILL = 1e-2
-"""Largest oscillation, over the radius or ω times it, of a motion that approaches a point or a circle."""
+"""Largest oscillation of a motion that approaches a point (relative to |ωz|) or a circle (to the radius)."""
 
 
 @written_out

@@ -18,7 +18,7 @@ OF_TURN, OF_PEAK = 1, 2
 
 
 class Region(Record):
-    """A neighbourhood of a motion that no motion leaves, in m and s: where a quadratic form is below its level.
+    """A neighbourhood that no motion leaves, in m and s: where a quadratic form is below its level.
 
     ``circle`` is 1 about a whirl, in coordinates that turn with the centre (ρ, v along and across the radius, r, 0),
     and 0 about an equilibrium, in (x, y, vx, vy, r). ``form`` is the upper half of the form, row by row.

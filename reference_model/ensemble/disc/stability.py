@@ -1,8 +1,8 @@
 """Stability of a steady motion of a disc and its distance, without eigenvalues.
 
 With the derivative A of the rates f at a fixed point, (1 − A)⁻¹(1 + A) maps the half plane of decaying eigenvalues to
-the inside of the unit circle, so its powers vanish exactly if all eigenvalues decay. A⁻¹f is the correction by
-Newton's method, which gives the distance.
+the inside of the unit circle, so its powers vanish exactly if all eigenvalues decay. Newton's correction A⁻¹f is
+the distance.
 """
 
 from __future__ import annotations

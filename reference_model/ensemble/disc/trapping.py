@@ -2,8 +2,8 @@
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
 fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller sphere inwards, it goes to the centre. A disc on points oscillates about the motion on a ring, so only spheres
-down to INNER of the size must be crossed.
+smaller one inwards, it goes to the centre. A disc on points oscillates about the motion on a ring, so only spheres
+down to INNER of the size count.
 """
 
 from __future__ import annotations

@@ -3,12 +3,12 @@
 Permanent stick
     In the frame of the disc the pull is the sum of a constant k²X₀ and a turning part of size q. Friction holds it
     permanently if k²|X₀| + q <= g = μN/m (eq. 7). A pin slightly outside creeps forever, and counts as stuck, if k >
-    |ω| and it moves inward per turn by less than the remaining distance (``laws.creeps_by_turns``), or without offset
-    if damping prevents overshoot (``slip.creeps_steadily``, ``slip.creeps_slaved``).
+    |ω| and it moves inward per turn by less than the remaining distance (``laws.creeps_by_turns``). Without offset it
+    does so if damping prevents overshoot (``slip.creeps_steadily``, ``slip.creeps_slaved``).
 
 Self-centred
     The motion is inside a trapping region of the equilibrium (3), bounded by a level of a quadratic form V. For equal
-    parameters of all trajectories ``trapping`` finds it. Otherwise, with the deviations ξ along the radius of the
+    parameters ``trapping`` finds it. Otherwise, with the deviations ξ along the radius of the
     equilibrium and η across, eq. 1 is a cascade::
 
         η'' + c·η' + k²η = R_η,    ξ'' + D·ξ' + k²ξ = ∓(g/ρ*)·η + R_ξ,    D = c + g/s*
@@ -21,8 +21,8 @@ Whirl
     For equal parameters ``trapping`` finds the orbit and a neighbourhood that its return map to the section where x
     is largest contracts. Otherwise the crossings must converge: with the distance d of the last two and the larger q
     of the last two ratios, d·q/(1 − q) remains and must be below ACCURACY times the speed there. Distances that are
-    only noise also count. A motion may pass close to an unstable orbit, so the orbit must also attract, and be as
-    close by the derivative of the return map (``stability``).
+    only noise also count. A motion may pass an unstable orbit, so the orbit must also attract, and be as close by the
+    derivative of the return map (``stability``).
 
 Stick-slip
     The distance from the axis at a release determines the state, so its change is judged like the crossings above.

@@ -30,7 +30,7 @@ Otherwise a longer series replaces many stiff steps.
 """
 
 SLAVED = 0.02
-"""Largest rate of other changes over the rate g/s of friction, which aligns slip with the pull."""
+"""Largest ratio of the rate of other changes to the rate g/s of friction, which aligns slip with the pull."""
 
 PLACES = 8
 """Smallest number of points for checking whether the series reaches the end of slip."""

@@ -4,8 +4,8 @@ Small deviations (δz, δv) of a motion satisfy::
 
     δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
-where w = s·n is the slip velocity. Three deviations on the section where x is largest are followed for one turn with
-the motion, by the classical Runge-Kutta method.
+where w = s·n is the slip velocity. The classical Runge-Kutta method follows three deviations on the section where x
+is largest for one turn.
 """
 
 from __future__ import annotations

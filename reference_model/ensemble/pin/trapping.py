@@ -2,7 +2,7 @@
 
 Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
 stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The region is the
-largest ellipsoid whose points, like those of all smaller ones, the map moves into a clearly smaller ellipsoid.
+largest ellipsoid that the map, like all smaller ones, moves into a clearly smaller one.
 """
 
 from __future__ import annotations

@@ -113,9 +113,9 @@ def squared_holding_force(pin: PinOnDisc, radius: ArrayLike, disc_angle: ArrayLi
 def turn_until_release(pin: PinOnDisc, radius: float, start_angle: float) -> float:
     """Return the rotation of the disc until release in rad, the first root of (7) with equality.
 
-    The holding force is the third side of a triangle. The other two are the force that carries the pin round on
-    springs relaxed at the axis, √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle between
-    these two changes, and it grows as the disc turns.
+    The holding force closes a triangle with the force that carries the pin round on springs relaxed at the axis,
+    √((C − mω²)² + β²ω²)·A, and the force C·X0 of the offset. Only the angle between these two changes: it grows as
+    the disc turns.
 
     ``radius`` is A >= 0 in m, and ``start_angle`` the angle of the pin at the start in rad. The result is ``inf`` for
     permanent stick, 0 if friction cannot hold the pin at the start. Raises ``ValueError`` if ``radius`` is negative

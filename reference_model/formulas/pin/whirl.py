@@ -40,8 +40,8 @@ def whirl_radius(pin: PinOnDisc) -> float:
     The balance along the circle gives the speed v = μN/β. The circle follows from m·v² = C·ρ² + C₃·ρ⁴ + C_s·ρ·max(0,
     ρ − gap), whose right side grows with ρ.
 
-    Raises ``ValueError`` if there is no whirl. The paper says it "always exists", but by the sense of the friction
-    force in (10) it requires |ω| > ψ̇ (k on a linear support), and springs, damping and friction.
+    Raises ``ValueError`` without a whirl. The paper says it "always exists", but by the sense of friction in (10) it
+    requires |ω| > ψ̇ (k on a linear support), springs, damping and friction.
     """
     require_whirl(pin)
     return driven_radius(pin, pin.friction_force)
@@ -125,7 +125,7 @@ def characteristic_coefficients(pin: PinOnDisc) -> tuple[float, float, float, fl
 
 
 def characteristic_coefficients_as_printed(pin: PinOnDisc) -> tuple[float, float, float, float]:
-    """Return the coefficients of (13) as printed, which are wrong, for comparison.
+    """Return the wrong coefficients of (13), as printed, for comparison.
 
     The coefficient of λ² is printed as 1 + (β/m)·ω/(ω − k), which adds a number to a rate; the determinant of (12)
     gives (β/m)·(1 + ω/(ω − k)).

@@ -206,7 +206,7 @@ def _collocate(
 def _jacobians(motion: Coordinates, rates_at: RatesAt, values: FloatArray, rates: FloatArray) -> FloatArray:
     """Return the Jacobians of the rates at the nodes, shape (NODES, n, n).
 
-    Friction hardly changes with the slip speed, so that derivative needs larger differences.
+    Friction hardly changes with the slip speed, so this derivative needs larger differences.
     """
     slips = values[:, -motion.slip :]
     speeds = np.maximum(np.linalg.norm(slips, axis=1, keepdims=True), LEAST_SLIP)

@@ -47,7 +47,7 @@ RESTING = (INNER, 0.75 * R, R)
 RINGS = (8, 9, 10, 11, 12)
 """Numbers of rings on either side of that radius, few enough for errors above rounding."""
 
-WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli over their mean radius
+WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli as shares of their mean radius
 
 
 STUDY = Study.beside(__file__, "contact-laws", source=SOURCE, seconds=1.5, quick=True, contact=True)

@@ -50,7 +50,7 @@ DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """μN in N near the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN over the largest μN with an equilibrium
+STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN as a multiple of the largest μN with an equilibrium
 
 STICKING_TIME = 80.0
 """Time (s) within which friction accelerates a disc from 95 % to the speed of the master disc."""
@@ -59,7 +59,7 @@ OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
 
 TOLERANCE = WORKING / 10  # for motions to rest, which the claims resolve to 1e-9
-BALANCED = 1e-9  # largest residual force over μN due to rounding; (26) as printed leaves far more
+BALANCED = 1e-9  # largest residual force due to rounding, as a share of μN; (26) as printed leaves far more
 RESOLUTION = 1e-9  # positions in m, spins in rad/s
 
 
@@ -85,7 +85,7 @@ def by_26(disc: DiscOnDisc) -> FloatArray:
 
 
 def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
-    """Return the residual force of springs and friction (23) over μN, at the position by (26)."""
+    """Return the residual force of springs and friction (23), as a share of μN, at the position by (26)."""
     place, *_ = positions_by_26(disc, as_printed=as_printed)
     z, omega = complex(place.x, place.y), disc.disc_speed
     friction, _ = PAPER_LAW.force_and_moment(-1j * omega * z, omega - place.spin, 0.0)
@@ -265,7 +265,7 @@ def _extrapolated(distances: FloatArray, loads: Sequence[float]) -> float:
     swept=("friction_force",),
 )
 def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measured:
-    """``ratios`` are over the μN at the end of the equilibrium."""
+    """``ratios`` are multiples of the μN at the end of the equilibrium."""
     loads = np.array(ratios) * last_load(RING)
     start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.95 * RING.disc_speed]
 

@@ -1,4 +1,4 @@
-"""Figs. 9 and 10: motions of the disc over the friction force."""
+"""Figs. 9 and 10: motions of the disc against the friction force."""
 
 # ruff: noqa: I001 - the order of the report
 from compare.studies.disc.fig09 import steady_motions, growth_and_stick

@@ -1,4 +1,4 @@
-"""Branches of all motions over the friction force, and their ends."""
+"""Branches of all motions against the friction force, and their ends."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ OFFSET_LOAD = 0.02
 STICK_LOADS = (0.12, 0.2)
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Sticking discs: μN in N, and initial radii over (9)."""
-LATEST = 1.1  # duration for a disc outside, over the release time (7)
+"""Sticking discs: μN in N, and initial radii as multiples of (9)."""
+LATEST = 1.1  # duration for a disc outside (9), as a multiple of its release time (7)
 
 DECAY = (0.02, 60.0)
 GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
 """μN in N and duration in s of deviations from the whirl, and from equilibria."""
 
-DISPLACED = 1e-4  # initial deviation over the distance from the axis
+DISPLACED = 1e-4  # initial deviation as a share of the distance from the axis
 
 ORBIT_TOLERANCE = WORKING / 10
 """For periodic motions of engines; the reference has a hundredth of it."""
@@ -231,7 +231,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return all branches over μN, and where they end over X0 (the whirl at ``fold_offsets``)."""
+    """Return all branches against μN, and where they end over X0 (the whirl at ``fold_offsets``)."""
     return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
 
 

@@ -1,4 +1,4 @@
-"""The whirl and its modes, the modulated cycle, and the branches over the offset."""
+"""The whirl and its modes, the modulated cycle, and the branches against the offset."""
 
 from __future__ import annotations
 
@@ -213,8 +213,8 @@ def pair_modulus(multipliers: tuple[complex, ...] | ComplexArray) -> float:
 def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, float, Orbit]:
     """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
-    A parabola through the moduli gives the X0 of modulus 1. The error is the change with a straight line through the
-    two nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
+    A parabola through the moduli gives the X0 of modulus 1. The error is the change with a line through the two
+    nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
     orbits: list[Orbit] = []
     for offset in TRIED:
@@ -285,7 +285,7 @@ def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1
 def rest_offset() -> float:
     """Return the X0 (m) above which the self-centred equilibrium is stable.
 
-    The whirl exists up to an X0 that is 0.25 % larger.
+    The whirl exists up to a 0.25 % larger X0.
     """
 
     def rate(offset: float) -> float:

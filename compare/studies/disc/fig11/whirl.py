@@ -32,7 +32,7 @@ SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
 SLIDING = np.linspace(0.0, 100.0, 101)
 
 OF_CYCLE = 10 * WORKING  # for the motion that settles on the modulated cycle
-AMPLITUDE = 1e-4  # initial deviation over the whirl's radius
+AMPLITUDE = 1e-4  # initial deviation as a share of the whirl's radius
 DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
 TOLERANCE = 2000 * WORKING  # small compared with ``AMPLITUDE``
 

@@ -126,7 +126,7 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
         return np.array(found)
 
     found = refined(constants, theory.TOLERANCE)
-    there = np.isfinite(found.error)  # a sample that depends on the tolerance leaves the others conclusive
+    there = np.isfinite(found.error)  # samples without an error estimate must not affect the others
     largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
     predicted = np.array([theory.expected_approach(throw) for throw in throws])
     # dL = −dδ/δ.

@@ -32,7 +32,7 @@ LINES = (
 ASIDE = 0.01  # relative distance from the curves
 
 DEVIATION = 0.02
-"""Initial deviation from the whirl over the distance to U = W, where a point of the ring comes to rest."""
+"""Initial deviation from the whirl as a share of the distance to U = W, where a point of the ring comes to rest."""
 
 FLOW_TOLERANCE = 100 * WORKING  # for motions whose small differences are evaluated
 

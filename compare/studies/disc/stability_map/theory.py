@@ -159,7 +159,7 @@ SLOWLY_SETTLED = 2400.0
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3  # largest radius over R of rotation about the axis
+AXIS = 1e-3  # largest radius of rotation about the axis, as a share of R
 
 MODULATED = 0.05
 """Smallest (largest − smallest)/(largest + smallest) radius of a modulated motion."""

@@ -199,8 +199,8 @@ def _rotors() -> Rotors:
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
     """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s).
 
-    Steps are implicit with ``step`` (s), and explicit without. The run stops at ``SHOWN``, so speeds there are not
-    interpolated.
+    The solver is implicit with a ``step`` (s), otherwise explicit. The run stops at ``SHOWN``, so speeds there
+    need no interpolation.
     """
     from exudyn_models import add_ring_friction
 

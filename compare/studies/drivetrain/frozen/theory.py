@@ -79,16 +79,16 @@ TIME = 0.4
 """Duration in s of runs with small deviations."""
 
 DEVIATION = 3e-3
-"""Initial deviation over the radius."""
+"""Initial deviation as a share of the radius."""
 
 TOLERANCE = 20 * WORKING
 """For runs whose difference is taken."""
 
 PUSH, UNTIL = 0.2, 6.0
-"""Modulated motion: initial deviation over the radius, and end in s."""
+"""Modulated motion: initial deviation as a share of the radius, and end in s."""
 
 ROUGHER = 80.0
-"""Its tolerance over the usual one."""
+"""Its tolerance as a multiple of the usual one."""
 
 CYCLE_SAMPLE = 2e-3
 """Its sampling interval in s."""
@@ -102,7 +102,7 @@ TORQUES = np.geomspace(0.2, 60.0, 32)
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
 
 SURPLUS, SPEED = 0.1, 6000.0
-"""Surplus in the map over speeds, and speed in rpm in the map over surpluses."""
+"""Surplus in the map of speeds, and speed in rpm in the map of surpluses."""
 
 
 ENGINE, VEHICLE, ANGLE = 0, 1, 4
@@ -131,11 +131,11 @@ class CarWhirl:
 def whirl_under_surplus(
     car: Drivetrain, engine_speed: float, torque: float, surplus: float
 ) -> CarWhirl | None:
-    """Return the whirl of a clutch whose load exceeds the needed one by the fraction ``surplus``, or None.
+    """Return the whirl of a clutch whose load exceeds that for ``torque`` by the fraction ``surplus``, or None.
 
-    A centred disc would lock up. The whirl reduces the friction moment: M(U, S) equals the torque at a certain ratio
-    of the slips U of the centre and S of the rim. This ratio determines the force, and the force the radius, ρ·β·κ(ρ)
-    = μN·F. S is (ω − κ)ρ over the ratio.
+    A centred disc would lock up, but the whirl reduces the friction moment. M(U, S), with the slips U of the centre
+    and S of the rim, equals the torque at one ratio U/S. This ratio determines F, and ρ·β·κ(ρ) = μN·F determines the
+    radius. Then S = (ω − κ)ρ/(U/S).
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)

@@ -38,7 +38,7 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Scan:
-    """Tolerances for both exponents and for the plot of error over work, and the expected next terms.
+    """Tolerances for both exponents and for the plot of error against work, and the expected next terms.
 
     Errors are of this ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
     the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.

@@ -129,7 +129,7 @@ def _run(law: Law, case: Case, epsilon: float, **options: Any) -> Any:
 def release_by(law: Law) -> tuple[float, float]:
     """Return the time (s) when ``law`` releases a stuck pin, and its error.
 
-    A held pin creeps along each axis of the world with a slip below ε; it is released when the slip reaches ε.
+    A held pin creeps along each world axis with a slip below ε, and is released when the slip reaches ε.
     """
     case = CASES["release"]
     turning = 1j * case.system.disc_speed

@@ -1,8 +1,7 @@
 """Given motions, ranges of random motions, and integrals over panels of time.
 
-The paper's m, J and C are all one, so an engine that confuses them still moves correctly. Here no two parameters are
-equal. A mistake may also occur only for certain parameters, such as a slow disc, so random motions cover the whole
-range.
+The paper's m, J and C are all one, so an engine may confuse them unnoticed. Here no two parameters are equal. A
+mistake may also need certain parameters, such as a slow disc, so random motions cover the whole range.
 """
 
 from __future__ import annotations
@@ -113,7 +112,7 @@ UNTIL = 3.0
 """Duration in s."""
 
 LEAST_SLIP = 0.15
-"""Smallest slip over the largest, so nothing almost rests where forces are integrated."""
+"""Smallest ratio of slip to the largest slip, so nothing almost rests where forces are integrated."""
 
 MOST_TURN = 2.0
 """Largest rotation in rad of a disc on points in a ``PANEL``, because its forces turn with it."""

@@ -144,7 +144,7 @@ def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
     cell = np.arange(FINER * (side - 1) + 1) // FINER
     ends = coarse[np.ix_(cell, cell)]
     doubtful = np.pad(mixed(coarse), (0, 1))[np.ix_(cell, cell)]
-    # The far edges of a cell are the near ones of the next.
+    # The far edges of a cell are the near edges of the next cell.
     doubtful[1:] |= doubtful[:-1]
     doubtful[:, 1:] |= doubtful[:, :-1]
     places = places_on_grid(len(cell))[doubtful.ravel()]

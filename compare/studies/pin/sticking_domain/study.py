@@ -1,4 +1,4 @@
-"""The radius (9) and the turn until release (7) over the disc speed."""
+"""The radius (9) and the turn until release (7) against the disc speed."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SPEEDS = (0.4, 0.7, RESONANCE, 1.4, 2.5)  # ω in rad/s
 
 INSIDE = 0.98
 OUTSIDE = (1.02, 1.5)
-"""Radii over (9)."""
+"""Radii as multiples of (9)."""
 CREEP = 1e-2  # relative displacement that leaves stick uncertain
 
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
@@ -121,7 +121,7 @@ LARGEST_AT = "The sticking domain is largest at the disc speed ω* = √(C/m −
 def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
-    """Return displacements over the radius of pins inside (9), shape (n, 2), and which pins always stick."""
+    """Return displacements, in radii, of pins inside (9), shape (n, 2), and which pins always stick."""
     pins = [pin_at(speed) for speed in speeds]
     radii = [INSIDE * sticking_radius(pin) for pin in pins]
     starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]

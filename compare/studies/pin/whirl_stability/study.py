@@ -32,8 +32,8 @@ K = CENTRED.natural_frequency
 
 SPEEDS = (1.1, 1.5, 4.0)
 DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
-"""Long simulations: ω in rad/s, initial radius over (11), duration in s, and its final part, which yields the
-remaining transient. The slowest deviation falls to 1e-10.
+"""Long simulations: ω in rad/s, initial radius as a multiple of (11), duration in s, and its final part, which yields
+the remaining transient. The slowest deviation falls to 1e-10.
 """
 
 STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
@@ -46,7 +46,7 @@ FLOW_DURATION = 0.5
 
 DEVIATION = 1e-3
 DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
-"""Amplitude of the decaying deviation over the radius (11), and times in s."""
+"""Amplitude of the decaying deviation as a share of the radius (11), and times in s."""
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
 DAMPINGS = np.geomspace(0.03, 10.0, 121)

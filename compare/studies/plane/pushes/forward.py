@@ -2,8 +2,7 @@
 
 The hand is a point that pushes an edge of the triangle with friction. Two independent codes simulate it. The
 quasi-static code has exact friction and no inertia: the body takes the motion of least friction power that the hand
-allows (Moreau's principle of maximum dissipation). The Exudyn model has inertia, a stiff edge and regularised
-friction.
+allows (Moreau's principle). The Exudyn model has inertia, a stiff edge and regularised friction.
 """
 
 from __future__ import annotations

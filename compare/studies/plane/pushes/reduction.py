@@ -10,10 +10,10 @@ Choices, and their effect on a series' median error of the force's direction, wh
   and force are in its axes halfway. The axes of the first pose, with a linearised displacement, raise the median by
   up to 8.3 degrees.
 - The mean force excludes the first 30 % of the samples (``SETTLING``), while the pusher closes a gap of 2.5 mm and
-  the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees, and the work by at most 8 %. A
-  start 0.2 s after the force exceeds 1 N changes them by at most 0.4 degrees and 2 %.
-- The first sample is the sensor's offset, as in the authors' work. The mean of the first 20 samples changes the
-  median by at most 0.5 degrees.
+  the load settles. Shares from 20 % to 50 % change the median by at most 0.8 degrees and the work by at most 8 %; a
+  start 0.2 s after the force exceeds 1 N, by at most 0.4 degrees and 2 %.
+- The first sample is the sensor's offset, as in the authors' work; the mean of the first 20 changes the median by at
+  most 0.5 degrees.
 - The force acts at the hand's final position. Its initial position changes the median error of the wrench by at most
   2 degrees, and the work by at most 4 %.
 """

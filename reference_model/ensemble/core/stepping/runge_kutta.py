@@ -37,7 +37,7 @@ Friction reverses within such a step, and the error estimate would accept errors
 """
 
 LOCAL = 0.1
-"""Tolerance of a step over that of a motion."""
+"""Tolerance of a step as a share of the motion's."""
 
 SMALLEST_FACTOR, LARGEST_FACTOR, CAUTION = 0.2, 10.0, 0.9
 """Bounds on the ratio of successive steps, and safety factor."""
