@@ -62,7 +62,7 @@ class JumpCheck:
             return
         changes, spans = (
             np.abs(np.diff(powers, axis=0)),
-            np.maximum(np.diff(times), np.spacing(times[1:]))[:, None],
+            np.maximum(np.diff(times), np.spacing(np.abs(times).max()))[:, None],
         )
         middle = slice(NEIGHBOURS, len(changes) - NEIGHBOURS)
         jumps = changes[middle] > LEAST * self._largest

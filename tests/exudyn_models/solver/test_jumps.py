@@ -8,6 +8,7 @@ import pytest
 from free_bodies import new_model, rotor, settings_of
 
 from exudyn_models import add_energy_balance, add_ring_friction, solve_dynamic
+from exudyn_models.solver.jumps import JumpCheck
 
 pytestmark = pytest.mark.filterwarnings("ignore:the energy balance is off")  # a load jumps within a step
 
@@ -113,3 +114,16 @@ def test_a_jump_is_told_once_wherever_the_steps_looked_at_together_end(step, mon
     load, solver = lambda time: 800.0 * (time > (step + 0.5) * STEP), exu.DynamicSolverType.TrapezoidalIndex2
     (message,), _ = run(load, solver)
     assert f"between t = {step * STEP:.9g} s and {(step + 1) * STEP:.9g} s: the energy" in message
+
+
+def test_rows_at_the_same_time_do_not_overflow():
+    """Contacts that stick exactly choose their modes in several attempts at the start."""
+    mbs = new_model()
+    add_energy_balance(mbs, gains={}, losses={"brake": lambda mbs, t: 0.0})
+    mbs.Assemble()
+    check = JumpCheck(mbs)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for step in range(-2, 20):
+            check.look(1e-3 * max(0, step), np.array([24.0 * step]))
+        check.warn()
