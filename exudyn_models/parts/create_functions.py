@@ -23,7 +23,7 @@ def MainSystemCreateRingFriction(
     *,
     frictionCoefficient: Coefficient,
     normalLoad: NumberOrFunction,
-    regularisation: float,
+    regularisation: float | None = None,
     contactRadius: float | None = None,
     innerRadius: float | None = None,
     outerRadius: float | None = None,

@@ -3,7 +3,7 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from free_bodies import all_states, new_model, planar_body, run_explicitly
+from free_bodies import all_states, changes_of, new_model, planar_body, run_explicitly
 from pairs_of_bodies import DISC, MASTER, bodies_of
 
 from exudyn_models import add_radial_support, add_ring_friction
@@ -78,3 +78,11 @@ def test_what_is_no_pair_of_bodies_is_refused(bodies, message):
         mbs.CreateRingFriction(bodies(mbs, disc), **in_style_of_exudyn(POINTS))
     with pytest.raises(ValueError, match=message):
         mbs.CreateRadialSupport(bodies(mbs, disc), stiffness=1.0)
+
+
+def test_a_contact_without_regularisation_sticks_exactly():
+    mbs = new_model()
+    disc = planar_body(mbs, 1.0, 0.5, [0.0] * 3, [0.0, 0.0, 3.0])
+    mbs.CreateRingFriction([None, disc], contactRadius=0.1, frictionCoefficient=0.3, normalLoad=800.0)
+    ((stop, *_),) = changes_of(mbs, 0.1, 1e-3)
+    assert stop == pytest.approx(3.0 * 0.5 / 24.0)
