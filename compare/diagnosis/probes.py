@@ -44,7 +44,7 @@ CHECKED_FOR = 1.0
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how far a sliding block and one at rest move: each found and exact, in m."""
+    """Return the distances in m that a sliding and a resting block move, each as measured and exact."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     slid = engine.simulate(SLIDE, sliding, times).states[-1]
