@@ -1,6 +1,6 @@
 """Eq. 1 and 19 to 21 of the paper as printed, integrated by SciPy: the file to read first.
 
-There is one change: a slip speed below ε is replaced by ε where it divides, so a sticking body creeps slower than ε.
+There is one change: friction divides by ε if the slip speed is smaller, so a sticking body creeps slower than ε.
 """
 
 from __future__ import annotations

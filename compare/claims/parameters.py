@@ -13,7 +13,7 @@ from reference_model.systems import COLUMNS, DiscOnDisc, PinOnDisc, System
 # --- Parameter sets that the paper prints.
 
 FIG4 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5, offset=0.1)
-"""Parameters of Fig. 4, which varies ω. Fig. 6 has the same with ω = 1.2 and varies the load."""
+"""Parameters of Fig. 4, which varies ω. Fig. 6 has the same parameters with ω = 1.2 and varies the load."""
 
 CENTRED = replace(FIG4, offset=0.0)
 """Fig. 4 without offset, as (10) to (16) assume."""

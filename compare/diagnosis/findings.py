@@ -80,7 +80,7 @@ class Shares:
 
 @dataclass(frozen=True)
 class Repeat:
-    """Difference between two equal calls, over the size of the states, and the declared precision.
+    """Difference between two equal calls, as a share of the states, and the declared precision.
 
     ``deaf`` is True if a motion does not change with the tolerance or the step.
     """

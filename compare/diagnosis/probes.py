@@ -44,7 +44,7 @@ CHECKED_FOR = 1.0
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return how far a sliding block and one at rest move: each found and exact, in m."""
+    """Return the distances in m that a sliding and a resting block move, each as measured and exact."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     slid = engine.simulate(SLIDE, sliding, times).states[-1]
@@ -218,7 +218,7 @@ RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
 def second_release(engine: Engine, tolerance: float) -> FloatArray:
-    """Return how far the block moves after its second release, over the exact distance, and its delay."""
+    """Return the distance after the second release, divided by the exact one, and the delay."""
     stretch = FRICTION / SWING.stiffness
     turned, quarter = math.pi / RATE, 0.5 * math.pi / RATE
     start = ((SECOND_PULL + 2.0) * stretch, 0.0, 0.0, 0.0)
@@ -295,7 +295,7 @@ def _settled(
 
 
 def _share(found: FloatArray, exact: FloatArray, start: FloatArray) -> float:
-    """Return the component of a change of state along the exact change, over the latter."""
+    """Return the component of a change of state along the exact change, divided by it."""
     right = exact - start
     return float((found - start) @ right / (right @ right))
 

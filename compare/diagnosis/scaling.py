@@ -15,7 +15,7 @@ from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
 
 LEAST = 1e-6
-"""Smallest deviation of the force over μN that counts."""
+"""Smallest relevant deviation of the force, in units of μN."""
 
 KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small

@@ -257,7 +257,7 @@ class _Samples:
         return replace(span, level=level, degree=3)
 
     def _extrapolated(self, outwards: NDArray[np.intp], power: float, span: _Span) -> tuple[float, float]:
-        """Return the time of zero slip, by a polynomial in slip**power over a flank, and of the nearest sample."""
+        """Return the times of zero slip, by a polynomial in slip**power on a flank, and of the nearest sample."""
         beyond = np.flatnonzero(self.slip[outwards] > FLANK * span.level)
         places = outwards[: max(int(beyond[0]), 1) if beyond.size else None]
         roots, nearest = (self.slip[places] / span.level) ** power, float(self.times[places[0]])

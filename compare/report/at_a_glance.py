@@ -14,7 +14,7 @@ from compare.report.numbers import error_text
 from compare.run.runner import Run
 
 OTHER_LAW = 10.0
-"""Change of a recorded motion due to another friction law, over the resolution of its claim."""
+"""Change of a recorded motion due to another friction law, in resolutions of its claim."""
 
 ROUGH, DIFFERS, OPEN = "rough", "differs", "open"
 """Grades beyond ``compare.claims.claim.Grade``: agreement with a larger error; a claim differs; nothing agrees."""

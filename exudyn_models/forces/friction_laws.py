@@ -4,8 +4,8 @@ All are gradients of a slip potential. With u the slip of the disc's centre and 
 and the angle α slips with u + S·R·(−sin α, cos α). The mean of its magnitude over the load is the potential P(u, S).
 The friction on the disc is −μN·∂P/∂u, the moment −μN·∂P/∂S, so both dissipate the power μN·P.
 
-Near rest the laws are regularised so that they are *exact* as soon as all slip reaches ε. With v/√(v²+ε²) every
-release would leave an error of ε^0.8; here all errors are of first order in ε.
+Near rest the laws are regularised, but *exact* as soon as all slip reaches ε. With v/√(v²+ε²) every release would
+leave an error of ε^0.8; here all errors are of first order in ε.
 
 - *The contact as a whole* is viscous for P < ε: force and moment are those for the same direction of (u, S) at P = ε,
   times P/ε. So a disc creeps with P < ε if and only if Coulomb friction could hold it.

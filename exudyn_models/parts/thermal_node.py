@@ -61,7 +61,7 @@ class ThermalNode:
         self._sources.append(power)
 
     def with_temperature(self, coefficient: Coefficient) -> Coefficient:
-        """Return a friction coefficient with ``temperature`` inserted, if it is a function that takes it."""
+        """Return the ``coefficient``; if it is a function of ``temperature``, this node's temperature is used."""
         if not callable(coefficient):
             return coefficient
         try:

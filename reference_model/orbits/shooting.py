@@ -69,7 +69,7 @@ COLLAPSED = 1e-6
 
 @dataclass(frozen=True)
 class ShootingProblem:
-    """The return map of an engine and its derivatives, over unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
+    """The return map of an engine and its derivatives in the unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
 
     ``precision`` is the relative noise of the states.
     """
@@ -180,7 +180,7 @@ class Orbit:
 
     @cached_property
     def monodromy(self) -> FloatArray:
-        """The linearised return map, shape (4, 4) or (5, 5), over x, y, vx, vy and the spin of a disc."""
+        """The linearised return map, shape (4, 4) or (5, 5), in x, y, vx, vy and the spin of a disc."""
         unknowns = self.problem.unknowns(self.state, self.period, self.system.friction_force, self.turn)
         return self.problem.monodromy(unknowns)
 

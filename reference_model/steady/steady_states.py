@@ -130,7 +130,7 @@ def self_centred_equilibria(
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
     - if b = 0 without friction, where every spin is an equilibrium.
 
-    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0² with
+    For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0², with
     the deflection d at the force μN·F.
 
     ``contact`` is the friction law of a disc; None: the law of the parameters. Raises ``ValueError`` for a disc on

@@ -6,7 +6,7 @@ The plate turns at ω on a joint and is heavy enough not to be slowed.
 
 - Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. As shipped,
   only the motors are off.
-- The coefficient of friction is the product of both bodies'. Slop and the solver's residual threshold are 0.
+- The friction coefficient is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
 Friction opposes the slip at the end of a step, so it is of order 1. With the cone off, it is bounded per world axis.

@@ -16,8 +16,8 @@ As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² 
 fixed. A turning plate is only a hundred times heavier than the body, because of the solver's tolerance, and its speed
 is set before each step.
 
-A pyramid's friction acts along the nearest world axis. With the pyramid or with Runge–Kutta steps, a sticking pin
-creeps in proportion to the step; with the ellipse, to its square.
+A pyramid's friction acts along the nearest world axis. A sticking pin creeps in proportion to the step with the
+pyramid or Runge–Kutta steps, and to its square with the ellipse.
 """
 
 from __future__ import annotations

@@ -104,7 +104,7 @@ at ε = 1.
 """
 
 TO_REST = np.array([0.0, 0.5, 1.25])
-"""Sample times over the time to rest."""
+"""Sample times as shares of the time to rest."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times of a full disc, which a regularised law need not bring to rest."""

@@ -100,7 +100,7 @@ def _together(one: Moments, other: Moments) -> Moments:
 
 
 def _about(of: Moments, mean: FloatArray) -> FloatArray:
-    """Return the sum of (f_B − ``mean``)(f_M − f_A) with the ``mean`` of more rows."""
+    """Return the sum of (f_B − ``mean``)(f_M − f_A) of these rows, for a ``mean`` of more rows."""
     return of.product + (of.mean - mean)[:, np.newaxis] * of.change
 
 

@@ -1,8 +1,8 @@
 """Friction of a ring and of points on a ring as branch-free code, which can be inlined into loops over lanes.
 
 Both are resistances, as shares of μN, to slip of the centre and of the rim. Those of the ring are elliptic integrals
-by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With k the smaller over the larger of U = |u| and the
-rim's |W|, and c the halved differences of a and g::
+by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With the ratio k of the smaller to the larger of U =
+|u| and the rim's |W|, and the halved differences c of a and g::
 
     ∂P by the larger = (1 − ½·Σ 2ⁿcₙ²)/A,    ∂P by the smaller = k·(½ − ½·Σ_{n>0} 2ⁿcₙ²/k²)/A,    c₀ = k
 

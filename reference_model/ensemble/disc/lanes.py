@@ -17,7 +17,7 @@ from reference_model.ensemble.disc.slip import direction
 
 
 class DiscState(NamedTuple):
-    """Position, slip velocity, r, angle, time and mean slip distance, scaled; or their rates by stretched time."""
+    """Position, slip velocity, r, angle, time and mean slip distance, scaled; or their rates in stretched time."""
 
     x: float
     y: float

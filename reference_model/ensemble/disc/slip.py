@@ -43,7 +43,7 @@ def _rates(y: Tuple, law: DiscLaw, friction: tuple[float, float, float, float]) 
 
 @inlined
 def ring_rates(y: Tuple, law: DiscLaw) -> Tuple:
-    """Return the rates of the unknowns by stretched time, then dt/dτ and P·dt/dτ."""
+    """Return the rates of the unknowns in stretched time, then dt/dτ and P·dt/dτ."""
     return _rates(y, law, ring_friction(y[2], y[3], y[4], y[5], law))
 
 

@@ -13,7 +13,7 @@ from reference_model.ensemble.pin.slip import pin_rates
 
 
 class PinState(NamedTuple):
-    """Position, slip velocity, time and slip distance, scaled; or their rates by stretched time."""
+    """Position, slip velocity, time and slip distance, scaled; or their rates in stretched time."""
 
     x: float
     y: float

@@ -38,7 +38,7 @@ PLACES = 8
 
 @inlined
 def pin_rates(y: Tuple, law: PinLaw) -> Tuple:
-    """Return the rates of x, y and the slip velocity by stretched time, dt/dτ, and dt/dτ times the slip speed."""
+    """Return the rates of x, y and the slip velocity in stretched time τ, dt/dτ, and dt/dτ times the slip speed."""
     x, y_, wx, wy = y
     s = math.sqrt(wx * wx + wy * wy)
     pace = 1.0 / (s + law.stretching)

@@ -58,7 +58,7 @@ STICKING_TIME = 80.0
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
 
-TOLERANCE = WORKING / 10  # for motions to rest, which the claims resolve to 1e-9
+TOLERANCE = WORKING / 10  # for motions to rest, because the claims resolve 1e-9
 BALANCED = 1e-9  # largest residual force due to rounding, as a share of μN; (26) as printed leaves far more
 RESOLUTION = 1e-9  # positions in m, spins in rad/s
 

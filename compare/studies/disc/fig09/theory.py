@@ -73,13 +73,13 @@ LARGEST_LOAD = 0.2
 BRANCH_START = 0.1
 BRANCH_END = 1.0
 BRANCH_STEP = 0.24
-"""First μN of the branch over C·X0, its last crossing of the x axis over X0, and the relative decrease of crossings.
+"""First μN of the branch in C·X0, its last crossing of the x axis in X0, and the relative decrease of crossings.
 """
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
 FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""μN over C·X0 slightly above the fold, and its smallest value in N."""
+"""μN/(C·X0) slightly above the fold, and the smallest μN in N."""
 
 FOLD_STEP = 0.12  # relative step of the branch to the fold
 
@@ -231,7 +231,7 @@ def marginal_ratio(law: IsotropicContact | None) -> float:
 
 
 def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OFFSETS) -> Data:
-    """Return all branches against μN, and where they end over X0 (the whirl at ``fold_offsets``)."""
+    """Return all branches against μN, and where they end against X0 (the whirl at ``fold_offsets``)."""
     return circles() | smooth(orbits()) | rests_and_sticking() | ends(offsets, fold_offsets)
 
 
@@ -310,7 +310,7 @@ def rests_and_sticking() -> Data:
 
 
 def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
-    """Return the μN where the equilibrium ends, where it loses its stability and where the whirl folds, over X0."""
+    """Return the μN where the equilibrium ends, where it becomes unstable and where the whirl folds, against X0."""
     discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]

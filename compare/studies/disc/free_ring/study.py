@@ -100,7 +100,7 @@ def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> 
 
 
 def ratio_noise(left: ArrayLike) -> FloatArray:
-    """Return the error of ln U/W due to the tolerance of both speeds, ``left`` s before rest, for c = 1."""
+    """Return the error of ln(U/W), ``left`` s before rest, that the tolerance of both speeds causes for c = 1."""
     speed = 2.0 / math.pi * theory.DECELERATION * np.asarray(left)
     return np.asarray(2.0 * theory.TOLERANCE / speed)
 

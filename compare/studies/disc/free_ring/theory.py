@@ -98,7 +98,7 @@ REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
 NEARNESSES = (7.0, 9.0)  # A/t of the samples
 
 ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times for a power law, over the time to rest."""
+"""Remaining times for a power law, as shares of the time to rest."""
 
 TOLERANCE = WORKING / 10
 """For ratios near rest, where less than a thousandth of the initial speed is left."""

@@ -46,7 +46,7 @@ SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
 
 BRACKET = (0.03, 4.0)
-"""Initial bracket of the search over X0, independent of (9)."""
+"""Initial bracket of the search in units of X0, independent of (9)."""
 
 PRECISION = 6e-5  # relative accuracy of this search
 

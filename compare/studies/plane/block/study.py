@@ -33,7 +33,7 @@ SPEED = 1.0
 """v₀ in m/s."""
 
 WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
-"""Sample times over the time to rest."""
+"""Sample times as shares of the time to rest."""
 
 AT_REST = 1.5
 """Sample time over the time to rest, late enough for regularised laws."""
@@ -42,10 +42,10 @@ SPRING = replace(BLOCK, stiffness=0.1)
 """A stretch of 10 m pulls with μN, so the pull changes slowly."""
 
 LOADS = (0.1, 0.5, 0.9, 0.99)
-"""Pulls over μN that friction holds."""
+"""Pulls that friction holds, in units of μN."""
 
 BEYOND = 1.01
-"""Pull over μN that exceeds friction."""
+"""Pull that exceeds friction, in units of μN."""
 
 HELD = 10.0
 """Duration in s."""
@@ -55,7 +55,7 @@ MOVED = (BEYOND - 1.0) * FRICTION / SPRING.stiffness
 
 SWINGING = replace(BLOCK, stiffness=1e4)
 RELEASED = 8.5
-"""Position over μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
+"""Position in units of μN/C; half swings end at 6.5, 4.5, 2.5 and 0.5, where the block rests."""
 
 SWINGS = 4
 
@@ -63,7 +63,7 @@ DIAGONAL = 45.0
 """Heading in degrees."""
 
 PULL = 1.5
-"""Initial pull over μN on a block thrown along it."""
+"""Initial pull on a block thrown along it, in units of μN."""
 
 AFAR = replace(BLOCK, stiffness=1e-2)
 """The spring is initially stretched by 150 m; a larger distance would cost digits of the position."""

@@ -23,8 +23,8 @@ from reference_model.systems import FloatArray
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.
 
-Three quarters of the measured forces lean less than 26 degrees from the edge's normal; this coefficient allows 26.6
-degrees. The median error of the final position is 0.9 to 1.3 mm for coefficients from 0.2 to 0.6, and 2 mm for 0.1
+Three quarters of the measured forces lean less than 26 degrees from the edge's normal; this coefficient allows
+26.6. The median error of the final position is 0.9 to 1.3 mm for coefficients from 0.2 to 0.6, and 2 mm for 0.1
 and 0.8.
 """
 
