@@ -145,6 +145,10 @@ class Mode(IntEnum):
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 
 
+WHOLE = 0
+"""In place of the number of a point: all points together."""
+
+
 @dataclass(eq=False)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
@@ -153,7 +157,8 @@ class AxialStick:
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
-    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
+    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points, or
+    ``WHOLE``.
     """
 
     kinds: Kinds

@@ -18,13 +18,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from typing import Any
 
 import exudyn as exu
 
-from exudyn_models.forces.axial_pairs import Mode
+from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
@@ -88,10 +88,10 @@ def solve_dynamic(
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
     contacts, changes = sticking_contacts(mbs), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
-        modes: list[Mode] = []
+        modes: dict[AxialStick, Mode] = {}
         for goes_on in parts:
             changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
-            modes = [contact.stick.visible_mode for contact in contacts]
+            modes = {contact.stick: contact.stick.visible_mode for contact in contacts}
     return changes
 
 
@@ -147,7 +147,7 @@ def _solve(
     solver: Any,
     updateInitialValues: bool,
     contacts: list[StickingContact],
-    modes: list[Mode],
+    modes: Mapping[AxialStick, Mode],
 ) -> list[ModeChange]:
     options = simulationSettings.timeIntegration
     look = _Look(mbs, solver, options)
@@ -160,7 +160,10 @@ def _solve(
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()
             if contacts:
-                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
+                before = [modes[contact.stick] for contact in contacts] if modes else []
+                changes = run_switching(
+                    mbs, simulationSettings, solver, contacts, updateInitialValues, before
+                )
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:

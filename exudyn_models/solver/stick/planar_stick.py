@@ -14,12 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode
+from exudyn_models.forces.laws.places import places_in
 from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
@@ -76,7 +78,18 @@ class PlanarStick(AxialStick):
     @property
     def most_locks(self) -> int:
         """Largest number of constraints that hold the contact."""
+        if self.point == WHOLE:
+            return 1  # its points stick one by one unless it is on one axis
         return 3 if self.mean_radius > 0.0 else 2
+
+    @cached_property
+    def turns_without_force(self) -> bool:
+        """True if friction of the disc that turns in place is a moment without a force."""
+        if self.point != WHOLE:
+            return True
+        x, y, shares = places_in(self.factors.geometry[-1]).T
+        arms = x + 1j * y
+        return bool(abs(shares @ (arms / np.where(arms == 0.0, 1.0, abs(arms)))) < NEGLIGIBLE)
 
     def span(self, slips: FloatArray) -> FloatArray:
         """Return a basis of ``slips``, shape (3, n); a pin does not resist spin."""

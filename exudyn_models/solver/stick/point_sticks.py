@@ -1,6 +1,8 @@
 """Exact stick of a contact at several points, which stick and slide one by one.
 
-Every point is a pin with its share of the load. If one sticks, the disc pivots about it.
+Every point is a pin with its share of the load. If one sticks, the disc pivots about it. If joints allow only spin
+and the friction of all points is a moment without a force, they stick and slide together, because locks of single
+points would load the joints.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode
 from exudyn_models.forces.laws.places import places_in, slip_maps
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
 from exudyn_models.forces.slip_kinematics import Kinds
@@ -21,11 +23,12 @@ from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, kw_only=True)
 class PointSticks(AxialStick):
-    """Friction at ``points`` between two bodies that may slide sideways; every point sticks exactly."""
+    """Friction at ``points`` that stick exactly, one by one, or as a ``whole`` if joints allow only spin."""
 
-    points: tuple[PlanarStick, ...] = ()
+    whole: PlanarStick
+    points: tuple[PlanarStick, ...]
 
     @classmethod
     def at(
@@ -45,17 +48,23 @@ class PointSticks(AxialStick):
             PlanarStick(pin, reference, load, ratio, point=1 + i)
             for i, (pin, load) in enumerate(zip(pins, loads, strict=True))
         )
-        stick = cls(kinds, reference, factors, ratio, points=points)
+        whole = PlanarStick(kinds, reference, factors, ratio, point=WHOLE)
+        stick = cls(kinds, reference, factors, ratio, whole=whole, points=points)
         stick.check(factors.friction_coefficient, factors.normal_load)
         return stick
 
     def parts(self) -> Sequence[AxialStick]:
-        """Return the points, which know the present numbers of their locks."""
-        start = 0
-        for point in self.points:
-            point.locks = self.locks[start : start + point.most_locks]
-            start += point.most_locks
-        return self.points
+        """Return the whole and the points, which know the present numbers of their locks."""
+        start, parts = 0, (self.whole, *self.points)
+        for part in parts:
+            part.locks = self.locks[start : start + part.most_locks]
+            start += part.most_locks
+        return parts
+
+    @property
+    def active(self) -> Sequence[PlanarStick]:
+        """Return the parts that stick and slide in this model."""
+        return (self.whole,) if self.whole.on_axis else self.points
 
     def check(self, friction_coefficient: Coefficient, normal_load: NumberOrFunction) -> None:
         """Raise ``ValueError`` unless each point can evaluate coefficient and load alone."""
@@ -68,6 +77,7 @@ class PointSticks(AxialStick):
 
     def renew(self) -> None:
         """Use the present load and coefficient from now on."""
+        self.whole.renew()
         for point in self.points:
             point.factors.change(self.factors.friction_coefficient, self.factors.normal_load)
             point.renew()
@@ -75,13 +85,13 @@ class PointSticks(AxialStick):
     @property
     def visible_mode(self) -> Mode:
         """Mode as a sensor shows it: locked if all points are, and otherwise that of one that slides."""
-        modes = {point.visible_mode for point in self.points}
+        modes = {part.visible_mode for part in self.active}
         sliding = modes & {Mode.FORWARD, Mode.BACKWARD}
         return next(iter(sliding or modes - {Mode.OPEN} or modes))
 
     def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
         """Return the sum of the generalised forces, as the user function of the connector."""
-        return np.sum([point.force(mbs, t, item, q, q_t) for point in self.points], axis=0).tolist()
+        return np.sum([part.force(mbs, t, item, q, q_t) for part in self.active], axis=0).tolist()
 
     def jacobian(
         self,
@@ -95,10 +105,12 @@ class PointSticks(AxialStick):
     ) -> FloatArray:
         """Return the sum of the derivatives of minus the forces, as the user function of the connector."""
         arguments = mbs, t, item, q, q_t, position_factor, velocity_factor
-        return np.asarray(sum(point.jacobian(*arguments) for point in self.points))
+        return np.asarray(sum(part.jacobian(*arguments) for part in self.active))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
         """Return force (N) and moment (N m) on the disc about its centre, in the master's axes, shape (3,)."""
+        if self.whole.on_axis:
+            return self.whole.wrench(mbs, t, slip, radius, angle)
         maps = slip_maps(self.factors.geometry[-1], angle)
         forces = [
             point.wrench(mbs, t, np.append(to_point @ slip, slip[2]), radius, angle)[:2]
@@ -108,6 +120,8 @@ class PointSticks(AxialStick):
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return the least share of their capacities that lets the points hold the load, or 1 if a point slides."""
+        if self.whole.on_axis:
+            return self.whole.capacity_share(mbs, t)
         mode = self.visible_mode
         if mode != Mode.LOCKED:
             return 0.0 if mode == Mode.OPEN else 1.0

@@ -11,7 +11,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
+from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode, spanned
 from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.starting_rates import initialised_solver
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
@@ -37,7 +37,7 @@ class ModeChange:
     before, after : Mode
         Mode until and from that time.
     point : int or None
-        Number of the point, from 1, of a contact at several points.
+        Number of the point, from 1, of a contact at several points that stick one by one.
 
     """
 
@@ -305,7 +305,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
         found = list(contacts)
         if any(isinstance(contact.stick, PlanarStick) for contact in contacts):
             joints, _ = joints_and_mass(mbs, t, contacts)
-            found = [_located(mbs, contact, joints) for contact in contacts]
+            found = _active([_located(mbs, contact, joints) for contact in contacts])
         for contact in found:
             contact.enter_first(mbs, t)
         yield found
@@ -315,6 +315,16 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
             contact.restore_user_functions(mbs)
 
 
+def _active(contacts: Sequence[StickingContact]) -> list[StickingContact]:
+    """Omit the points of contacts on one axis, and the whole of others."""
+    wholes = {one.item for one in contacts if one.stick.point == WHOLE and not isinstance(one, PlanarContact)}
+    return [
+        one
+        for one in contacts
+        if one.stick.point is None or (one.stick.point == WHOLE) == (one.item in wholes)
+    ]
+
+
 def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
     stick = contact.stick
     if not isinstance(stick, PlanarStick):
@@ -322,7 +332,7 @@ def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> Sticking
     planar = PlanarContact(contact.item, stick, contact.places)
     across = planar.slip_rows(mbs)[:2]
     across[np.abs(across) < NEGLIGIBLE] = 0.0
-    stick.on_axis = stick.mean_radius > 0.0 and spanned(across, joints)
+    stick.on_axis = stick.mean_radius > 0.0 and stick.turns_without_force and spanned(across, joints)
     stick.set_basis(SPIN)
     return contact if stick.on_axis else planar
 

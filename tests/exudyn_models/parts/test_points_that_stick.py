@@ -124,6 +124,43 @@ def test_points_of_a_body_that_a_joint_holds_on_its_axis_share_the_moment():
     assert {int(change.contact) for change in changes} == {int(contact.item)}
 
 
+def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_like_a_circle():
+    """Locks of single points changed the reaction, so the contact slid too early and the run did not go on."""
+    radius, coefficient, weight = 0.05, 0.1, 40.0
+    mbs = new_model()
+    node = planar_body(mbs, 4.0, 0.02, REST, [0.0, 0.0, 0.5])
+    ends = [
+        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
+        for body in (mbs.AddObject(items.ObjectGround()), exu.ObjectIndex(0))
+    ]
+    joint = mbs.AddObject(items.GenericJoint(markerNumbers=ends, constrainedAxes=[1, 1, 0, 0, 0, 0]))
+    reaction = mbs.AddSensor(
+        items.SensorObject(
+            objectNumber=joint, outputVariableType=exu.OutputVariableType.ForceLocal, writeToFile=False
+        )
+    )
+    contact = add_ring_friction(
+        mbs,
+        *ends,
+        contact_radius=radius,
+        contact_points=3,
+        friction_coefficient=coefficient,
+        normal_load=lambda: float(np.linalg.norm(mbs.GetSensorValues(reaction))),
+    )
+    moment = contact.add_sensor("transmitted_moment", writeToFile=False)
+    push(mbs, node, [0.0, -weight, 0.0], lambda t: 1.0)
+    push(mbs, node, [0.0, 0.0, 1.0], lambda t: 0.5 * max(0.0, t - 0.2))
+    mbs.Assemble()
+    changes = run(mbs, 0.7, 700)
+    largest = coefficient * weight * radius
+    times = [0.5 * 0.02 / largest, 0.2 + largest / 0.5]
+    assert [(change.time, change.after, change.point) for change in changes] == [
+        (pytest.approx(times[0], abs=1e-6), 0, None),
+        (pytest.approx(times[1], abs=1e-6), 1, None),
+    ]
+    assert mbs.GetSensorValues(moment) == pytest.approx(-largest)
+
+
 def test_a_deleted_contact_lets_all_its_points_go():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
