@@ -153,13 +153,9 @@ def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, 
 
 def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
     """Return the mean slip speed from the power of friction, shape (n,)."""
-    result = np.empty(len(u))
-    for i, (slip, spin, phi) in enumerate(
-        zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
-    ):
-        force, moment = law.force_and_moment(slip, spin, phi)
-        result[i] = moment * spin - (force.conjugate() * slip).real
-    return result
+    states = zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
+    force, moment = np.transpose([law.force_and_moment(*state) for state in states])
+    return np.asarray(moment.real * relative_spin - (force.conj() * u).real)
 
 
 def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:

@@ -15,7 +15,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -272,8 +272,12 @@ class _Condition:
 
         inertias = np.linspace(self.plane.lower[1 - across], self.plane.upper[1 - across], NODES)
         for nearness in _roots(lambda nearness: self.balance(unknowns(float(inertias[0]), nearness)), ratios):
-            along = partial(unknowns, nearness=nearness)
-            yield from map(along, _roots(partial(_composed, self.margin, along), inertias))
+
+            def margin_at(inertia: float, nearness: float = nearness) -> float:
+                return self.margin(unknowns(inertia, nearness))
+
+            for inertia in _roots(margin_at, inertias):
+                yield unknowns(inertia, nearness)
 
     @staticmethod
     def pair(across: int, value: float, other: float) -> tuple[float, float]:
@@ -308,12 +312,6 @@ def _traced(condition: _Condition, step: float) -> Iterator[Boundary]:
             np.array([condition.alpha(point) for point in curve.points]),
             curve.closed,
         )
-
-
-def _composed(
-    outer: Callable[[FloatArray], float], inner: Callable[[float], FloatArray], value: float
-) -> float:
-    return outer(inner(value))
 
 
 def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:

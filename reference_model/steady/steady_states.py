@@ -31,13 +31,17 @@ class SelfCentredEquilibrium:
     """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
 
     The position ``x``, ``y`` is in m. ``eigenvalues`` are in 1/s, slowest decay first: four for a pin, five for a
-    disc, without its angle. The equilibrium is ``stable`` if all small deviations decay.
+    disc, without its angle.
     """
 
     x: float
     y: float
     eigenvalues: tuple[complex, ...]
-    stable: bool
+
+    @property
+    def stable(self) -> bool:
+        """True if all small deviations decay."""
+        return self.eigenvalues[0].real < 0.0
 
     @property
     def state(self) -> FloatArray:
@@ -63,13 +67,17 @@ class Whirl:
 
     ``radius`` is in m, ``frequency`` in rad/s, negative if clockwise. ``eigenvalues`` are in 1/s in the frame that
     turns with the whirl: first the exact zero of the free phase, then three for a pin or four for a disc, slowest
-    decay first. The whirl is ``stable`` if all small deviations decay, apart from a shift in phase.
+    decay first.
     """
 
     radius: float
     frequency: float
     eigenvalues: tuple[complex, ...]
-    stable: bool
+
+    @property
+    def stable(self) -> bool:
+        """True if all small deviations decay, apart from a shift in phase."""
+        return self.eigenvalues[1].real < 0.0
 
     @property
     def state(self) -> FloatArray:
@@ -139,27 +147,15 @@ def self_centred_equilibria(
     require_system(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # raises if a contact is given
-        return _equilibria_of_pin(system)
-    return _equilibria_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
-
-
-def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
-    if _why_no_equilibrium_of_pin(pin) is not None:
-        return ()
-    x, y = equilibrium_position(pin)
-    eigenvalues = equilibrium_eigenvalues(pin)
-    return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=eigenvalues, stable=_decay(eigenvalues)),)
-
-
-def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
+        if _why_no_equilibrium_of_pin(system) is not None:
+            return ()
+        x, y = equilibrium_position(system)
+        return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=equilibrium_eigenvalues(system)),)
+    law = isotropic_contact_of(system, contact, "steady motions")
     found = []
-    for z, spin in resting_positions(disc, law):
-        eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
-        found.append(
-            SpinningEquilibrium(
-                x=z.real, y=z.imag, spin=spin, eigenvalues=eigenvalues, stable=_decay(eigenvalues)
-            )
-        )
+    for z, spin in resting_positions(system, law):
+        eigenvalues = equilibrium_eigenvalues(system, resting(z.real, z.imag, spin), law)
+        found.append(SpinningEquilibrium(x=z.real, y=z.imag, spin=spin, eigenvalues=eigenvalues))
     return tuple(found)
 
 
@@ -194,40 +190,19 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     _require_centred(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # raises if a contact is given
-        return _whirls_of_pin(system)
-    return _whirls_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
-
-
-def _whirls_of_pin(pin: PinOnDisc) -> tuple[Whirl, ...]:
-    if _why_no_whirl_of_pin(pin) is not None:
-        return ()
-    eigenvalues = whirl_eigenvalues(pin)
-    return (
-        Whirl(
-            radius=whirl_radius(pin),
-            frequency=whirl_frequency(pin),
-            eigenvalues=eigenvalues,
-            stable=_decay(eigenvalues[1:]),  # without the phase
-        ),
-    )
-
-
-def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWhirl, ...]:
-    if _why_no_circle_of_disc(disc) is not None:
+        if _refusal(whirl_radius, system) is not None:
+            return ()
+        radius, frequency = whirl_radius(system), whirl_frequency(system)
+        return (Whirl(radius=radius, frequency=frequency, eigenvalues=whirl_eigenvalues(system)),)
+    law = isotropic_contact_of(system, contact, "steady motions")
+    if _why_no_circle_of_disc(system) is not None:
         return ()
     found = []
-    for radius, spin in circles(disc, law):
-        frequency = math.copysign(circling_speed(pin_of(disc), radius), disc.disc_speed)
-        eigenvalues = whirl_eigenvalues(disc, circling(radius, frequency, spin), law)
-        found.append(
-            SpinningWhirl(
-                radius=radius,
-                frequency=frequency,
-                spin=spin,
-                eigenvalues=eigenvalues,
-                stable=_decay(eigenvalues[1:]),
-            )
-        )
+    for radius, spin in circles(system, law):
+        frequency = math.copysign(circling_speed(pin_of(system), radius), system.disc_speed)
+        state = circling(radius, frequency, spin)
+        eigenvalues = whirl_eigenvalues(system, state, law)
+        found.append(SpinningWhirl(radius=radius, frequency=frequency, spin=spin, eigenvalues=eigenvalues))
     return tuple(found)
 
 
@@ -259,7 +234,7 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
     if whirls(system, contact):
         return None
     if isinstance(system, PinOnDisc):
-        return _why_no_whirl_of_pin(system)
+        return _refusal(whirl_radius, system)
     reason = _why_no_circle_of_disc(system)
     if reason is not None:
         return reason
@@ -294,10 +269,6 @@ def _why_no_equilibrium_of_pin(pin: PinOnDisc) -> str | None:
     return reason
 
 
-def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
-    return _refusal(whirl_radius, pin)
-
-
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
     """Return why a disc has no whirl. With a nonlinear support it may whirl where a pin does not."""
     return _refusal(whirl_radius if disc.linear_support else require_drive, pin_of(disc))
@@ -318,7 +289,3 @@ def _require_centred(system: System) -> None:
             f"offset = {system.offset:g} m: with an offset the periodic orbit is not a circle about the axis; "
             "use whirl_orbit(), which finds it by shooting"
         )
-
-
-def _decay(eigenvalues: tuple[complex, ...]) -> bool:
-    return all(value.real < 0.0 for value in eigenvalues)
