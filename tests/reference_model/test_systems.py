@@ -132,6 +132,10 @@ def test_support_is_linear_unless_it_hardens_or_has_a_stop():
         ([0.1, "a", 0.0, 0.0], "initial_state = [0.1, 'a', 0.0, 0.0]: it must be a list of numbers"),
         ([[1.0], [1.0, 2.0]], "initial_state = [[1.0], [1.0, 2.0]]: it must be a list of numbers"),
         (None, "initial_state"),
+        *(
+            ([0.1, 0.0, value, 0.0], f"initial_state[2] = {value:g}: it must not be larger than 1e+50")
+            for value in (1e300, -1e200, 1e60)
+        ),
     ],
 )
 def test_invalid_initial_state_is_refused(state, message):

@@ -68,9 +68,6 @@ def test_whirl_with_an_offset_is_periodic_and_has_a_multiplier_of_one(pin):
     assert orbit.system == pin
 
 
-# ---------------------------------------------------------------- the fold of the whirl
-
-
 @pytest.fixture(scope="module")
 def fold():
     return last_whirl(FIG_6)
@@ -141,9 +138,6 @@ def test_branch_is_followed_around_the_fold_in_steps_of_any_size(fold):
     # Newton's method stops at a residual of 1e-9 or less.
     assert coarse[-1].state == pytest.approx(fine[-1].state, abs=1e-8)
     assert coarse[-1].system.friction_force == pytest.approx(fine[-1].system.friction_force, abs=1e-8)
-
-
-# ---------------------------------------------------------------- the disc
 
 
 def test_whirl_of_a_disc_with_an_offset_is_periodic_except_for_its_angle():
@@ -221,9 +215,6 @@ def test_whirl_that_does_not_cross_the_x_axis_is_refused_as_a_start():
         whirl_orbit(at_offset(0.0199), guess=near, tolerance=1e-9)
 
 
-# ---------------------------------------------------------------- the modulated cycle
-
-
 @pytest.fixture(scope="module")
 def settled():
     """Return a motion of the disc of Fig. 11 from near the axis to its modulated cycle."""
@@ -267,9 +258,6 @@ def test_modulated_cycle_is_found_at_a_given_load_and_at_a_given_crossing(cycle)
     assert abs(load - FIG11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
     assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
     assert sought.period == pytest.approx(held.period, rel=1e-6)
-
-
-# ---------------------------------------------------------------- refusals
 
 
 def test_whirl_of_constant_radius_is_refused_as_a_modulated_cycle():

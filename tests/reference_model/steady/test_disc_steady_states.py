@@ -42,9 +42,6 @@ def whirling(gain, load=1.0):
     )  # fmt: skip
 
 
-# ---------------------------------------------------------------- against the equations of motion
-
-
 def friction_of(disc, law):
     return eq_23(disc) if law is ThreeTermRing else points_on_ring(disc, 32768)
 
@@ -92,9 +89,6 @@ def test_whirl_is_a_fixed_point_in_turning_axes(disc, load, law):
         still = rates_in_turning_axes(disc, friction_of(disc, law), whirl.frequency, state)
         assert np.abs(still).max() < 1e-14 * max(1.0, whirl.radius)
         assert whirl.frequency == math.copysign(1.0, disc.disc_speed)
-
-
-# ---------------------------------------------------------------- completeness
 
 
 def plain_shares(law, radius, slip, rim):
@@ -232,9 +226,6 @@ def test_whirl_grows_continuously_from_the_centred_rotation_below_a_limit_of_the
             for system in (just_above, just_below)
         ]
         assert small == [not jumps, jumps]
-
-
-# ---------------------------------------------------------------- limiting cases
 
 
 NEIGHBOURS = 1.0 + np.finfo(float).eps * np.arange(-4, 5)

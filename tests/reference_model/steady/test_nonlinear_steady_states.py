@@ -40,9 +40,6 @@ SUPPORTS = [
 ]
 
 
-# ---------------------------------------------------------------- the pin's equilibrium
-
-
 @pytest.mark.parametrize("support", [{}, *SUPPORTS])
 @pytest.mark.parametrize("base", [FIG_5, HEAVY, replace(HEAVY, offset=-0.15)])
 def test_equilibrium_of_the_pin_satisfies_eq_1_and_lies_on_the_semicircle_4(base, support):
@@ -73,9 +70,6 @@ def test_equilibrium_exists_up_to_the_support_force_at_the_offset(support):
     exactly = replace(pin, friction_force=formulas.largest_load_with_equilibrium(pin))
     assert self_centred_equilibria(exactly) == ()
     assert why_no_equilibrium(exactly).endswith("the pin sticks on the axis")
-
-
-# ---------------------------------------------------------------- the pin's whirl
 
 
 def centred(base, **support):
@@ -116,9 +110,6 @@ def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc
     assert trajectory.phases[-1].end - trajectory.phases[-1].start > 50.0
 
 
-# ---------------------------------------------------------------- a stop without a gap is a spring
-
-
 @pytest.mark.parametrize("disc", [FIG8, FIG11, replace(FIG8, disc_speed=1.5, offset=0.0)])
 def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
     stop = replace(disc, stiffness=0.4, stop_stiffness=0.6)
@@ -133,9 +124,6 @@ def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
         for found, expected in zip(whirls(stop), whirls(disc), strict=True):
             assert found.state == pytest.approx(expected.state, rel=1e-10)
             assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues, tolerance=1e-10)
-
-
-# ---------------------------------------------------------------- the disc
 
 
 OF_A_DISC = [
@@ -229,6 +217,3 @@ def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
     )
     assert linear[-1].radius < 0.002
     assert hard[-1].radius == pytest.approx(linear[-1].radius, rel=0.05)
-
-
-# ---------------------------------------------------------------- orbits by shooting

@@ -66,8 +66,6 @@ def assert_same_eigenvalues(found, expected, tolerance=1e-12):
         left.remove(nearest)
 
 
-# ---------------------------------------------------------------- Jacobians
-
 coordinates = st.floats(-2.0, 2.0)
 
 
@@ -118,9 +116,6 @@ def test_jacobian_of_a_disc_is_the_derivative_of_eq_19(state, disc, law):
         assert found == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
 
 
-# ---------------------------------------------------------------- eigenvalues
-
-
 @pytest.mark.parametrize("disc_speed", [0.01, 0.8, 3.0, -0.8])
 @pytest.mark.parametrize("load_ratio", [0.0, 0.1, 0.5, 0.99])
 @pytest.mark.parametrize("pin", [FIG_5, replace(HEAVY, offset=-0.15), replace(FIG_5, damping=4.0)])
@@ -157,8 +152,6 @@ def test_slow_eigenvalue_of_a_strongly_damped_equilibrium_is_accurate_to_roundin
     slowest = equilibrium_eigenvalues(replace(FIG_5, damping=1e8, friction_force=0.0))[0]
     assert slowest == pytest.approx(-1e-8, rel=1e-14, abs=0.0)
 
-
-# ---------------------------------------------------------------- the onset
 
 TURNING = [
     replace(FIG11, disc_speed=speed, shaft_speed=shaft)
@@ -200,14 +193,8 @@ def test_centred_rotation_on_a_slow_master_disc_is_stable_at_every_load(speed, s
     assert self_centred_equilibria(disc)[0].stable
 
 
-# ---------------------------------------------------------------- existence of equilibria
-
-
 @pytest.mark.parametrize("load", [0.0, 1e-9, 0.05, 0.09])
 def test_undamped_equilibrium_is_only_marginally_stable(load):
     (equilibrium,) = self_centred_equilibria(replace(FIG_5, damping=0.0, friction_force=load))
     assert equilibrium.eigenvalues[0] == 1j
     assert not equilibrium.stable
-
-
-# ---------------------------------------------------------------- existence of whirls
