@@ -25,7 +25,7 @@ def turned(z, angle):
 
 
 PINS = [replace(pin, offset=0.0) for pin in (FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2))]
-DISCS = [FIG11, replace(FIG11, friction_force=0.08), replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)]
+DISCS = [FIG11, replace(FIG11, friction_force=0.08, disc_speed=-1.5, shaft_speed=-1.25)]
 
 
 @pytest.mark.parametrize(
@@ -188,14 +188,6 @@ def test_whirl_that_does_not_enclose_the_axis_is_found_by_continuation(beside_th
     # The equilibrium is stable as well, because it loses stability at a smaller offset.
     (rest,) = self_centred_equilibria(beside_the_axis.system)
     assert (beside_the_axis.stable, rest.stable) == (True, True)
-    start = beside_the_axis.state + 0.1 * (beside_the_axis.state - rest.state)
-    outside = simulate(beside_the_axis.system, start, np.linspace(0.0, 1200.0, 12001), tolerance=1e-7)
-    # A deviation of 10 % decays by 0.96 per turn; a turn has 62 samples.
-    extent = np.ptp(beside_the_axis.trajectory.states[:, 0])
-    assert np.ptp(outside.states[-100:, 0]) == pytest.approx(extent, rel=(math.pi / 62) ** 2)
-    inside = simulate(beside_the_axis.system, np.add(rest.state, [1e-4, *np.zeros(5)]), [0.0, 600.0])
-    slowest = rest.eigenvalues[0].real
-    assert np.abs(inside.at_end[:2] - [rest.x, rest.y]).max() < 2e-4 * math.exp(600.0 * slowest)
 
 
 def test_orbit_started_at_its_rightmost_point_is_the_same_orbit(round_the_axis):
