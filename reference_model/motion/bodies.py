@@ -52,7 +52,6 @@ class Creep:
 
     @property
     def way_left(self) -> float:
-        """Slip distance that remains."""
         return sum(size / rate for size, rate in (self.slow, self.fast))
 
     def slip(self, delays: FloatArray) -> FloatArray:
@@ -106,8 +105,8 @@ class Body(ABC):
     def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
         """Return the creep in the coordinates ``motion`` if slip decays forever and is almost over; else None.
 
-        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. If
-        only the body turns, b and c are constant to first order in the distance, so s'' + b·s' + c·s = 0.
+        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. To
+        first order in the distance b and c are constant, so s'' + b·s' + c·s = 0.
         """
         d, s = motion.slip, motion.speed(y)
         if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
@@ -138,7 +137,6 @@ class Body(ABC):
         return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
 
     def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
-        """Follow creep to the end of the run; the phase remains slip."""
         run, s = self.run, float(creep.slip(np.zeros(1))[0])
 
         def sample(times: FloatArray) -> FloatArray:
@@ -179,7 +177,7 @@ class Body(ABC):
 
     @abstractmethod
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow slip as it grows from rest."""
+        """Follow slip from rest."""
 
 
 class PinBody(Body):
@@ -298,7 +296,6 @@ class RingBody(DiscBody):
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """Like :meth:`Body.holds_for`, with the friction that the moment leaves for the force."""
         z = complex(y[0], y[1])
         return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
 

@@ -67,7 +67,6 @@ class OnePoint:
         return (*carried, spin_up + torque)
 
     def holding(self, unknowns: Sequence[float]) -> complex:
-        """Return the friction over the mass that keeps the point at rest."""
         _, _, arm, free = self._without_friction(unknowns, 0j)
         return self._holding(arm, free)
 
@@ -91,7 +90,7 @@ class OnePoint:
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
-        """Return the relative margin of the point's friction over that required to hold it."""
+        """Return the relative margin of the point's friction."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:

@@ -1,8 +1,7 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
-up to its torsional balance. With two parameters of the disc this makes three unknowns for two equations, the balance
-and one of
+For X0 = 0 and any isotropic friction law the ratio of the slip speeds of centre and rim determines a whirl up to its
+torsional balance. With two parameters of the disc these are three unknowns for two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -133,9 +132,9 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
-    The search starts from ``LINES`` lines in each direction and misses only closed curves between them. ``step`` is
-    the largest distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the
-    parameters. Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
+    The search misses only closed curves between its ``LINES`` lines in each direction. ``step`` is the largest
+    distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the parameters. Raises
+    ``ValueError`` if the kind is unknown, or the disc rests on single points.
     """
     return tuple(
         boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)

@@ -124,19 +124,18 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one: that of (3). It has none
+    A pin has at most one, that of (3), but none
 
-    - if μN >= C·|X0|; at equality the pin would stick on the axis;
-    - if ω = 0 with friction: the pin sticks;
-    - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
+    - if μN >= C·|X0|; at equality it would stick on the axis;
+    - if ω = 0 with friction, because it sticks;
+    - if C = 0: friction is not balanced, or without friction every position is an equilibrium.
 
     A disc on a ring has at most one: at a given radius the torsional balance allows one spin, and the balance of
-    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function of slip. It
-    has none
+    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function. It has none
 
-    - if friction holds the disc at rest on the axis, or on a master disc at rest;
+    - if friction holds it at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
-    - if b = 0 without friction, where every spin is an equilibrium.
+    - if b = 0 without friction, where every spin is one.
 
     For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0², with
     the deflection d at the force μN·F.
@@ -170,19 +169,18 @@ def whirls(system: DiscOnDisc, contact: IsotropicContact | None = None) -> tuple
 def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whirl, ...]:
     """Return every motion of ``system`` on a circle about the axis with permanent slip; X0 = 0 only.
 
-    A pin has at most one: that of (11). It has none
+    A pin has at most one, that of (11), but none
 
-    - if |ω| <= k: the pin would overtake the disc, and friction would brake it;
+    - if |ω| <= k: it would overtake the disc, and friction would brake it;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
-    - if μN = 0: nothing drives it;
-    - if C = 0: nothing holds the pin on a circle.
+    - if μN = 0, because nothing drives it, or C = 0, because nothing holds it on a circle.
 
-    A disc may have several, listed from the largest. They have the pin's frequency ±k and smaller radii. The same
+    A disc may have several, listed from the largest, with the pin's frequency ±k and smaller radii. The same
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
     On a nonlinear support the frequency grows with the circle, and the pin's circle, with the speed μN/β, is a whirl
-    only if the disc turns faster. A disc's friction acts only partly along the circle, so its circles are slower, and
-    it may whirl where a pin sticks.
+    only if the disc turns faster. A disc's friction acts only partly along the circle, so it may whirl where a pin
+    sticks.
 
     Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
     :func:`self_centred_equilibria`.
@@ -252,8 +250,8 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold,
-    where two whirls meet. It does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at
+    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or of a fold, where two
+    whirls meet; ``friction_force`` does not matter. Raises ``ValueError`` if whirls do not exist at
     any load, or if the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")

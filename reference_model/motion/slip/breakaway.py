@@ -1,8 +1,7 @@
 """The beginning of slip from rest, for any law.
 
-Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. As the
-motion is smooth, implicit collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until slip
-is fast enough for an explicit method.
+Slip that begins at the friction limit grows like ½κt² along the pull, which is stiff but smooth. So implicit
+collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until an explicit method can follow.
 """
 
 from __future__ import annotations

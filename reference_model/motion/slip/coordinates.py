@@ -93,8 +93,8 @@ class Coordinates:
     def tolerated(self, run: Run, unknowns: int, polar: int = 0, implicit: bool = False) -> Tolerated:
         """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
-        ``polar`` more may follow: the ``slip`` components of a direction, ln s and so on, with absolute tolerances.
-        An implicit step bounds the error of s instead of ln s, because long decay would otherwise need many steps.
+        ``polar`` more may follow, with absolute tolerances: the ``slip`` components of a direction, ln s and so on.
+        An implicit step bounds the error of s instead of ln s, which would need many steps in a long decay.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance
