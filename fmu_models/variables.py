@@ -145,15 +145,14 @@ REGULARISATION = Variable(
     1e-6,
     LEAST,
 )
-EXACT = Variable(
-    "exact",
-    "",
-    "true if the contact sticks by state events; otherwise it creeps below regularisation",
-    "parameter",
-    1.0,
-    0.0,
-    1.0,
-    type="boolean",
+
+
+def _flag(name: str, about: str, start: float) -> Variable:
+    return Variable(name, "", about, "parameter", start, 0.0, 1.0, type="boolean")
+
+
+EXACT = _flag(
+    "exact", "true if the contact sticks by state events; otherwise it creeps below regularisation", 1.0
 )
 FRICTION = (
     Variable("slip_speed", "m/s", "mean slip speed of the contact", "output"),
@@ -272,16 +271,7 @@ LINING = (
         0.0,
     ),
     Variable("outer_radius", "m", "outer radius of the contact; 0 for a pin", "parameter", 0.1, 0.0),
-    Variable(
-        "wear",
-        "",
-        "true for the pressure of worn linings, proportional to 1/r; otherwise uniform",
-        "parameter",
-        0.0,
-        0.0,
-        1.0,
-        type="boolean",
-    ),
+    _flag("wear", "true for the pressure of worn linings, proportional to 1/r; otherwise uniform", 0.0),
     *(
         Variable(
             f"pressure_{where}",

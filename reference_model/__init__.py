@@ -1,6 +1,6 @@
 """Radial dynamics of friction discs with exact Coulomb friction, in NumPy and SciPy.
 
-- ``plain``: the paper's equations as printed, integrated by SciPy in 100 lines; read it first;
+- ``plain``: the paper's equations as printed, integrated by SciPy; read it first;
 - ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
 - ``contact``: friction laws and their limit surfaces;

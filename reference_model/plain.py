@@ -81,9 +81,8 @@ def simulate(
     start, times = checked_state(system, initial_state), checked_times(times)
     (x, y, *_), (vx, vy, *_) = np.split(start, 2)
     R, points = 0.0, 1
-    if isinstance(
-        system, DiscOnDisc
-    ):  # the error of the mean where a point of a ring rests is about 1/points²
+    if isinstance(system, DiscOnDisc):
+        # The error of the mean where a point of a ring rests is about 1/points².
         R, points = system.contact_radius, system.contact_points or math.ceil(fine**-0.5)
     size = max(math.hypot(x, y), abs(system.offset), R) or 1.0
     speed = max(math.hypot(vx, vy), abs(system.disc_speed) * size) or 1.0

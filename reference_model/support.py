@@ -56,11 +56,9 @@ class Support:
         return self.stiffness > 0.0 or self.hardening > 0.0 or self.stop_stiffness > 0.0 == self.stop_gap
 
     def force(self, z: complex) -> complex:
-        """Return the force on the mass at z = x + iy, which may be an array."""
+        """Return the force on the mass at z = x + iy."""
         w = z - self.offset
-        if self.linear:
-            return -self.stiffness * w
-        return -(self._secants(abs(w)) if isinstance(w, np.ndarray) else self.secant(abs(w))) * w
+        return -(self.stiffness if self.linear else self.secant(abs(w))) * w
 
     def secant(self, d: float) -> float:
         """Return force over deflection, and its limit at d = 0."""
@@ -70,10 +68,6 @@ class Support:
         if d >= self.stop_gap:
             result += self.stop_stiffness * (1.0 - self.stop_gap / d if self.stop_gap > 0.0 else 1.0)
         return result
-
-    def _secants(self, d: FloatArray) -> FloatArray:
-        stop = np.maximum(1.0 - self.stop_gap / np.maximum(d, 1e-300), 0.0)
-        return self.stiffness + self.hardening * d * d + self.stop_stiffness * stop
 
     def tangent(self, d: float) -> float:
         """Return the derivative of the force by the deflection; at the stop, from outside."""

@@ -38,41 +38,22 @@ class _SupportedMass:
     stop_stiffness: float = 0.0
 
     state_size: ClassVar[int]
-    _units: ClassVar[dict[str, str]] = {
-        "mass": "kg",
-        "stiffness": "N/m",
-        "damping": "N s/m",
-        "friction_force": "N",
-        "disc_speed": "rad/s",
-        "offset": "m",
-        "hardening": "N/m³",
-        "stop_gap": "m",
-        "stop_stiffness": "N/m",
+    _parameters: ClassVar[dict[str, tuple[str, float]]] = {  # unit and smallest value
+        "mass": ("kg", LEAST),
+        "stiffness": ("N/m", 0.0),
+        "damping": ("N s/m", 0.0),
+        "friction_force": ("N", 0.0),
+        "disc_speed": ("rad/s", -MOST),
+        "offset": ("m", -MOST),
+        "hardening": ("N/m³", 0.0),
+        "stop_gap": ("m", 0.0),
+        "stop_stiffness": ("N/m", 0.0),
     }
-    _positive: ClassVar[tuple[str, ...]] = ("mass",)
-    _not_negative: ClassVar[tuple[str, ...]] = (
-        "stiffness",
-        "damping",
-        "friction_force",
-        "hardening",
-        "stop_gap",
-        "stop_stiffness",
-    )
-
-    _least: ClassVar[tuple[tuple[str, float], ...]]
-
-    def __init_subclass__(cls) -> None:
-        cls._least = tuple(
-            (name, LEAST if name in cls._positive else 0.0 if name in cls._not_negative else -MOST)
-            for name in cls._units
-        )
 
     def __post_init__(self) -> None:
         values = vars(self)
-        for (
-            name,
-            least,
-        ) in self._least:  # valid values must pass quickly, because searches create many systems
+        # Valid values must pass quickly, because searches create many systems.
+        for name, (_, least) in self._parameters.items():
             value = values[name]
             if type(value) is not float or not least <= value <= MOST:
                 self._check_numbers()
@@ -80,16 +61,16 @@ class _SupportedMass:
         for name, (formula, ratio) in self._ratios().items():
             if ratio > MOST_RATIO:
                 raise ValueError(
-                    f"{name} = {getattr(self, name):g} {self._units[name]}: {formula} = {ratio:g} "
+                    f"{name} = {getattr(self, name):g} {self._parameters[name][0]}: {formula} = {ratio:g} "
                     f"must be at most {MOST_RATIO:g}"
                 )
 
     def _check_numbers(self) -> None:
-        for name, unit in self._units.items():
+        for name, (unit, least) in self._parameters.items():
             value = finite_number(name, getattr(self, name))
             object.__setattr__(self, name, value)
-            positive = name in self._positive
-            if (positive and value <= 0.0) or (value < 0.0 and name in self._not_negative):
+            positive = least > 0.0
+            if (positive and value <= 0.0) or value < 0.0 == least:
                 allowed = "> 0" if positive else ">= 0"
                 raise ValueError(f"{name} = {value:g} {unit}: it must be {allowed}")
             if abs(value) > MOST or (positive and value < LEAST):
@@ -176,24 +157,19 @@ class DiscOnDisc(_SupportedMass):
     contact_points: int | None = None
 
     state_size: ClassVar[int] = 6
-    _units: ClassVar[dict[str, str]] = _SupportedMass._units | {
-        "polar_inertia": "kg m²",
-        "contact_radius": "m",
-        "shaft_damping": "N m s/rad",
-        "shaft_speed": "rad/s",
+    _parameters: ClassVar[dict[str, tuple[str, float]]] = _SupportedMass._parameters | {
+        "polar_inertia": ("kg m²", LEAST),
+        "contact_radius": ("m", LEAST),
+        "shaft_damping": ("N m s/rad", 0.0),
+        "shaft_speed": ("rad/s", -MOST),
     }
-    _positive: ClassVar[tuple[str, ...]] = (*_SupportedMass._positive, "polar_inertia", "contact_radius")
-    _not_negative: ClassVar[tuple[str, ...]] = (*_SupportedMass._not_negative, "shaft_damping")
 
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.contact_points is not None:
             points = finite_number("contact_points", self.contact_points)
-            if (
-                isinstance(self.contact_points, bool)
-                or points != int(points)
-                or not 3 <= points <= MOST_POINTS
-            ):
+            whole = not isinstance(self.contact_points, bool) and points == int(points)
+            if not (whole and 3 <= points <= MOST_POINTS):
                 raise ValueError(
                     f"contact_points = {self.contact_points}: it must be a whole number from 3 to {MOST_POINTS}, or "
                     "None for the continuous ring; use PinOnDisc for a single point"
@@ -214,24 +190,17 @@ System: TypeAlias = PinOnDisc | DiscOnDisc
 
 COLUMNS: dict[type[System], tuple[tuple[str, str], ...]] = {
     PinOnDisc: (("x", "m"), ("y", "m"), ("vx", "m/s"), ("vy", "m/s")),
-    DiscOnDisc: (
-        ("x", "m"),
-        ("y", "m"),
-        ("angle", "rad"),
-        ("vx", "m/s"),
-        ("vy", "m/s"),
-        ("spin", "rad/s"),
-    ),
+    DiscOnDisc: (("x", "m"), ("y", "m"), ("angle", "rad"), ("vx", "m/s"), ("vy", "m/s"), ("spin", "rad/s")),
 }
 """Name and unit of each state."""
 
 PARAMETERS: dict[type[System], tuple[tuple[str, str, float], ...]] = {
-    kind: tuple((name, kind._units[name], least) for name, least in kind._least)
+    kind: tuple((name, *unit_and_least) for name, unit_and_least in kind._parameters.items())
     for kind in (PinOnDisc, DiscOnDisc)
 }
 """Name, unit and smallest value of each parameter except ``contact_points``."""
 
-UNITS = DiscOnDisc._units
+UNITS = {name: unit for name, unit, _ in PARAMETERS[DiscOnDisc]}
 """Unit of each parameter of a disc or a pin."""
 
 SMALLEST_TOLERANCE = 1e-14

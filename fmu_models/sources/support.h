@@ -1,11 +1,18 @@
 /* The radial support: a spring that may harden, a stop and a damper. */
 #ifndef SUPPORT_H
 #define SUPPORT_H
+#include "variables.h"
 #include <math.h>
 
 typedef struct {
     double stiffness, damping, offset, hardening, stop_gap, stop_stiffness;
 } Support;
+
+static Support support_of(const double v[]) {
+    Support support = {v[V_stiffness], v[V_damping],  v[V_offset],
+                       v[V_hardening], v[V_stop_gap], v[V_stop_stiffness]};
+    return support;
+}
 
 static double secant_of(const Support *p, double d) {
     double secant = p->stiffness + p->hardening * d * d;

@@ -28,12 +28,6 @@ static Contact contact_of(const State *s) {
     return contact;
 }
 
-static Support support_of(const double v[]) {
-    Support support = {v[V_stiffness], v[V_damping],  v[V_offset],
-                       v[V_hardening], v[V_stop_gap], v[V_stop_stiffness]};
-    return support;
-}
-
 static void slip_of(const double v[], double slip[3]) {
     slip[0] = v[V_vx] + v[V_disc_speed] * v[V_y];
     slip[1] = v[V_vy] - v[V_disc_speed] * v[V_x];

@@ -31,8 +31,8 @@ class Annulus(IsotropicContact):
     """Contact between two circles, under a pressure that depends only on the radius.
 
     Friction is that of a :class:`reference_model.contact.contact_law.Ring`, averaged over the load by Gauss's rule,
-    which is split at the radius r₀ = U/|S| of a point at rest. Its error falls like n^(−12), to about 1e-12 for n =
-    16 rings; that of the slopes falls like n^(−6), to about 1e-7.
+    split at the radius r₀ = U/|S| of a point at rest. With n rings the error falls like n^(−12), to about 1e-12 for n
+    = 16; that of the slopes falls like n^(−6), to about 1e-7.
 
     Parameters
     ----------

@@ -15,10 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
 from scipy.special import ellipe, ellipkm1
-
-from reference_model.systems import FloatArray
 
 SMALL = 0.05
 """Parameter m below which B and D are series, because differences would lose digits."""
@@ -41,18 +38,6 @@ def mean_directions(slip: float, rim: float) -> tuple[float, float]:
         rest = complement * float(ellipkm1(complement)) if complement > 0.0 else 0.0
         by_smaller = 2.0 / math.pi * (integral - rest) / ratio
     return (by_larger, by_smaller) if faster else (by_smaller, by_larger)
-
-
-def mean_directions_at(slips: FloatArray, rims: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Like :func:`mean_directions`, for arrays of shape (k,); returns 1 and 0 at rest."""
-    ratio = np.minimum(slips, rims) / np.maximum(np.maximum(slips, rims), 1e-300)
-    m = ratio * ratio
-    by_larger = 2.0 / math.pi * ellipe(m)
-    complement = np.maximum(1.0 - m, 1e-300)  # avoids zero times infinity
-    large = 2.0 / math.pi * (ellipe(m) - complement * ellipkm1(complement)) / np.maximum(ratio, 1e-300)
-    by_smaller = np.where(m < SMALL, 0.5 * ratio * np.polyval(_B_SERIES, m), large)
-    faster = slips >= rims
-    return np.where(faster, by_larger, by_smaller), np.where(faster, by_smaller, by_larger)
 
 
 def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:

@@ -6,12 +6,9 @@ this is M <= h(F) and −M <= h(−F), with h(F) = min over u of P(u, 1) − F·
 |F| <= 1, and only the sign of M counts. Finding u is a convex Fermat-Weber problem with a pull F. If its solution is
 a vertex, u = −i·a_j, the disc begins to turn about the resting point j.
 
-Dahmen et al. measured a limit that depends on microscopic details; Weidman and Malhotra only partially confirmed how
-two-tier discs come to rest.
-
-S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71 (2005) 066602.
-P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb friction,
-2007.
+Experiments only partially confirm this: S. R. Dahmen, Z. Farkas, H. Hinrichsen and D. E. Wolf, Physical Review E 71
+(2005) 066602; P. D. Weidman and C. P. Malhotra, On the terminal motion of sliding spinning disks with uniform Coulomb
+friction, 2007.
 """
 
 from __future__ import annotations
@@ -123,7 +120,6 @@ class PointsLimit:
         return sense * (slip - 1j * self.centre), sense
 
     def factor(self, force: complex, moment: float) -> float:
-        """Return the largest multiple of ``force`` and ``moment`` that friction can hold."""
         lever = float(self.shares @ abs(self.arms - self.centre))
         most = 1.0 / max(abs(force), abs(float(self._about_centre(force, moment))) / lever)
 

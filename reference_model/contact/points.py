@@ -64,7 +64,6 @@ class Points:
         return [turn * arm for arm in self._arms]
 
     def spacing(self, point: int) -> float:
-        """Return the distance in m from a point to the nearest other point."""
         distances = abs(np.array(self._arms) - self._arms[point])
         return float(np.delete(distances, point).min())
 

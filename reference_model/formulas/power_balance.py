@@ -71,8 +71,8 @@ def power_balance(trajectory: Trajectory, *, contact: Contact | None = None) -> 
     In slip phases the friction heat is μN·∫P dt with the mean slip speed P: |w| for a pin, −F·u + M·S (per newton of
     μN) for a disc. In stick phases it is the work of the holding force and moment of eq. 6 on the engine's creep. The
     drive's work is ω times the angular impulse on the body about the axis, ∫M dt = [m·r×v + J·φ̇] + β∫r×v dt + X0∫C·y
-    dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual vanishes only if
-    friction, damping and springs are right and the integrator conserves energy.
+    dt + b∫(φ̇ − Ω)dt, where C is the force of the support over its deflection. So the residual shows errors in any
+    force, and whether the integrator conserves energy.
 
     The integrals are those of a quintic spline through the samples of each phase, with an error of sixth order in the
     sampling interval, or lower near zero slip and where a stop begins. Raises ``ValueError`` for a single time.
@@ -152,14 +152,9 @@ def _motion(body: System, state: FloatArray) -> tuple[ComplexArray, FloatArray, 
 
 
 def _mean_slip(law: Contact, u: ComplexArray, relative_spin: FloatArray, angle: FloatArray) -> FloatArray:
-    """Return the mean slip speed from the power of friction, shape (n,)."""
-    result = np.empty(len(u))
-    for i, (slip, spin, phi) in enumerate(
-        zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
-    ):
-        force, moment = law.force_and_moment(slip, spin, phi)
-        result[i] = moment * spin - (force.conjugate() * slip).real
-    return result
+    states = zip(u.tolist(), relative_spin.tolist(), angle.tolist(), strict=True)
+    force, moment = np.transpose([law.force_and_moment(*state) for state in states])
+    return np.asarray(moment.real * relative_spin - (force.conj() * u).real)
 
 
 def _spans(trajectory: Trajectory) -> list[tuple[str, FloatArray, FloatArray]]:

@@ -135,8 +135,7 @@ def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
     """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip, where ``allowed`` >= 0.
 
-    The larger of slip and rim is 1, which keeps the relative accuracy. The two halves meet at the kink of a ring's
-    friction.
+    The larger of slip and rim is 1, to keep the relative accuracy. The halves meet at the kink of a ring's friction.
     """
     end = 1.0 if allowed(1.0, 1.0) >= 0.0 else zero_between(lambda q: allowed(1.0, q), 0.0, 1.0)
     for q in zeros_between(lambda q: balance(1.0, q), 0.0, end):

@@ -52,7 +52,6 @@ class Creep:
 
     @property
     def way_left(self) -> float:
-        """Slip distance that remains."""
         return sum(size / rate for size, rate in (self.slow, self.fast))
 
     def slip(self, delays: FloatArray) -> FloatArray:
@@ -106,8 +105,8 @@ class Body(ABC):
     def creeping(self, motion: Coordinates, y: list[float]) -> Creep | None:
         """Return the creep in the coordinates ``motion`` if slip decays forever and is almost over; else None.
 
-        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. If
-        only the body turns, b and c are constant to first order in the distance, so s'' + b·s' + c·s = 0.
+        The excess e of the pull over friction falls by c times the distance, and slip changes at the rate e − b·s. To
+        first order in the distance b and c are constant, so s'' + b·s' + c·s = 0.
         """
         d, s = motion.slip, motion.speed(y)
         if not 0.0 < s < CREEP or not self.sticky or not self.autonomous:
@@ -138,12 +137,11 @@ class Body(ABC):
         return creep if left * creep.way_left <= ERROR * self.run.local_tolerance else None
 
     def creep(self, t: float, y: list[float], creep: Creep) -> tuple[float, list[float]]:
-        """Follow creep to the end of the run; the phase remains slip."""
         run, s = self.run, float(creep.slip(np.zeros(1))[0])
 
         def sample(times: FloatArray) -> FloatArray:
             delays = times - t
-            return self.crept(y, delays, creep.slip(delays) / s, creep.way(delays) / s)
+            return self.carried(y, delays, creep.slip(delays) / s, creep.way(delays) / s)
 
         run.record(run.end, sample)
         return run.end, sample(np.array([run.end]))[:, 0].tolist()
@@ -152,8 +150,13 @@ class Body(ABC):
         """Turn with the master disc for the time ``held`` until release, or to the end of the run."""
         self.run.enter("stick", t, y)
         release = min(t + held, self.run.end)
-        self.run.record(release, lambda times: self.turned(y, times - t))
-        y = self.turned(y, np.array([release - t]))[:, 0].tolist()
+
+        def sample(times: FloatArray) -> FloatArray:
+            none = np.zeros_like(times)
+            return self.carried(y, times - t, none, none)
+
+        self.run.record(release, sample)
+        y = sample(np.array([release]))[:, 0].tolist()
         if release < self.run.end:
             self.run.enter("slip", release, y)
             return self.begin_to_slip(release, y)
@@ -164,19 +167,17 @@ class Body(ABC):
         """Return how long friction holds the body at rest at ``y``."""
 
     @abstractmethod
-    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        """Return the unknowns of a stuck body after ``delays``, shape (unknowns, n)."""
-
-    @abstractmethod
-    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
-        """Return the unknowns of a creeping body after ``delays``, shape (unknowns, n).
+    def carried(
+        self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray
+    ) -> FloatArray:
+        """Return the unknowns of a body that sticks or creeps after ``delays``, shape (unknowns, n).
 
         The direction of slip is fixed on the master disc. ``slip`` and ``way`` are in units of the slip of ``y``.
         """
 
     @abstractmethod
     def begin_to_slip(self, t: float, y: list[float]) -> tuple[float, list[float]]:
-        """Follow slip as it grows from rest."""
+        """Follow slip from rest."""
 
 
 class PinBody(Body):
@@ -195,7 +196,7 @@ class PinBody(Body):
         slow = run.thresholds.slow_slip * g
         surfaces = stop_surfaces(motion.support)
         super().__init__(
-            run, Coordinates(rates, rates, 2, lambda _: slow, abs(omega) + 1.0, surfaces=surfaces), motion
+            run, Coordinates(rates, 2, lambda _: slow, abs(omega) + 1.0, surfaces=surfaces), motion
         )
 
     def holds_for(self, y: Sequence[float]) -> float:
@@ -203,12 +204,9 @@ class PinBody(Body):
         z = complex(y[0], y[1])
         return release_delay(self.motion, z) if can_hold(self.motion, z) else 0.0
 
-    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        z = complex(y[0], y[1]) * np.exp(1j * self.motion.disc_speed * delays)
-        none = np.zeros_like(delays)
-        return np.array((z.real, z.imag, none, none))
-
-    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+    def carried(
+        self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray
+    ) -> FloatArray:
         turn = np.exp(1j * self.motion.disc_speed * delays)
         w = complex(y[2], y[3])
         z = (complex(y[0], y[1]) + way * w) * turn
@@ -249,19 +247,12 @@ class DiscBody(Body):
         self.motion = motion
         slow = run.thresholds.slow_slip * motion.centre.friction
         surfaces += stop_surfaces(motion.centre.support)
-        many = motion.at_once.rates
-        coordinates = Coordinates(
-            motion.rates, many, 3, lambda _: slow, motion.pace, angle=2, surfaces=surfaces
-        )
+        coordinates = Coordinates(motion.rates, 3, lambda _: slow, motion.pace, angle=2, surfaces=surfaces)
         super().__init__(run, coordinates, motion.centre)
 
-    def turned(self, y: Sequence[float], delays: FloatArray) -> FloatArray:
-        turn = self.motion.centre.disc_speed * delays
-        z = complex(y[0], y[1]) * np.exp(1j * turn)
-        none = np.zeros_like(delays)
-        return np.array((z.real, z.imag, y[2] + turn, none, none, none))
-
-    def crept(self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray) -> FloatArray:
+    def carried(
+        self, y: Sequence[float], delays: FloatArray, slip: FloatArray, way: FloatArray
+    ) -> FloatArray:
         turn = self.motion.centre.disc_speed * delays
         u = complex(y[3], y[4])
         z = (complex(y[0], y[1]) + way * u) * np.exp(1j * turn)
@@ -299,18 +290,12 @@ class RingBody(DiscBody):
     """A disc with an isotropic contact."""
 
     def __init__(self, run: Run, motion: DiscMotion, contact: IsotropicContact) -> None:
-        super().__init__(
-            run,
-            motion,
-            tuple(
-                SwitchingSurface(partial(motion.lead_over_rim, radius)) for radius in contact.resting_radii
-            ),
-        )
+        rims = (SwitchingSurface(partial(motion.lead_over_rim, radius)) for radius in contact.resting_radii)
+        super().__init__(run, motion, tuple(rims))
         self.contact = contact
         self.stuck = stuck_centre(motion, contact) if self.sticky else None
 
     def holds_for(self, y: Sequence[float]) -> float:
-        """Like :meth:`Body.holds_for`, with the friction that the moment leaves for the force."""
         z = complex(y[0], y[1])
         return release_delay(self.stuck, z) if self.stuck is not None and can_hold(self.stuck, z) else 0.0
 

@@ -9,11 +9,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import cast
+from dataclasses import dataclass
 
-from reference_model.contact.at_once import at_once
 from reference_model.contact.contact_law import Contact
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.systems import DiscOnDisc
@@ -54,10 +51,6 @@ class DiscMotion:
         a = self.centre.pull(x + 1j * y, u) + g * force
         spin_up = self.turning_pull(r) + g * moment / (self.length * self.gyration)
         return ux - omega * y, uy + omega * x, omega + r / self.gyration, a.real, a.imag, spin_up
-
-    @cached_property
-    def at_once(self) -> DiscMotion:
-        return replace(self, contact=cast(Contact, at_once(self.contact)))
 
     def lead_over_rim(self, radius: float, unknowns: Sequence[float]) -> float:
         """Return U − r|S| for a radius in the contact's unit of length: zero if a point of that circle rests."""

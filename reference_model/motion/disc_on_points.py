@@ -1,7 +1,7 @@
 """A disc on single points: it slips, pivots about a point at rest, or sticks.
 
-A point that comes to rest while the disc turns about it stays at rest as long as its share of friction suffices: a
-pivot phase (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
+A point at rest about which the disc turns stays at rest while its share of friction suffices: a pivot phase
+(:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 """
 
 from __future__ import annotations

@@ -26,9 +26,9 @@ class Units:
     def of(cls, system: System, state: FloatArray) -> Units:
         """Return the units for the motion of ``system`` from ``state``.
 
-        Time is scaled by the faster of springs and master disc, or by the dampers, or by the decay of slip. Length is
-        scaled by the motion of the centre, because a fast spin must not hide it. Hardening and a stop shorten both
-        units by the same factor if the motion may reach them.
+        The faster of springs and master disc scales time, otherwise the dampers or the decay of slip. The motion of
+        the centre scales length, because a fast spin must not hide it. Hardening and a stop shorten both units by the
+        same factor if the motion may reach them.
         """
         velocities = system.state_size // 2
         friction = system.friction_force / system.mass

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
@@ -34,11 +34,6 @@ class OnePoint:
     motion: DiscMotion
     contact: Points
     point: int
-
-    @property
-    def at_once(self) -> OnePoint:
-        motion = self.motion.at_once
-        return OnePoint(motion, cast(Points, motion.contact), self.point)
 
     @property
     def most(self) -> float:
@@ -72,7 +67,6 @@ class OnePoint:
         return (*carried, spin_up + torque)
 
     def holding(self, unknowns: Sequence[float]) -> complex:
-        """Return the friction over the mass that keeps the point at rest."""
         _, _, arm, free = self._without_friction(unknowns, 0j)
         return self._holding(arm, free)
 
@@ -96,7 +90,7 @@ class OnePoint:
         return np.array((e.real, e.imag)) / abs(e)
 
     def grip(self, unknowns: Sequence[float]) -> float:
-        """Return the relative margin of the point's friction over that required to hold it."""
+        """Return the relative margin of the point's friction."""
         return 1.0 - abs(self.holding(unknowns)) / self.most
 
     def gain(self, unknowns: Sequence[float]) -> float:
@@ -118,20 +112,12 @@ class OnePoint:
         def slow_slip(y: Sequence[float]) -> float:
             return min(slow, passing * abs(y[3]))
 
-        many = self.at_once.slipping_rates
-        return Coordinates(self.slipping_rates, many, 2, slow_slip, turning=3, **self._common)
+        return Coordinates(self.slipping_rates, 2, slow_slip, turning=3, **self._common)
 
     def pivoting(self, thresholds: Thresholds) -> Coordinates:
-        slow, many = thresholds.slow_slip * self.motion.centre.friction, self.at_once.pivoting_rates
-        return Coordinates(
-            self.pivoting_rates,
-            many,
-            1,
-            lambda _: slow,
-            leverage=self.leverage,
-            grip=self.grip,
-            **self._common,
-        )
+        slow = thresholds.slow_slip * self.motion.centre.friction
+        own: dict[str, Any] = {"leverage": self.leverage, "grip": self.grip}
+        return Coordinates(self.pivoting_rates, 1, lambda _: slow, **own, **self._common)
 
     @property
     def _common(self) -> dict[str, Any]:

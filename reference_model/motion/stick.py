@@ -44,7 +44,7 @@ def release_delay(motion: SlipMotion, z: complex) -> float:
     """Return how long a pin held at ``z`` sticks, in s; inf for permanent stick.
 
     Eq. 7 with equality is |p + q·exp(iωt)| = g with the constant pull p = k²X₀ of the offset and the turning pull q
-    of the position: a single harmonic, whose first upward crossing has a closed form on a linear support.
+    of the position. On a linear support its first upward crossing has a closed form.
     """
     if not motion.support.linear:
         return _first_release(motion, z)
@@ -69,9 +69,9 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
     """Return the delay of :func:`release_delay` by a search for the first root over one turn of the disc.
 
     While the disc turns by h the margin of friction over the pull changes by at most Λh. Relative to the disc the
-    offset moves, so Λ = |X0|·T with the tangent stiffness T at the largest deflection on the way. Relative to the
-    ground the pin moves, so Λ = |z|·(T + |ω² − iωβ/m|). An interval where this allows a negative margin is halved,
-    the first half first, down to NARROW.
+    offset moves, so Λ = |X0|·T with the tangent stiffness T at the largest deflection on the way; relative to the
+    ground the pin moves, so Λ = |z|·(T + |ω² − iωβ/m|). Intervals that allow a negative margin are halved down to
+    NARROW.
     """
     if motion.disc_speed == 0.0 or motion.support.offset == 0.0:
         return math.inf  # the pull turns but keeps its size
@@ -115,8 +115,8 @@ def _first_release(motion: SlipMotion, z: complex) -> float:
 def stuck_centre(motion: DiscMotion, contact: IsotropicContact) -> SlipMotion | None:
     """Return the stuck pin equivalent to the centre of a stuck disc; None if friction cannot hold the shaft's moment.
 
-    Its friction is the force on the limit surface at that moment. While U = cos α falls and S ~ sin α grows, the
-    moment on this surface grows and the force falls.
+    Its friction is the force on the limit surface at that moment; as S ~ sin α grows, the moment grows and the force
+    falls.
     """
     g = motion.centre.friction
     asked = abs(motion.turning_pull(0.0)) * motion.gyration * motion.length  # moment over mass, N m/kg
@@ -181,10 +181,10 @@ def slip_from_rest(motion: SlipMotion, z: complex, *, terms: int = 20, tolerance
     """Return the slip of a pin from rest at ``z`` if the pull is at least friction; linear supports only.
 
     With w = s·exp(iθ) and b = a·exp(−iθ) the motion is ṡ = Re b − g, s·θ̇ = Im b. If the pull exceeds friction, slip
-    grows linearly and the series converges. If they are equal (release from stick), slip grows quadratically with its
-    direction slaved to the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. In both
-    cases order t^k satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k. Within ``duration`` its last terms
-    stay below ``tolerance``.
+    grows linearly and the series converges. If they are equal (release from stick), slip grows quadratically along
+    the pull, and the series is asymptotic, with an error like exp(−2g/(κt)), κ = d|a|/dt. In both cases order t^k
+    satisfies (|a₀| + k·s₁)·θ_k = known, (k+1)·s_{k+1} = (Re b)_k. Within ``duration`` the last terms stay below
+    ``tolerance``.
     """
     omega = 1j * motion.disc_speed
     position = np.zeros(terms + 1, dtype=complex)

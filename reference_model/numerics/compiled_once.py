@@ -1,7 +1,7 @@
 """Functions called from Python, compiled once per machine and kept on disk until their sources change.
 
-numba's cache checks only the file of the function itself, although functions and constants of other files are
-compiled into it. So each package keeps compiled functions in a folder named after a digest of its sources.
+numba's cache checks only the file of the function itself, although it compiles functions and constants of other files
+into it. So each package keeps compiled functions in a folder named after a digest of its sources.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class CompiledOnce:
         digest_of(package)
 
     def __call__(self, *arguments: Any) -> None:
-        """Call the function; compile or load it first for new argument types."""
+        """Call the function, compiled or loaded for new argument types."""
         kind = tuple(map(numba.typeof, arguments))
         if kind not in self.kinds:
             self.kinds[kind] = compiled_for(kind, self.py_func, self.package, nogil=True)

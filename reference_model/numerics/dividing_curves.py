@@ -1,8 +1,8 @@
 """Curves in a rectangle where a function of two variables changes sign.
 
-A grid locates them. Then each curve is followed: its next point is the zero of the function on an arc ahead of the
-last one. So the function need not be smooth, and may be constant away from its zeros. For such a function the error
-of contourpy is 1e-2 of the rectangle with 66,000 values; here it is 5e-13 with 3,400.
+A grid locates them. Then the next point of each curve is the zero on an arc ahead of the last one. So the function
+may be constant away from its zeros: the error of contourpy is then 1e-2 of the rectangle with 66,000 values, and here
+5e-13 with 3,400.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def dividing_curves(
     low, high : array of shape (2,)
         Limits of the rectangle.
     cells
-        Grid cells in each direction. Points of a curve are at most one cell apart, and smaller curves may be missed.
+        Grid cells in each direction, the largest distance of points on a curve. Smaller curves may be missed.
     error
         Allowed error of a point across the curve, as a fraction of the rectangle.
 

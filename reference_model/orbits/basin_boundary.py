@@ -1,8 +1,8 @@
 """The boundary between the basins of a pin's self-centred equilibrium and its whirl.
 
 If a saddle orbit with a stick phase lies between the two, the boundary is its stable set: the starts that are
-eventually released at the orbit's angle. The angle of a release depends smoothly on the start, so a point of the
-boundary is a root, which end states bracket.
+eventually released at the orbit's angle. This angle depends smoothly on the start, so a point of the boundary is a
+root, which end states bracket.
 """
 
 from __future__ import annotations
@@ -146,8 +146,8 @@ def basin_boundary(
     others : array-like of shape (4,)
         Supplies the other components.
     cells
-        Grid cells in each direction. Points of a curve are at most one cell apart, and curves that no grid edge
-        crosses exactly once are missed.
+        Grid cells in each direction, the largest distance of points on a curve. Curves that no grid edge crosses
+        exactly once are missed.
 
     """
     separatrix = Separatrix.of(orbit)

@@ -1,8 +1,8 @@
 """All periodic motions of a pin with one stick phase per period, by their return map.
 
-At a release the pull equals friction, (7) with equality. So one number summarises the motion before: the lag α of the
-pull behind that of the offset, between 0 and π. The fixed points of the map from one α to the next are the orbits,
-and its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
+At a release the pull equals friction, (7) with equality. So one number contains the motion before: the lag α of the
+pull behind that of the offset, between 0 and π. Orbits are the fixed points of the map from one α to the next, and
+its slopes their multipliers. The map has gaps, where the pin never sticks again or sticks permanently, and jumps
 where the next stick phase vanishes.
 """
 
@@ -220,8 +220,8 @@ def stick_slip_orbits(
 ) -> tuple[StickSlipOrbit, ...]:
     """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
 
-    Stable orbits are stick-slip cycles. An orbit with a multiplier > 1 is a saddle, whose stable set separates the
-    starts that lead to two other motions. There are no orbits without offset or friction, or on a disc at rest.
+    Stable orbits are stick-slip cycles. The stable set of a saddle, with a multiplier > 1, separates starts that lead
+    to two other motions. There are no orbits without offset or friction, or on a disc at rest.
     Raises ``ValueError`` if an argument is invalid, or the support is not linear.
     """
     require_system(pin, PinOnDisc)

@@ -102,10 +102,8 @@ def by_bisection(shock: Shock) -> float:
     the size of ``shock``.
     """
     pin, rest, angle = shock.pin, _rest(shock.pin), np.array([shock.direction])
-    low, high = (
-        np.array([0.9 * shock.speed]),
-        np.array([1.15 * shock.speed]),
-    )  # asymmetric, so that no midpoint is the shock itself
+    # Asymmetric, so no midpoint is the shock itself.
+    low, high = (np.array([factor * shock.speed]) for factor in (0.9, 1.15))
     before, behind = (bool(_whirls(pin, rest, angle, sizes)[0]) for sizes in (low, high))
     if before or not behind:
         raise ValueError(

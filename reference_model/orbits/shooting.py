@@ -3,8 +3,8 @@
 With an isotropic contact the angle of a disc drops out: position, velocity and spin recur after a period, without
 offset up to a rotation about the axis.
 
-Newton's method is written out, because ``scipy.optimize.root`` needs 51 to 63 simulations to fail without an orbit
-near the guess, compared with 10 to 16 here.
+Newton's method is written out, because ``scipy.optimize.root`` fails only after 51 to 63 simulations, compared with
+10 to 16 here.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def whirl_orbit(
     """Return the whirl of a pin or disc with an offset, a periodic orbit close to a circle, by shooting.
 
     Newton's method solves Φ_T(x, y, vx, vy) = (x, y, vx, vy) for x, vx, vy, the spin of a disc and the period T, at
-    the y of the guess. It also finds orbits with stick phases.
+    the y of the guess. Orbits may have stick phases.
 
     Raises ``ValueError`` if a circle to start from does not exist, or a disc rests on single points; ``RuntimeError``
     if Newton's method does not converge.
@@ -62,8 +62,8 @@ def whirl_orbit(
     simulate
         The engine, such as ``functools.partial(simulate, contact=...)`` for another friction law.
     guess
-        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset. If
-        the whirl does not cross the x axis, use :meth:`Orbit.from_the_right` of the orbit for a nearby offset.
+        Start of the iteration, such as the orbit for a nearby load; by default the largest circle without offset. For
+        a whirl that does not cross the x axis, use :meth:`Orbit.from_the_right` for a nearby offset.
     at_crossing
         Fixed value of x at y = 0, in m, with the load μN as an unknown, so a branch can turn at folds.
     tolerance, samples
@@ -103,8 +103,8 @@ def modulated_cycle(
 ) -> Orbit:
     """Return the cycle of a whirl whose radius oscillates, X0 = 0 only, by shooting (Fig. 11).
 
-    After the period T of the modulation the motion repeats, rotated about the axis by an angle θ. The orbit starts at
-    an extreme of the radius, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
+    After the period T of the modulation the motion repeats, rotated by an angle θ. The orbit starts at an extreme of
+    the radius, y = 0 and vx = 0, and Newton's method solves for x, vy, spin, T and θ.
 
     ``guess`` is the cycle for nearby parameters, or a simulation that ends close to the cycle, covers more than a
     period of the modulation and resolves a revolution. Other arguments are those of :func:`whirl_orbit`.

@@ -1,8 +1,7 @@
 """Stability and existence boundaries of a disc's whirl, as curves in a plane of two parameters.
 
-This is for X0 = 0 and any isotropic friction law. The ratio of the slip speeds of centre and rim determines a whirl
-up to its torsional balance. With two parameters of the disc this makes three unknowns for two equations, the balance
-and one of
+For X0 = 0 and any isotropic friction law the ratio of the slip speeds of centre and rim determines a whirl up to its
+torsional balance. With two parameters of the disc these are three unknowns for two equations, the balance and one of
 
 - *Hopf*: the Hurwitz determinant is zero, so a pair of eigenvalues ±iν is imaginary;
 - *fold*: the constant coefficient is zero, so two whirls meet and an eigenvalue is zero;
@@ -15,7 +14,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, lru_cache
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -133,9 +132,9 @@ def boundaries(
 ) -> tuple[Boundary, ...]:
     """Return all curves of a ``kind``, "Hopf", "fold" or "onset", in ``plane``.
 
-    The search starts from ``LINES`` lines in each direction and misses only closed curves between them. ``step`` is
-    the largest distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the
-    parameters. Raises ``ValueError`` if the kind is unknown, or the disc rests on single points.
+    The search misses only closed curves between its ``LINES`` lines in each direction. ``step`` is the largest
+    distance of neighbouring points, in units of the ranges; ``contact`` None means the law of the parameters. Raises
+    ``ValueError`` if the kind is unknown, or the disc rests on single points.
     """
     return tuple(
         boundary for condition in _conditions(plane, kind, contact) for boundary in _traced(condition, step)
@@ -272,8 +271,12 @@ class _Condition:
 
         inertias = np.linspace(self.plane.lower[1 - across], self.plane.upper[1 - across], NODES)
         for nearness in _roots(lambda nearness: self.balance(unknowns(float(inertias[0]), nearness)), ratios):
-            along = partial(unknowns, nearness=nearness)
-            yield from map(along, _roots(partial(_composed, self.margin, along), inertias))
+
+            def margin_at(inertia: float, nearness: float = nearness) -> float:
+                return self.margin(unknowns(inertia, nearness))
+
+            for inertia in _roots(margin_at, inertias):
+                yield unknowns(inertia, nearness)
 
     @staticmethod
     def pair(across: int, value: float, other: float) -> tuple[float, float]:
@@ -308,12 +311,6 @@ def _traced(condition: _Condition, step: float) -> Iterator[Boundary]:
             np.array([condition.alpha(point) for point in curve.points]),
             curve.closed,
         )
-
-
-def _composed(
-    outer: Callable[[FloatArray], float], inner: Callable[[float], FloatArray], value: float
-) -> float:
-    return outer(inner(value))
 
 
 def _roots(function: Callable[[float], float], nodes: FloatArray) -> Iterator[float]:

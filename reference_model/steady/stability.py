@@ -75,10 +75,9 @@ def equilibrium_eigenvalues(
 ) -> tuple[complex, ...]:
     """Return the eigenvalues of an equilibrium in space with a sliding contact: four for a pin, five for a disc.
 
-    Friction resists the radial velocity of a pin like a damper μN/(|ω|ρ*) and its tangential velocity not at all. So
-    its eigenvalues are the roots of mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and (3) is always stable if β > 0,
-    as the paper says below (5). For a disc, and on a nonlinear support, they are those of
-    :func:`jacobian_without_angle`.
+    Friction resists only the radial velocity of a pin, like a damper μN/(|ω|ρ*). So its eigenvalues are the roots of
+    mλ² + βλ + C and mλ² + (β + μN/(|ω|ρ*))λ + C, and (3) is always stable if β > 0, as the paper says below (5). For
+    a disc, and on a nonlinear support, they are those of :func:`jacobian_without_angle`.
 
     ``state``, shape (6,), is that of a disc with its centre at rest, see
     :func:`reference_model.self_centred_equilibria`. Raises ``ValueError`` as :func:`sliding_jacobian`, and if a pin

@@ -31,13 +31,17 @@ class SelfCentredEquilibrium:
     """A pin or disc whose centre rests in space while the master disc slides below it (3), (24).
 
     The position ``x``, ``y`` is in m. ``eigenvalues`` are in 1/s, slowest decay first: four for a pin, five for a
-    disc, without its angle. The equilibrium is ``stable`` if all small deviations decay.
+    disc, without its angle.
     """
 
     x: float
     y: float
     eigenvalues: tuple[complex, ...]
-    stable: bool
+
+    @property
+    def stable(self) -> bool:
+        """True if all small deviations decay."""
+        return self.eigenvalues[0].real < 0.0
 
     @property
     def state(self) -> FloatArray:
@@ -63,13 +67,17 @@ class Whirl:
 
     ``radius`` is in m, ``frequency`` in rad/s, negative if clockwise. ``eigenvalues`` are in 1/s in the frame that
     turns with the whirl: first the exact zero of the free phase, then three for a pin or four for a disc, slowest
-    decay first. The whirl is ``stable`` if all small deviations decay, apart from a shift in phase.
+    decay first.
     """
 
     radius: float
     frequency: float
     eigenvalues: tuple[complex, ...]
-    stable: bool
+
+    @property
+    def stable(self) -> bool:
+        """True if all small deviations decay, apart from a shift in phase."""
+        return self.eigenvalues[1].real < 0.0
 
     @property
     def state(self) -> FloatArray:
@@ -116,19 +124,18 @@ def self_centred_equilibria(
 ) -> tuple[SelfCentredEquilibrium, ...]:
     """Return every equilibrium of ``system`` with the centre at rest in space and a sliding contact.
 
-    A pin has at most one: that of (3). It has none
+    A pin has at most one, that of (3), but none
 
-    - if μN >= C·|X0|; at equality the pin would stick on the axis;
-    - if ω = 0 with friction: the pin sticks;
-    - if C = 0: with friction nothing balances it, and without friction every position is an equilibrium.
+    - if μN >= C·|X0|; at equality it would stick on the axis;
+    - if ω = 0 with friction, because it sticks;
+    - if C = 0: friction is not balanced, or without friction every position is an equilibrium.
 
     A disc on a ring has at most one: at a given radius the torsional balance allows one spin, and the balance of
-    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function of slip. It
-    has none
+    forces, (Cρ)² + (μN·F)² = (C·X0)², one radius, because F and M are derivatives of one convex function. It has none
 
-    - if friction holds the disc at rest on the axis, or on a master disc at rest;
+    - if friction holds it at rest on the axis, or on a master disc at rest;
     - if C = 0 with ω = 0 or without friction, where every position is an equilibrium;
-    - if b = 0 without friction, where every spin is an equilibrium.
+    - if b = 0 without friction, where every spin is one.
 
     For a nonlinear support replace C·|X0| by its force at the deflection |X0|, and the balance by ρ² + d² = X0², with
     the deflection d at the force μN·F.
@@ -139,27 +146,15 @@ def self_centred_equilibria(
     require_system(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # raises if a contact is given
-        return _equilibria_of_pin(system)
-    return _equilibria_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
-
-
-def _equilibria_of_pin(pin: PinOnDisc) -> tuple[SelfCentredEquilibrium, ...]:
-    if _why_no_equilibrium_of_pin(pin) is not None:
-        return ()
-    x, y = equilibrium_position(pin)
-    eigenvalues = equilibrium_eigenvalues(pin)
-    return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=eigenvalues, stable=_decay(eigenvalues)),)
-
-
-def _equilibria_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningEquilibrium, ...]:
+        if _why_no_equilibrium_of_pin(system) is not None:
+            return ()
+        x, y = equilibrium_position(system)
+        return (SelfCentredEquilibrium(x=x, y=y, eigenvalues=equilibrium_eigenvalues(system)),)
+    law = isotropic_contact_of(system, contact, "steady motions")
     found = []
-    for z, spin in resting_positions(disc, law):
-        eigenvalues = equilibrium_eigenvalues(disc, resting(z.real, z.imag, spin), law)
-        found.append(
-            SpinningEquilibrium(
-                x=z.real, y=z.imag, spin=spin, eigenvalues=eigenvalues, stable=_decay(eigenvalues)
-            )
-        )
+    for z, spin in resting_positions(system, law):
+        eigenvalues = equilibrium_eigenvalues(system, resting(z.real, z.imag, spin), law)
+        found.append(SpinningEquilibrium(x=z.real, y=z.imag, spin=spin, eigenvalues=eigenvalues))
     return tuple(found)
 
 
@@ -174,19 +169,18 @@ def whirls(system: DiscOnDisc, contact: IsotropicContact | None = None) -> tuple
 def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whirl, ...]:
     """Return every motion of ``system`` on a circle about the axis with permanent slip; X0 = 0 only.
 
-    A pin has at most one: that of (11). It has none
+    A pin has at most one, that of (11), but none
 
-    - if |ω| <= k: the pin would overtake the disc, and friction would brake it;
+    - if |ω| <= k: it would overtake the disc, and friction would brake it;
     - if β = 0: with friction nothing limits the radius, and without friction every radius is possible;
-    - if μN = 0: nothing drives it;
-    - if C = 0: nothing holds the pin on a circle.
+    - if μN = 0, because nothing drives it, or C = 0, because nothing holds it on a circle.
 
-    A disc may have several, listed from the largest. They have the pin's frequency ±k and smaller radii. The same
+    A disc may have several, listed from the largest, with the pin's frequency ±k and smaller radii. The same
     conditions hold, and the load must reach :func:`smallest_load_with_whirl`.
 
     On a nonlinear support the frequency grows with the circle, and the pin's circle, with the speed μN/β, is a whirl
-    only if the disc turns faster. A disc's friction acts only partly along the circle, so its circles are slower, and
-    it may whirl where a pin sticks.
+    only if the disc turns faster. A disc's friction acts only partly along the circle, so it may whirl where a pin
+    sticks.
 
     Raises ``ValueError`` if the offset is not zero; otherwise arguments and errors are those of
     :func:`self_centred_equilibria`.
@@ -194,40 +188,19 @@ def whirls(system: System, contact: IsotropicContact | None = None) -> tuple[Whi
     _require_centred(system)
     if isinstance(system, PinOnDisc):
         contact_of(system, contact)  # raises if a contact is given
-        return _whirls_of_pin(system)
-    return _whirls_of_disc(system, isotropic_contact_of(system, contact, "steady motions"))
-
-
-def _whirls_of_pin(pin: PinOnDisc) -> tuple[Whirl, ...]:
-    if _why_no_whirl_of_pin(pin) is not None:
-        return ()
-    eigenvalues = whirl_eigenvalues(pin)
-    return (
-        Whirl(
-            radius=whirl_radius(pin),
-            frequency=whirl_frequency(pin),
-            eigenvalues=eigenvalues,
-            stable=_decay(eigenvalues[1:]),  # without the phase
-        ),
-    )
-
-
-def _whirls_of_disc(disc: DiscOnDisc, law: IsotropicContact) -> tuple[SpinningWhirl, ...]:
-    if _why_no_circle_of_disc(disc) is not None:
+        if _refusal(whirl_radius, system) is not None:
+            return ()
+        radius, frequency = whirl_radius(system), whirl_frequency(system)
+        return (Whirl(radius=radius, frequency=frequency, eigenvalues=whirl_eigenvalues(system)),)
+    law = isotropic_contact_of(system, contact, "steady motions")
+    if _why_no_circle_of_disc(system) is not None:
         return ()
     found = []
-    for radius, spin in circles(disc, law):
-        frequency = math.copysign(circling_speed(pin_of(disc), radius), disc.disc_speed)
-        eigenvalues = whirl_eigenvalues(disc, circling(radius, frequency, spin), law)
-        found.append(
-            SpinningWhirl(
-                radius=radius,
-                frequency=frequency,
-                spin=spin,
-                eigenvalues=eigenvalues,
-                stable=_decay(eigenvalues[1:]),
-            )
-        )
+    for radius, spin in circles(system, law):
+        frequency = math.copysign(circling_speed(pin_of(system), radius), system.disc_speed)
+        state = circling(radius, frequency, spin)
+        eigenvalues = whirl_eigenvalues(system, state, law)
+        found.append(SpinningWhirl(radius=radius, frequency=frequency, spin=spin, eigenvalues=eigenvalues))
     return tuple(found)
 
 
@@ -259,7 +232,7 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
     if whirls(system, contact):
         return None
     if isinstance(system, PinOnDisc):
-        return _why_no_whirl_of_pin(system)
+        return _refusal(whirl_radius, system)
     reason = _why_no_circle_of_disc(system)
     if reason is not None:
         return reason
@@ -277,8 +250,8 @@ def why_no_whirl(system: System, contact: IsotropicContact | None = None) -> str
 def smallest_load_with_whirl(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the smallest μN in N of a whirl of a disc without offset; zero if a whirl exists at every load.
 
-    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or that of a fold,
-    where two whirls meet. It does not depend on ``friction_force``. Raises ``ValueError`` if whirls do not exist at
+    It is that of a whirl of zero radius, :func:`reference_model.steady.stability.onset_load`, or of a fold, where two
+    whirls meet; ``friction_force`` does not matter. Raises ``ValueError`` if whirls do not exist at
     any load, or if the support is not linear, where whirls may begin and end at several loads.
     """
     law = isotropic_contact_of(disc, contact, "the smallest load")
@@ -292,10 +265,6 @@ def _why_no_equilibrium_of_pin(pin: PinOnDisc) -> str | None:
     if reason is None and 0.0 < pin.friction_force == limit:
         return f"friction_force = {pin.friction_force:g} N = {largest_load_in_words(pin)}: the pin sticks on the axis"
     return reason
-
-
-def _why_no_whirl_of_pin(pin: PinOnDisc) -> str | None:
-    return _refusal(whirl_radius, pin)
 
 
 def _why_no_circle_of_disc(disc: DiscOnDisc) -> str | None:
@@ -318,7 +287,3 @@ def _require_centred(system: System) -> None:
             f"offset = {system.offset:g} m: with an offset the periodic orbit is not a circle about the axis; "
             "use whirl_orbit(), which finds it by shooting"
         )
-
-
-def _decay(eigenvalues: tuple[complex, ...]) -> bool:
-    return all(value.real < 0.0 for value in eigenvalues)

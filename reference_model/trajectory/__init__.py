@@ -55,8 +55,7 @@ class StepCount:
 class Phase:
     """A time span of slip, stick or pivoting, which ends where the next one starts.
 
-    ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about one of several contact
-    points, which rests on the master disc.
+    ``initial_state`` is the state at ``start``. In a "pivot" phase the disc turns about a resting contact point.
     """
 
     kind: Literal["slip", "pivot", "stick"]

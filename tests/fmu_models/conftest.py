@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from units_in_c import Instance
 
-from fmu_models import MODELS, export
+from fmu_models import MODELS, archive, export
 from fmu_models.archive import compile_library, compiler, write_sources
 
 DRIVER = Path(__file__).with_name("driver.c")
@@ -18,6 +18,10 @@ DRIVER = Path(__file__).with_name("driver.c")
 def needs_compiler():
     if compiler() is None:
         pytest.skip("there is no C compiler")
+    # Optimising takes longer than all tests together.
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(archive, "OPTIONS", tuple("-O0" if one == "-O2" else one for one in archive.OPTIONS))
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -222,10 +222,10 @@ def put(unit, values):
     unit.state = [values.get(one.name, 0.0) for one in unit.model.states]
 
 
-@pytest.mark.parametrize("lacking", [1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-9])
+@pytest.mark.parametrize("lacking", [1e-5, 1e-6, 1e-7, 1e-9])
 def test_pin_is_released_briefly_if_friction_is_slightly_too_small(instance, lacking):
     """Friction is smaller than the maximum of (7) in a turn by a small share."""
-    radius, angles = 0.1, np.linspace(0.0, 2.0 * np.pi, 100_001)
+    radius, angles = 0.1, np.linspace(0.0, 2.0 * np.pi, 20_001)
     squared = squared_holding_force(FIG5, radius, angles)
     pin = replace(FIG5, friction_force=(1.0 - lacking) * np.sqrt(squared.max()))
     start = radius * np.exp(1j * (angles[np.argmax(squared)] - 0.5))

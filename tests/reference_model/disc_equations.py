@@ -1,4 +1,4 @@
-"""Eqs. 19 and 23 for real and complex arguments, an independent reference for formulas of the disc."""
+"""Eqs. 19 and 23 for real and complex arguments, an independent reference for formulas."""
 
 from dataclasses import replace
 
@@ -44,16 +44,35 @@ def eq_23(disc):
     return friction
 
 
-def rates(disc, friction, state):
-    """Return the right side of (19) as a first-order system for x, y, angle, vx, vy, spin."""
-    return np.array(plain.rates(disc, friction, state))
+def rates(system, friction, state):
+    """Return the right side of (1) or (19) as a first-order system."""
+    return np.array(plain.rates(system, friction, state))
 
 
-def rates_in_turning_axes(disc, friction, frequency, state):
-    """Return the rates of x, y, vx, vy in axes that turn at ``frequency``, and of the spin."""
-    x, y, vx, vy, spin = state
-    still = rates(disc, friction, [x, y, 0.0, vx, vy, spin])
-    return still[[0, 1, 3, 4, 5]] - frequency * np.array([-y, x, -vy, vx, 0.0 * spin])
+def rates_in_turning_axes(system, friction, frequency, state):
+    """Return the rates of x, y, vx, vy in axes that turn at ``frequency``, and of the spin of a disc."""
+    x, y, vx, vy, *spin = state
+    angle = [0.0] if spin else []
+    still = rates(system, friction, [x, y, *angle, vx, vy, *spin])
+    return (np.delete(still, 2) if spin else still) - frequency * np.array(
+        [-y, x, -vy, vx, *(0.0 * w for w in spin)]
+    )
+
+
+def derivative(function, point):
+    """Return the Jacobian by complex steps, which avoids cancellation."""
+    step, point = 1e-20, np.asarray(point, dtype=complex)
+    return np.column_stack([function(point + 1j * step * e).imag / step for e in np.eye(point.size)])
+
+
+def assert_same_eigenvalues(found, expected, tolerance=1e-12):
+    left = list(expected)
+    assert len(found) == len(left)
+    scale = np.abs(left).max()
+    for value in found:
+        nearest = min(left, key=lambda other: abs(other - value))
+        assert abs(nearest - value) <= tolerance * scale, f"{value} not in {expected}"
+        left.remove(nearest)
 
 
 def mirrored(disc):

@@ -1,8 +1,7 @@
 """The beginning of slip from rest, for any law.
 
-Slip that begins at the friction limit grows like ½κt² with its direction slaved to the pull, which is stiff. As the
-motion is smooth, implicit collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until slip
-is fast enough for an explicit method.
+Slip that begins at the friction limit grows like ½κt² along the pull, which is stiff but smooth. So implicit
+collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until an explicit method can follow.
 """
 
 from __future__ import annotations
@@ -63,51 +62,8 @@ def begin_slip(
     ``y`` are the initial unknowns without the slip, ``drift`` their rates at rest, and ``direction``, shape (slip,),
     the unit vector of the incipient slip. Raises ``SimulationError`` if the motion cannot be resolved.
     """
-    rest = _Rest(motion, np.array(y), np.array(drift), direction)
-    return _follow(run, motion, t, rest.leading_order(), leave)
-
-
-Beginning = Callable[[FloatArray], FloatArray]
-"""Takes times (n,) since slip began and returns approximate unknowns, shape (n, unknowns)."""
-
-
-class _Rest:
-    def __init__(
-        self, motion: Coordinates, others: FloatArray, carried: FloatArray, direction: FloatArray
-    ) -> None:
-        self._motion, self._others, self._carried, self._direction = motion, others, carried, direction
-        self._at_first = self._growth(0.0, direction)
-        self._first = max(float(self._at_first @ direction), 0.0)
-
-    def leading_order(self) -> Beginning:
-        """Return the unknowns to leading order in time.
-
-        Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change
-        − J·turning), where J need not be symmetric.
-        """
-        others, carried, direction, first = self._others, self._carried, self._direction, self._first
-        axes, along = np.eye(len(direction)), np.outer(direction, direction)
-        change = (self._growth(MOMENT, direction) - self._at_first) / MOMENT
-        turned = [self._growth(0.0, direction + TURN * axis) for axis in axes]
-        resistance = (self._at_first[:, np.newaxis] - np.transpose(turned)) / TURN @ (axes - along)
-        solved = np.linalg.solve(resistance + 2.0 * first * (axes - along) + along, change)
-        gain = float(solved @ direction)
-        turning = solved - gain * direction
-
-        def begun(delays: FloatArray) -> FloatArray:
-            after = delays[:, np.newaxis]
-            slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
-            return np.hstack((others + after * carried, slip))
-
-        return begun
-
-    def _growth(self, delay: float, towards: FloatArray) -> FloatArray:
-        rates = self._motion.rates([*(self._others + delay * self._carried), *(LEAST_SLIP * towards)])
-        return np.array(rates[len(self._others) :])
-
-
-def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Leave) -> Outcome:
-    start, step, expected, since = begun(np.zeros(1))[0], FIRST_STEP, begun, t
+    expected = _leading_order(motion, np.array(y), np.array(drift), direction)
+    start, step, since = expected(np.zeros(1))[0], FIRST_STEP, t
     while t < run.end:
         run.count_step(t)
         piece = _collocate(run, motion, start, step, expected(step * 0.5 * (POINTS + 1.0)))
@@ -129,6 +85,37 @@ def _follow(run: Run, motion: Coordinates, t: float, begun: Beginning, leave: Le
         step *= min(4.0, piece.change_of_step(run.thresholds.series))
         expected = piece.beyond
     return Outcome(t, start.tolist())
+
+
+def _leading_order(
+    motion: Coordinates, others: FloatArray, carried: FloatArray, direction: FloatArray
+) -> Callable[[FloatArray], FloatArray]:
+    """Return the unknowns to leading order as a function of times (n,) since slip began, shape (n, unknowns).
+
+    Slip s·e with s = first·t + ½·gain·t² and e = direction + turning·t grows by d(s·e)/dt = at_first + t·(change −
+    J·turning), where J need not be symmetric.
+    """
+
+    def growth(delay: float, towards: FloatArray) -> FloatArray:
+        rates = motion.rates([*(others + delay * carried), *(LEAST_SLIP * towards)])
+        return np.array(rates[len(others) :])
+
+    axes, along = np.eye(len(direction)), np.outer(direction, direction)
+    at_first = growth(0.0, direction)
+    first = max(float(at_first @ direction), 0.0)
+    change = (growth(MOMENT, direction) - at_first) / MOMENT
+    turned = [growth(0.0, direction + TURN * axis) for axis in axes]
+    resistance = (at_first[:, np.newaxis] - np.transpose(turned)) / TURN @ (axes - along)
+    solved = np.linalg.solve(resistance + 2.0 * first * (axes - along) + along, change)
+    gain = float(solved @ direction)
+    turning = solved - gain * direction
+
+    def begun(delays: FloatArray) -> FloatArray:
+        after = delays[:, np.newaxis]
+        slip = (first * after + 0.5 * gain * after**2) * (direction + turning * after)
+        return np.hstack((others + after * carried, slip))
+
+    return begun
 
 
 @dataclass(frozen=True, eq=False)

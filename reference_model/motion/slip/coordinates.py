@@ -40,8 +40,8 @@ class Coordinates:
 
     Parameters
     ----------
-    rates, many
-        Return the rates in 1/T, never at zero slip; ``many`` for arrays of shape (k,).
+    rates
+        Returns the rates in 1/T, never at zero slip.
     slow
         Returns the speed limit of slow slip.
     pace
@@ -62,7 +62,6 @@ class Coordinates:
     """
 
     rates: Rates
-    many: Callable[..., Sequence[object]]
     slip: int
     slow: Callable[[Sequence[float]], float]
     pace: float
@@ -74,7 +73,11 @@ class Coordinates:
     surfaces: tuple[SwitchingSurface, ...] = ()
 
     def rates_at(self, unknowns: FloatArray) -> FloatArray:
-        return np.array(self.many(unknowns))
+        """Return the rates of many states, shape (n, k); nan if trial states of Newton's method overflow."""
+        try:
+            return np.transpose([self.rates(y) for y in unknowns.T.tolist()])
+        except (ArithmeticError, ValueError):
+            return np.full(unknowns.shape, math.nan)
 
     def speed(self, y: Sequence[float]) -> float:
         return math.hypot(*y[-self.slip :])
@@ -90,8 +93,8 @@ class Coordinates:
     def tolerated(self, run: Run, unknowns: int, polar: int = 0, implicit: bool = False) -> Tolerated:
         """Return a function for the allowed errors of a step in the first ``unknowns`` unknowns.
 
-        ``polar`` more may follow: the ``slip`` components of a direction, ln s and so on, with absolute tolerances.
-        An implicit step bounds the error of s instead of ln s, because long decay would otherwise need many steps.
+        ``polar`` more may follow, with absolute tolerances: the ``slip`` components of a direction, ln s and so on.
+        An implicit step bounds the error of s instead of ln s, which would need many steps in a long decay.
         """
         relative = np.full(unknowns + polar, TIGHTEST)
         relative[:unknowns] = run.local_tolerance

@@ -1,8 +1,8 @@
 """Fast and slow slip by an explicit Runge-Kutta method of eighth order with the unregularised law.
 
-While slip is fast or grows, its components are unknowns. While it approaches zero it is s·n with a unit vector n, and
-the unknowns are n and ln s in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so these equations
-are smooth and not stiff down to s = 0, where n tends to a limit direction (Antali and Stépán 2019).
+While slip is fast or grows, its components are unknowns. While it approaches zero, the unknowns are ln s and the unit
+vector n of slip s·n, in the stretched time dτ = dt·√(s²+s₀²)/s. Friction depends only on n, so these equations are
+smooth and not stiff down to s = 0, where n tends to a limit direction (Antali and Stépán 2019).
 """
 
 from __future__ import annotations

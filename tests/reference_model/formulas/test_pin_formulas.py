@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, root
 
-from reference_model import plain
 from reference_model.formulas import pin as formulas
 from reference_model.systems import PinOnDisc
 
@@ -19,26 +18,20 @@ FIG_5 = replace(FIG_4, friction_force=0.09)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
 
 
-def residual_of_eq_1(pin, x, y, vx, vy, ax, ay):
-    """Return the left side minus the right side of (1), in N."""
-    friction = plain.on_ring(pin.friction_force, 0.0, 1, 0.0)
-    states = np.array(np.broadcast_arrays(x, y, vx, vy))
-    right = np.apply_along_axis(lambda state: plain.rates(pin, friction, state)[2:], 0, states)
-    return pin.mass * (np.array([ax, ay]) - right)
+SAMPLES, ORDERS = 64, np.arange(-12, 13)
+WAVES = np.exp(2j * np.pi / SAMPLES * np.outer(np.arange(SAMPLES), ORDERS))
 
 
-def residual_of_eq_1_on(pin, amplitudes, frequency, samples=64):
-    """Return the residual of (1), as x + iy over one period, for z = Σ amplitudes[n]·exp(in·frequency·t)."""
-    phase = 2.0 * np.pi * np.arange(samples) / samples
-    z, v, a = (
-        sum(c * (1j * n * frequency) ** order * np.exp(1j * n * phase) for n, c in amplitudes.items())
-        for order in range(3)
-    )
-    rx, ry = residual_of_eq_1(pin, z.real, z.imag, v.real, v.imag, a.real, a.imag)
-    return rx + 1j * ry
+def residual_of_eq_1(pin, z, v, a):
+    """Return the left side minus the right side of (1) in N, as x + iy."""
+    slip = v - 1j * pin.disc_speed * z
+    friction = pin.friction_force * slip / np.abs(slip)
+    return pin.mass * a + pin.damping * v + pin.stiffness * (z - pin.offset) + friction
 
 
-# ---------------------------------------------------------------- (3) to (5)
+def residual_of_eq_1_on(pin, amplitudes, frequency):
+    """Return the residual of (1) over one period for z = Σ amplitudes[n]·exp(in·frequency·t), n in ``ORDERS``."""
+    return residual_of_eq_1(pin, *(WAVES @ (amplitudes * (1j * ORDERS * frequency) ** k) for k in range(3)))
 
 
 @pytest.mark.parametrize("offset", [0.1, -0.1])
@@ -48,7 +41,7 @@ def test_equilibrium_solves_the_equations_of_motion(offset, disc_speed, load_rat
     pin = replace(HEAVY, offset=offset, disc_speed=disc_speed)
     pin = replace(pin, friction_force=load_ratio * formulas.largest_load_with_equilibrium(pin))
     x, y = formulas.equilibrium_position(pin)
-    assert np.abs(residual_of_eq_1(pin, x, y, 0.0, 0.0, 0.0, 0.0)).max() < ROUNDING
+    assert abs(residual_of_eq_1(pin, complex(x, y), 0.0, 0.0)) < ROUNDING
     assert formulas.semicircle_residual(pin, x, y) == pytest.approx(0.0, abs=ROUNDING)
     angle, radius = formulas.equilibrium_angle(pin), formulas.equilibrium_radius(pin)
     assert (radius * math.cos(angle), radius * math.sin(angle)) == pytest.approx((x, y), abs=ROUNDING)
@@ -68,8 +61,6 @@ def test_equilibrium_radius_near_the_largest_load_is_exact_to_rounding():
     exact = float(Fraction(offset) ** 2 - Fraction(load) ** 2)
     assert formulas.equilibrium_radius(pin) ** 2 == pytest.approx(exact, rel=1e-15, abs=0.0)
 
-
-# ---------------------------------------------------------------- (7) to (9)
 
 STUCK = [
     replace(FIG_4, disc_speed=speed, offset=offset, friction_force=0.3)
@@ -143,9 +134,6 @@ def test_sticking_radius_of_a_strongly_damped_pin_falls_from_rest(damping):
     assert at_rest > turning
 
 
-# ---------------------------------------------------------------- (11) to (16)
-
-
 def polar_rates_of_eq_10(pin, rho, rho_rate, turning_speed):
     """Return the time derivatives of ρ, ρ̇ and ψ̇ by (10) without offset, also for complex arguments."""
     lag = rho * (pin.disc_speed - turning_speed)
@@ -201,8 +189,6 @@ def test_threshold_of_16_tends_to_minus_a_half_for_weak_damping():
         assert margin == pytest.approx(0.5, abs=damping**2)
 
 
-# ---------------------------------------------------------------- (17), (18) and the exact first order
-
 WHIRLING = [
     replace(FIG_4, disc_speed=1.1),
     replace(FIG_4, disc_speed=1.5),
@@ -212,27 +198,22 @@ WHIRLING = [
 ]
 
 
-def whirl_with_offset(pin, harmonics=12):
-    """Return amplitudes and frequency of the periodic orbit of (1), by Newton's method on its harmonics."""
-    orders = np.arange(-harmonics, harmonics + 1)
-    first = harmonics + 1
-    samples = 64
+MEAN, FIRST, SECOND = (int(np.argmax(n == ORDERS)) for n in range(3))
 
-    def unpack(unknowns):
-        return unknowns[: orders.size] + 1j * unknowns[orders.size : -1], unknowns[-1]
+
+def whirl_with_offset(pin):
+    """Return the amplitudes of the periodic orbit of (1), by Newton's method on its harmonics."""
 
     def defect(unknowns):
-        amplitudes, frequency = unpack(unknowns)
-        residual = residual_of_eq_1_on(pin, dict(zip(orders, amplitudes, strict=True)), frequency, samples)
-        balance = np.fft.fft(residual)[orders] / samples
-        return np.concatenate((balance.real, balance.imag, [amplitudes[first].imag]))
+        amplitudes = unknowns[: ORDERS.size] + 1j * unknowns[ORDERS.size : -1]
+        balance = WAVES.conj().T @ residual_of_eq_1_on(pin, amplitudes, unknowns[-1]) / SAMPLES
+        return np.concatenate((balance.real, balance.imag, [amplitudes[FIRST].imag]))
 
-    guess = np.zeros(2 * orders.size + 1)
-    guess[first], guess[-1] = formulas.whirl_radius(pin), formulas.whirl_frequency(pin)
+    guess = np.zeros(2 * ORDERS.size + 1)
+    guess[FIRST], guess[-1] = formulas.whirl_radius(pin), formulas.whirl_frequency(pin)
     found = root(defect, guess, tol=1e-14)
     assert np.abs(found.fun).max() < 1e-13, found.message
-    amplitudes, frequency = unpack(found.x)
-    return dict(zip(orders, amplitudes, strict=True)), frequency
+    return found.x[: ORDERS.size] + 1j * found.x[ORDERS.size : -1]
 
 
 @pytest.mark.parametrize("pin", WHIRLING)
@@ -242,8 +223,8 @@ def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
     for offset in offsets:
         small = replace(pin, offset=offset)
         response = formulas.first_order_whirl_response(small)
-        amplitudes, _ = whirl_with_offset(small)
-        errors.append([response.mean - amplitudes[0], response.second_harmonic - amplitudes[2]])
+        amplitudes = whirl_with_offset(small)
+        errors.append([response.mean - amplitudes[MEAN], response.second_harmonic - amplitudes[SECOND]])
         assert formulas.first_order_whirl_shift(small) == (response.mean.real, response.mean.imag)
     orders = np.log2(np.abs(errors[0]) / np.abs(errors[1]))
     assert orders == pytest.approx([3.0, 3.0], abs=0.05)
@@ -252,8 +233,7 @@ def test_first_order_response_is_exact_up_to_the_third_power_of_the_offset(pin):
 @pytest.mark.parametrize("pin", WHIRLING)
 def test_relative_error_of_18_tends_to_the_limit_formula(pin):
     small = replace(pin, offset=1e-4 * formulas.whirl_radius(pin))
-    amplitudes, _ = whirl_with_offset(small)
-    found = complex(*formulas.whirl_shift(small)) / amplitudes[0] - 1.0
+    found = complex(*formulas.whirl_shift(small)) / whirl_with_offset(small)[MEAN] - 1.0
     limit = formulas.whirl_shift_error_limit(pin)
     assert limit == pytest.approx(formulas.whirl_shift_error_limit(replace(pin, offset=0.0)), rel=1e-15)
     assert found == pytest.approx(limit, abs=1e-6)  # of order (wX0/ρ_c)² with w = ω/(ω − k) <= 11
@@ -263,7 +243,8 @@ def test_relative_error_of_18_tends_to_the_limit_formula(pin):
 def test_18_balances_the_mean_force_on_a_shifted_circle(pin):
     def mean_force(offset):
         shifted = replace(pin, offset=offset)
-        circle = {0: complex(*formulas.whirl_shift(shifted)), 1: formulas.whirl_radius(pin)}
+        circle = np.zeros(ORDERS.size, dtype=complex)
+        circle[MEAN], circle[FIRST] = complex(*formulas.whirl_shift(shifted)), formulas.whirl_radius(pin)
         return abs(residual_of_eq_1_on(shifted, circle, formulas.whirl_frequency(pin)).mean())
 
     offset = 0.02 * formulas.whirl_radius(pin)
@@ -282,7 +263,7 @@ def test_third_order_of_the_shift_is_exact_in_first_order_of_the_damping(pin):
         load = pin.stiffness * weak.damping / (pin.mass * pin.natural_frequency)  # ρ_c = 1 m
         small = replace(weak, friction_force=load, offset=offset)
         first = complex(*formulas.first_order_whirl_shift(small))
-        relative = whirl_with_offset(small)[0][0] / first - 1.0
+        relative = whirl_with_offset(small)[MEAN] / first - 1.0
         errors.append(abs(relative / (1j * formulas.third_order_of_whirl_shift(small)) - 1.0))
     assert errors[1] < 0.1
     assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.1)
@@ -298,8 +279,6 @@ def test_18_is_exact_in_first_order_at_twice_the_natural_frequency_only():
     assert 0.01 < limits[1.05] < 0.5
     assert limits[5.0] < 1.5e-3
 
-
-# ---------------------------------------------------------------- refusals
 
 WITHOUT_A_WHIRL = (
     ({"disc_speed": 1.0}, "disc_speed = 1 rad/s.*natural frequency 1 rad/s"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from disc_equations import STICKY
-from plain_engines import integrate, stuck_state
+from plain_engines import integrate
 
 from reference_model import PinOnDisc, power_balance, simulate
 from reference_model.contact.contact_law import ThreeTermRing
@@ -48,19 +48,6 @@ def test_terms_of_the_balance_of_the_whirl_11_have_their_closed_forms():
     assert balance.drive_power == pytest.approx(omega * friction * rho, rel=1e-9)
     heat = (friction * (omega - k) * rho + 0.081) * 20.0
     assert balance.turned_over == pytest.approx(heat + 0.81, rel=1e-9)
-
-
-def test_stuck_pin_takes_the_power_of_its_dampers_from_the_drive():
-    pin = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
-    radius = 0.9 * formulas.sticking_radius(pin)
-    turn = 2.0 * math.pi / 1.2
-    trajectory = simulate(pin, stuck_state(pin, radius, 0.0), np.linspace(0.0, turn, 201))
-    assert [phase.kind for phase in trajectory.phases] == ["stick"]
-    balance = power_balance(trajectory)
-    assert np.abs(balance.friction_heat).max() < 1e-15
-    assert balance.damper_heat[-1] == pytest.approx(0.1 * (1.2 * radius) ** 2 * turn, rel=1e-12)
-    assert balance.drive_work[-1] == pytest.approx(balance.damper_heat[-1], rel=1e-9)
-    assert relative_residual(trajectory) < 1e-9
 
 
 @pytest.mark.parametrize("samples", [12, 40, 200])

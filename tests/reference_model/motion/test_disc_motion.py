@@ -2,7 +2,7 @@
 
 import cmath
 import math
-from dataclasses import fields, replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -57,13 +57,11 @@ def test_stuck_ring_is_released_like_a_pin_with_the_friction_that_the_moment_lea
     released = 0
     for angle in np.linspace(0.0, 6.0, 13):
         z = 0.05 * cmath.exp(1j * angle)
-        trajectory = simulate(disc, stuck_state(disc, z.real, z.imag), [0.0, 20.0])
+        trajectory = simulate(disc, stuck_state(disc, z.real, z.imag), [0.0, 5.0])
         if kinds(trajectory)[0] == "stick":
-            release = (
-                release_after(pin, stuck_state(pin, z.real, z.imag), turn) or 20.0
-            )  # 0 if it never slips
+            release = release_after(pin, stuck_state(pin, z.real, z.imag), turn) or 5.0  # 0 if it never slips
             assert trajectory.phases[0].end == pytest.approx(release, abs=1e-10)
-            released += release < 20.0
+            released += release < 5.0
     assert released >= 3
 
 
@@ -105,9 +103,8 @@ def sticky(request):
 
 
 @pytest.mark.parametrize("factor", [0.5, 2.0])
-@pytest.mark.parametrize("threshold", [field.name for field in fields(Thresholds)])
-def test_motion_does_not_depend_on_any_threshold(sticky, threshold, factor):
-    other = replace(Thresholds(), **{threshold: factor * getattr(Thresholds(), threshold)})
+def test_motion_does_not_depend_on_the_thresholds(sticky, factor):
+    other = Thresholds(**{name: factor * value for name, value in asdict(Thresholds()).items()})
     changed = simulate_with(other, sticky.system, sticky.states[0], sticky.times)
     assert kinds(changed) == kinds(sticky)
     assert np.abs(changed.states - sticky.states).max() < 1e-8

@@ -6,11 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plain_engines import (
-    pull_on_stuck_pin,
-    stuck_state,
-    turned_with_disc,
-)
+from plain_engines import pull_on_stuck_pin, stuck_state, turned_with_disc
 from plain_slip import slide
 
 from reference_model import PinOnDisc, SimulationError, simulate
@@ -22,7 +18,7 @@ from reference_model.motion.stepper import Thresholds
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
 FIG_6 = replace(FIG_5, friction_force=0.12, disc_speed=1.2)
 HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=2.2, offset=0.15)
-TO_EQUILIBRIUM, TO_WHIRL = [0.1, 0.0, 0.0, 0.0], [0.1, 0.0, 0.03, 0.0]  # the starts of Fig. 5
+TO_WHIRL = [0.1, 0.0, 0.03, 0.0]  # a start of Fig. 5
 
 
 def event_times(trajectory):
@@ -31,38 +27,6 @@ def event_times(trajectory):
 
 def kinds(trajectory):
     return [phase.kind for phase in trajectory.phases]
-
-
-# ---------------------------------------------------------------- slip
-
-
-@pytest.mark.parametrize("offset", [0.0, 0.1])
-@pytest.mark.parametrize("damping", [0.0, 0.3, 2.0 * math.sqrt(6.0), 9.0])  # the third is critical
-@pytest.mark.parametrize("disc_speed", [0.0, 1.5])
-def test_without_friction_the_pin_is_a_damped_oscillator(disc_speed, damping, offset):
-    pin = PinOnDisc(
-        mass=2.0, stiffness=3.0, damping=damping, friction_force=0.0, disc_speed=disc_speed, offset=offset
-    )
-    z0, v0 = 0.3 - 0.2j, -0.1 + 0.4j
-    times = np.linspace(0.0, 20.0, 41)
-    decay = damping / 4.0
-    rate = cmath.sqrt(decay**2 - 1.5)
-    r = z0 - offset
-    if abs(rate) < 1e-6:
-        along, across = np.exp(-decay * times), times * np.exp(-decay * times)
-    else:
-        along, across = (f(rate * times) * np.exp(-decay * times) for f in (np.cosh, np.sinh))
-        across = across / rate
-    z = offset + r * along + (v0 + decay * r) * across
-    v = v0 * along - (decay * v0 + 1.5 * r) * across
-    trajectory = simulate(pin, [z0.real, z0.imag, v0.real, v0.imag], times)
-    expected = np.column_stack((z.real, z.imag, v.real, v.imag))
-    # Errors of the oscillator do not grow: 1e-9 of a size below 1, in each of 20·1.5 units of time at most.
-    assert np.abs(trajectory.states - expected).max() < 1e-9 * 30
-    assert kinds(trajectory) == ["slip"]
-
-
-# ---------------------------------------------------------------- a disc at rest
 
 
 @pytest.mark.parametrize(("amplitude", "half_cycles"), [(0.5, 0), (0.95, 0), (2.5, 1), (7.5, 4), (40.4, 20)])
@@ -118,11 +82,14 @@ def test_polar_form_10_gives_the_motion_of_eq_1(pin):
     assert np.abs(simulate_polar_form(pin, start, times) - slide(pin, start, times).y.T).max() < 1e-11
 
 
-# ---------------------------------------------------------------- stick
+speeds = pytest.mark.parametrize(
+    "disc_speed", [0.3, FIG_6.disc_speed, formulas.resonant_disc_speed(FIG_6), -2.0]
+)
+angles = pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
 
 
-@pytest.mark.parametrize("disc_speed", [0.3, FIG_6.disc_speed, formulas.resonant_disc_speed(FIG_6), -2.0])
-@pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
+@speeds
+@angles
 def test_pin_inside_the_sticking_radius_sticks_permanently(angle, disc_speed):
     pin = replace(FIG_6, disc_speed=disc_speed)
     z0 = 0.98 * formulas.sticking_radius(pin) * cmath.exp(1j * angle)
@@ -136,8 +103,8 @@ def test_pin_inside_the_sticking_radius_sticks_permanently(angle, disc_speed):
     assert np.abs(trajectory.states - expected).max() < 1e-13 * max(abs(z0), 1.0)
 
 
-@pytest.mark.parametrize("disc_speed", [0.3, FIG_6.disc_speed, formulas.resonant_disc_speed(FIG_6), -2.0])
-@pytest.mark.parametrize("angle", [0.0, 1.0, 4.0])
+@speeds
+@angles
 def test_pin_outside_the_sticking_radius_is_released_at_the_root_of_7_and_slips_along_the_pull(
     angle, disc_speed
 ):
@@ -179,9 +146,6 @@ def test_start_at_the_very_moment_of_release_slips():
     assert np.abs(trajectory.states - longer.states[1:]).max() < 1e-8
 
 
-# ---------------------------------------------------------------- grazing releases
-
-
 def grazing_pin(excess, radius=0.1):
     """Return a pin, a start whose holding force peaks at (1 + excess)·μN 1.5 rad later, and a width in rad.
 
@@ -210,9 +174,8 @@ OUT_OF_REACH = {"stop_gap": 10.0, "stop_stiffness": 1.0}
 @pytest.mark.parametrize(
     ("excess", "support"),
     [
-        *((excess, {}) for excess in (2e-8, 1e-6, 1e-4, 1e-3, 1e-2, 0.1)),
-        (1e-6, OUT_OF_REACH),
-        (1e-3, OUT_OF_REACH),
+        *((excess, {}) for excess in (2e-8, 1e-5, 1e-3, 0.1)),
+        (1e-4, OUT_OF_REACH),
     ],
 )
 def test_holding_force_that_just_exceeds_friction_releases_the_pin_briefly_in_each_turn(excess, support):
@@ -228,9 +191,6 @@ def test_holding_force_that_just_exceeds_friction_releases_the_pin_briefly_in_ea
     assert slip.end - slip.start == pytest.approx(3.0 * width / pin.disc_speed, rel=width)
     tight = simulate(pin, start, times, tolerance=1e-12)
     assert event_times(trajectory) == pytest.approx(event_times(tight), abs=1e-8)
-
-
-# ---------------------------------------------------------------- reversals
 
 
 @pytest.mark.parametrize("aside", [0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
@@ -250,9 +210,6 @@ def test_slip_that_friction_cannot_hold_reverses_head_on_or_nearly(angle, aside)
     assert trajectory.solution.evaluations < 5_000
 
 
-# ---------------------------------------------------------------- Fig. 5: event times
-
-
 @pytest.mark.parametrize("slipping", [1e-3, 0.03, 1.0])
 def test_run_that_ends_some_time_after_release_is_the_first_part_of_the_whole_run(slipping):
     stuck, times = [-0.03, 0.0, 0.0, -0.045], np.linspace(0.0, 20.0, 201)
@@ -268,27 +225,21 @@ def test_run_that_ends_some_time_after_release_is_the_first_part_of_the_whole_ru
     assert np.abs(part.at_end - ends).max() < 1e-9
 
 
-# ---------------------------------------------------------------- requested times
-
-
-@pytest.mark.parametrize("start", [TO_EQUILIBRIUM, TO_WHIRL])
-def test_motion_does_not_depend_on_the_requested_times(start):
-    dense = np.linspace(0.0, 60.0, 60_001)
-    sparse = dense[::7500]
-    odd = np.concatenate(([0.0], np.sort(np.random.default_rng(1).uniform(1e-9, 60.0, 50)), [60.0]))
+def test_motion_does_not_depend_on_the_requested_times():
+    dense = np.linspace(0.0, 20.0, 10_001)
+    odd = np.concatenate(([0.0], np.sort(np.random.default_rng(1).uniform(1e-9, 20.0, 50)), [20.0]))
     whole, few, some, tight = (
-        simulate(FIG_5, start, times, tolerance=tolerance)
-        for times, tolerance in ((dense, 1e-9), (sparse, 1e-9), (odd, 1e-9), (odd, 1e-13))
+        simulate(FIG_5, TO_WHIRL, times, tolerance=tolerance)
+        for times, tolerance in ((dense, 1e-9), (dense[::1250], 1e-9), (odd, 1e-9), (odd, 1e-13))
     )
-    assert np.array_equal(whole.states[::7500], few.states)
+    assert np.array_equal(whole.states[::1250], few.states)
     assert np.array_equal(event_times(whole), event_times(few))
     assert np.array_equal(event_times(whole), event_times(some))
-    assert (
-        np.abs(some.states - tight.states).max() < 1e-8
-    )  # states between steps are as accurate as at their ends
+    # States between steps are as accurate as at their ends.
+    assert np.abs(some.states - tight.states).max() < 1e-8
 
 
-@pytest.mark.parametrize("shift", [-7.25, 1.0, 1e4])
+@pytest.mark.parametrize("shift", [-7.25, 1e4])
 def test_shifted_times_give_the_same_motion(shift):
     times = np.linspace(0.0, 20.0, 81)
     at_zero, later = simulate(FIG_5, TO_WHIRL, times), simulate(FIG_5, TO_WHIRL, times + shift)
@@ -297,9 +248,6 @@ def test_shifted_times_give_the_same_motion(shift):
     assert np.abs(later.states - at_zero.states).max() < 1e-13 + 10.0 * rounding
     assert event_times(later) - shift == pytest.approx(event_times(at_zero), abs=1e-13 + 10.0 * rounding)
     assert later.phases[0].start == shift
-
-
-# ---------------------------------------------------------------- extreme motions and failures
 
 
 def test_positions_reach_the_tolerance_on_a_disc_much_faster_than_the_natural_frequency():

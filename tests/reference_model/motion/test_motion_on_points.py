@@ -12,7 +12,7 @@ from random_systems import TIMES, RandomMotion, random_points, smooth_motion
 
 from reference_model import DiscOnDisc, Points, simulate
 
-SEEDS = (*range(2, 62, 6), 188)  # in the last motion the disc comes to rest just when its pivot gives way
+SEEDS = (*range(2, 50, 6), 188)  # in the last motion the disc comes to rest just when its pivot gives way
 seeds = pytest.mark.parametrize("seed", SEEDS)
 FEET = Points([(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)])
 BODY = DiscOnDisc(
@@ -30,13 +30,8 @@ def states(seed, tolerance=1e-9):
 def test_motions_on_random_points_include_all_transitions_between_phases():
     kinds = [[phase.kind for phase in states(seed).phases] for seed in SEEDS]
     seen = Counter(pair for each in kinds for pair in set(pairwise(each)))
-    assert {
-        ("slip", "pivot"),
-        ("pivot", "slip"),
-        ("pivot", "stick"),
-        ("stick", "slip"),
-        ("slip", "stick"),
-    } <= set(seen)
+    phases = ("slip", "pivot", "stick")
+    assert {(a, b) for a in phases for b in phases if a != b} - {("stick", "pivot")} <= set(seen)
     assert {len(random_points(seed).shares) for seed in SEEDS} == {2, 3, 4, 5}
 
 

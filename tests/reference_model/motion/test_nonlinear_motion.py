@@ -7,11 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from plain_engines import (
-    pull_on_stuck_pin,
-    stuck_state,
-    turned_with_disc,
-)
+from plain_engines import pull_on_stuck_pin, stuck_state, turned_with_disc
 from plain_slip import slide_past_stop
 
 from reference_model import PinOnDisc, simulate
@@ -22,12 +18,12 @@ FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, dis
 FAST = replace(FIG_5, disc_speed=4.0)
 
 
-@pytest.mark.parametrize("stiffness", [1e2, 1e4, 1e6])
+@pytest.mark.parametrize("stiffness", [1e2, 1e6])
 @pytest.mark.parametrize("start", [[0.2, 0.0, 1.0, 0.5], [0.0, 0.1, 0.3, 0.6]])
 def test_pin_bounces_off_a_hard_stop_as_in_a_plain_integration(stiffness, start):
     # From the second start the pin grazes the stop or passes it at a thousandth of the gap.
     pin = replace(FAST, stop_gap=0.5, stop_stiffness=stiffness, friction_force=0.05)
-    times = np.linspace(0.0, 10.0, 101)
+    times = np.linspace(0.0, 10.0, 21)
     expected = slide_past_stop(pin, start, times)
     tight = simulate(pin, start, times, tolerance=1e-13)
     # The error is one tolerance per unit of time 1/ω. A bounce makes the error of the speed √(C_s/m) times larger.
@@ -83,7 +79,7 @@ def stuck_pins(draw):
     return replace(pin, friction_force=(1.0 + spare) * pull), complex(x, y)
 
 
-@settings(max_examples=150)
+@settings(max_examples=100)
 @given(stuck_pins())
 def test_release_is_the_first_time_when_the_pull_exceeds_friction(stuck):
     pin, z = stuck

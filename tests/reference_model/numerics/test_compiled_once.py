@@ -3,41 +3,58 @@
 import os
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import numba
+import numpy as np
 import pytest
 
 from reference_model.numerics import compiled_once
 
+NAME = "a_package_of_a_test"
 FACTOR = "FACTOR = {}\n"
-KERNEL = """
+KERNEL = f"""
 from pathlib import Path
 from reference_model.numerics.compiled_once import CompiledOnce
-from a_package_of_a_test.factor import FACTOR
+from {NAME}.factor import FACTOR
 
 def scale(x):
     x[0] *= FACTOR
 
 SCALE = CompiledOnce(scale, Path(__file__).parent)
 """
-RUN = """
+# Processes start faster without the __init__ of the reference.
+BARE = f"""
+import sys, types
+reference = sys.modules["reference_model"] = types.ModuleType("reference_model")
+reference.__path__ = [{str(Path(compiled_once.__file__).parents[1])!r}]
+"""
+RUN = f"""{BARE}
 import numpy as np
-from a_package_of_a_test.kernel import SCALE
-from reference_model.numerics import compiled_once
-compiled_once.LONG = {long}
-x = np.ones(1)
-SCALE(x)
+from {NAME}.kernel import SCALE
+SCALE(np.ones(1))
 (dispatcher,) = SCALE.kinds.values()
-print(x[0], sum(dispatcher.stats.cache_hits.values()), sum(dispatcher.stats.cache_misses.values()))
+print(sum(dispatcher.stats.cache_misses.values()))
+"""
+HOLDS_A_LOCK = f"""{BARE}
+import time
+from pathlib import Path
+from reference_model.numerics.compiled_once import _locked
+with _locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(600.0)
 """
 
 
 @pytest.fixture
-def package(tmp_path):
+def package(tmp_path, monkeypatch):
     """Return a package with a kernel that uses a factor from another file."""
-    folder = tmp_path / "a_package_of_a_test"
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    folder = tmp_path / NAME
     folder.mkdir()
     (folder / "__init__.py").touch()
     (folder / "factor.py").write_text(FACTOR.format(2.0))
@@ -45,67 +62,64 @@ def package(tmp_path):
     return folder
 
 
-def start(package, long=600.0, **environment):
-    around = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(package.parent)}
-    around.pop("NUMBA_CACHE_DIR", None)
-    return subprocess.Popen(
-        [sys.executable, "-c", RUN.format(long=long)],
-        env={**around, **environment},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-
-
-def printed(process):
-    """Return the factor, whether the process loaded the kernel, and whether it compiled the kernel."""
-    output, errors = process.communicate()
-    assert process.returncode == 0, errors
-    assert errors == ""
-    factor, loaded, made = output.split()
-    return float(factor), loaded == "1", made == "1"
+def run():
+    """Return the factor, and the numbers of kernels loaded and compiled, as in a new process."""
+    for known in (compiled_once.digest_of, compiled_once.folder_of):
+        known.cache_clear()
+    for name in [name for name in sys.modules if name.startswith(NAME)]:
+        del sys.modules[name]
+    scale = __import__(f"{NAME}.kernel", fromlist=["SCALE"]).SCALE
+    x = np.ones(1)
+    scale(x)
+    (dispatcher,) = scale.kinds.values()
+    return x[0], sum(dispatcher.stats.cache_hits.values()), sum(dispatcher.stats.cache_misses.values())
 
 
 def test_a_kernel_is_compiled_again_if_another_file_of_its_package_changes(package):
-    assert printed(start(package)) == (2.0, False, True)
+    assert run() == (2.0, 0, 1)
     (package / "factor.py").write_text(FACTOR.format(3.0))
-    assert printed(start(package)) == (3.0, False, True)
+    assert run() == (3.0, 0, 1)
     (package / "factor.py").write_text(FACTOR.format(2.0))
-    assert printed(start(package)) == (2.0, True, False)
+    assert run() == (2.0, 1, 0)
 
 
 def test_one_of_several_simultaneous_processes_compiles_and_the_others_load(package):
-    runs = [printed(each) for each in [start(package) for _ in range(2)]]
-    assert sorted(runs) == [(2.0, False, True), (2.0, True, False)]
+    around = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(package.parent)}
+    around.pop("NUMBA_CACHE_DIR", None)
+    command, pipe = [sys.executable, "-c", RUN], subprocess.PIPE
+    processes = [subprocess.Popen(command, env=around, stdout=pipe, text=True) for _ in range(2)]
+    assert sorted(process.communicate()[0] for process in processes) == ["0\n", "1\n"]
 
 
-def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(package, tmp_path):
+def test_kernels_of_a_read_only_package_are_kept_in_the_cache_of_the_user(package, tmp_path, monkeypatch):
     (package / "__pycache__").touch()  # no folder can be made in it, whoever runs the test
-    home = {"HOME": str(tmp_path / "home"), "USERPROFILE": str(tmp_path / "home")}
-    for expected in ((2.0, False, True), (2.0, True, False)):
-        assert printed(start(package, **home)) == expected
+    for variable in ("HOME", "USERPROFILE"):
+        monkeypatch.setenv(variable, str(tmp_path / "home"))
+    assert [run(), run()] == [(2.0, 0, 1), (2.0, 1, 0)]
     assert list((tmp_path / "home" / ".cache" / "friction-discs").rglob("*.nbi"))
 
 
-def test_kernel_runs_if_no_cache_can_be_written(package, tmp_path):
+def test_kernel_runs_if_no_cache_can_be_written(package, tmp_path, monkeypatch):
     (tmp_path / "file").touch()
-    run = start(package, NUMBA_CACHE_DIR=str(tmp_path / "file"))
-    assert printed(run) == (2.0, False, True)
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "file"))
+    assert run() == (2.0, 0, 1)
 
 
-def test_long_compilation_is_reported_in_one_line(package):
-    _, errors = start(package, long=0.0).communicate()
+def test_long_compilation_is_reported_in_one_line(package, monkeypatch, capsys):
+    monkeypatch.setattr(compiled_once, "LONG", 0.0)
+    monkeypatch.setattr(compiled_once, "_announced", threading.Lock())
+    for factor in (2.0, 3.0):
+        (package / "factor.py").write_text(FACTOR.format(factor))
+        run()
+    errors = capsys.readouterr().err
     assert errors.count("Compiling for this machine") == len(errors.splitlines()) == 1
 
 
 def test_cache_directory_of_numba_does_not_change(package, tmp_path, monkeypatch):
-    def fill(x):
-        x[0] = 1.0
-
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
-    compiled_once.compiled_for((numba.float64[::1],), fill, package)
+    run()
     assert str(tmp_path) == numba.config.CACHE_DIR
-    assert list(tmp_path.glob(f"{package.name}-*/**/*.nbi"))
+    assert list(tmp_path.glob(f"{NAME}-*/**/*.nbi"))
 
 
 @pytest.mark.parametrize(
@@ -127,23 +141,13 @@ def test_versions_of_the_sources_that_were_not_used_recently_are_deleted(days, k
     assert {path.name for path in tmp_path.glob("package-*")} == expected
 
 
-HOLDS_A_LOCK = """
-import sys, time
-from pathlib import Path
-from reference_model.numerics.compiled_once import _locked
-with _locked(Path(sys.argv[1])):
-    print("held", flush=True)
-    time.sleep(600.0)
-"""
-
-
 def test_lock_is_released_by_an_exception_and_by_a_killed_process(tmp_path):
     lock = tmp_path / "lock"
     with pytest.raises(KeyError), compiled_once._locked(lock):
         raise KeyError
     arguments = [sys.executable, "-c", HOLDS_A_LOCK, str(lock)]
     with subprocess.Popen(arguments, stdout=subprocess.PIPE) as owner:
-        owner.stdout.readline()
+        assert owner.stdout.readline() == b"held\n"
         owner.kill()
     began = time.monotonic()
     with compiled_once._locked(lock):

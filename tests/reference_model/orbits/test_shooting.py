@@ -25,7 +25,7 @@ def turned(z, angle):
 
 
 PINS = [replace(pin, offset=0.0) for pin in (FIG_5, FIG_6, replace(HEAVY, disc_speed=-2.2))]
-DISCS = [FIG11, replace(FIG11, friction_force=0.08), replace(FIG11, disc_speed=-1.5, shaft_speed=-1.25)]
+DISCS = [FIG11, replace(FIG11, friction_force=0.08, disc_speed=-1.5, shaft_speed=-1.25)]
 
 
 @pytest.mark.parametrize(
@@ -66,9 +66,6 @@ def test_whirl_with_an_offset_is_periodic_and_has_a_multiplier_of_one(pin):
     assert np.abs(later.at_end - orbit.state).max() < 10 * ROUNDING * size
     assert orbit.trajectory.times[-1] == orbit.period
     assert orbit.system == pin
-
-
-# ---------------------------------------------------------------- the fold of the whirl
 
 
 @pytest.fixture(scope="module")
@@ -143,9 +140,6 @@ def test_branch_is_followed_around_the_fold_in_steps_of_any_size(fold):
     assert coarse[-1].system.friction_force == pytest.approx(fine[-1].system.friction_force, abs=1e-8)
 
 
-# ---------------------------------------------------------------- the disc
-
-
 def test_whirl_of_a_disc_with_an_offset_is_periodic_except_for_its_angle():
     disc = replace(FIG11, friction_force=0.08, offset=0.02)
     orbit = whirl_orbit(disc)
@@ -194,14 +188,6 @@ def test_whirl_that_does_not_enclose_the_axis_is_found_by_continuation(beside_th
     # The equilibrium is stable as well, because it loses stability at a smaller offset.
     (rest,) = self_centred_equilibria(beside_the_axis.system)
     assert (beside_the_axis.stable, rest.stable) == (True, True)
-    start = beside_the_axis.state + 0.1 * (beside_the_axis.state - rest.state)
-    outside = simulate(beside_the_axis.system, start, np.linspace(0.0, 1200.0, 12001), tolerance=1e-7)
-    # A deviation of 10 % decays by 0.96 per turn; a turn has 62 samples.
-    extent = np.ptp(beside_the_axis.trajectory.states[:, 0])
-    assert np.ptp(outside.states[-100:, 0]) == pytest.approx(extent, rel=(math.pi / 62) ** 2)
-    inside = simulate(beside_the_axis.system, np.add(rest.state, [1e-4, *np.zeros(5)]), [0.0, 600.0])
-    slowest = rest.eigenvalues[0].real
-    assert np.abs(inside.at_end[:2] - [rest.x, rest.y]).max() < 2e-4 * math.exp(600.0 * slowest)
 
 
 def test_orbit_started_at_its_rightmost_point_is_the_same_orbit(round_the_axis):
@@ -219,9 +205,6 @@ def test_whirl_that_does_not_cross_the_x_axis_is_refused_as_a_start():
     near = whirl_orbit(at_offset(0.0165), tolerance=1e-9, samples=2)
     with pytest.raises(RuntimeError, match=r"does not cross y = 0 m, from one that starts elsewhere"):
         whirl_orbit(at_offset(0.0199), guess=near, tolerance=1e-9)
-
-
-# ---------------------------------------------------------------- the modulated cycle
 
 
 @pytest.fixture(scope="module")
@@ -267,9 +250,6 @@ def test_modulated_cycle_is_found_at_a_given_load_and_at_a_given_crossing(cycle)
     assert abs(load - FIG11.friction_force) > 100.0 * abs(sought.system.friction_force - load)
     assert sought.system.friction_force == pytest.approx(load, abs=1e-8)
     assert sought.period == pytest.approx(held.period, rel=1e-6)
-
-
-# ---------------------------------------------------------------- refusals
 
 
 def test_whirl_of_constant_radius_is_refused_as_a_modulated_cycle():

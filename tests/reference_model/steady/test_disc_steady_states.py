@@ -8,11 +8,6 @@ import numpy as np
 import pytest
 from disc_equations import (
     FIG_9,
-    eq_23,
-    mirrored,
-    points_on_ring,
-    rates,
-    rates_in_turning_axes,
 )
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipkm1
@@ -20,7 +15,7 @@ from scipy.special import ellipe, ellipkm1
 from compare.claims.parameters import FIG8, FIG11
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring, ThreeTermRing
-from reference_model.formulas.disc import held_pin, pin_of, polar_angle, semicircle_residual, shaft_torque
+from reference_model.formulas.disc import held_pin, pin_of, shaft_torque
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
     self_centred_equilibria,
@@ -40,61 +35,6 @@ def whirling(gain, load=1.0):
         mass=1.0, polar_inertia=1.0, stiffness=1.0, damping=1.0 / gain, friction_force=load, disc_speed=2.0,
         contact_radius=1.0, shaft_damping=1.0, shaft_speed=1.0,
     )  # fmt: skip
-
-
-# ---------------------------------------------------------------- against the equations of motion
-
-
-def friction_of(disc, law):
-    return eq_23(disc) if law is ThreeTermRing else points_on_ring(disc, 32768)
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("load", [1e-5, 0.02, 0.08, 0.1])
-@pytest.mark.parametrize(
-    "disc",
-    [
-        FIG8,
-        mirrored(FIG8),
-        replace(FIG8, offset=-0.1),
-        replace(FIG8, shaft_speed=2.0),
-        FIG_9,
-        replace(FIG8, hardening=40.0),
-        replace(FIG8, offset=-0.1, stop_gap=0.03, stop_stiffness=3.0),
-        replace(mirrored(FIG8), hardening=10.0, stop_gap=0.02, stop_stiffness=1.0),
-    ],
-)
-def test_equilibrium_satisfies_the_equations_of_motion(disc, load, law):
-    disc = replace(disc, friction_force=0.15 * load if disc is FIG_9 else load)
-    (equilibrium,) = self_centred_equilibria(disc, law(disc.contact_radius))
-    x, y, spin = equilibrium.x, equilibrium.y, equilibrium.spin
-    still = rates(disc, friction_of(disc, law), equilibrium.state)
-    assert np.delete(still, 2) == pytest.approx(0.0, abs=1e-14)
-    assert still[2] == spin
-    assert semicircle_residual(disc, x, y) == pytest.approx(0.0, abs=1e-16)
-    between = sorted((disc.shaft_speed, disc.disc_speed))
-    assert between[0] <= spin <= between[1]
-    assert y * disc.disc_speed * disc.offset >= 0.0  # friction drags the disc along
-    # By the third line of (26) radius and deflection are at a right angle on any support.
-    if disc.offset != 0.0:
-        assert polar_angle(disc, math.hypot(x, y), 0.0) == pytest.approx(math.atan2(y, x), abs=1e-11)
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("load", [0.0003, 0.01, 1.0])
-@pytest.mark.parametrize("disc", [FIG_9, mirrored(FIG_9), replace(FIG_9, shaft_speed=1.75)])
-def test_whirl_is_a_fixed_point_in_turning_axes(disc, load, law):
-    disc = replace(disc, friction_force=load)
-    found = whirls(disc, law(disc.contact_radius))
-    assert found
-    for whirl in found:
-        state = np.delete(whirl.state, 2)
-        still = rates_in_turning_axes(disc, friction_of(disc, law), whirl.frequency, state)
-        assert np.abs(still).max() < 1e-14 * max(1.0, whirl.radius)
-        assert whirl.frequency == math.copysign(1.0, disc.disc_speed)
-
-
-# ---------------------------------------------------------------- completeness
 
 
 def plain_shares(law, radius, slip, rim):
@@ -165,7 +105,7 @@ def test_steady_motions_agree_with_a_dense_search_over_the_radius(whirl, law):
     """The dense search eliminates in another order: it computes the spin for each radius."""
     rng = np.random.default_rng(20)
     numbers = set()
-    for _ in range(60):
+    for _ in range(40):
         disc = random_disc(rng, whirl)
         contact = law(disc.contact_radius)
         if whirl:
@@ -232,9 +172,6 @@ def test_whirl_grows_continuously_from_the_centred_rotation_below_a_limit_of_the
             for system in (just_above, just_below)
         ]
         assert small == [not jumps, jumps]
-
-
-# ---------------------------------------------------------------- limiting cases
 
 
 NEIGHBOURS = 1.0 + np.finfo(float).eps * np.arange(-4, 5)

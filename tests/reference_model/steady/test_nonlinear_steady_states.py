@@ -5,10 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from disc_equations import LARGE, eq_23, mirrored, points_on_ring, rates_in_turning_axes
+from disc_equations import assert_same_eigenvalues
 from plain_engines import support_force
 from scipy.optimize import brentq
-from test_stability import assert_same_eigenvalues, derivative, pin_rates_in_turning_axes, rates_of_eq_1
 
 from compare.claims.parameters import FIG8, FIG11
 from reference_model import (
@@ -20,45 +19,17 @@ from reference_model import (
     why_no_equilibrium,
     why_no_whirl,
 )
-from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.contact.contact_law import Ring
 from reference_model.formulas import pin as formulas
 from reference_model.formulas.disc import pin_of
-from reference_model.steady.stability import (
-    sliding_jacobian,
-    turning_frame_jacobian,
-    whirl_eigenvalues,
-)
-from reference_model.support import Support
 
 FIG_5 = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)
-HEAVY = PinOnDisc(mass=2.3, stiffness=5.1, damping=0.7, friction_force=0.4, disc_speed=-4.0, offset=0.15)
 SUPPORTS = [
     {"hardening": 30.0},
     {"stop_gap": 0.03, "stop_stiffness": 2.0},
     {"stop_gap": 0.5, "stop_stiffness": 2.0},
     {"hardening": 5.0, "stop_gap": 0.04, "stop_stiffness": 20.0},
 ]
-
-
-# ---------------------------------------------------------------- the pin's equilibrium
-
-
-@pytest.mark.parametrize("support", [{}, *SUPPORTS])
-@pytest.mark.parametrize("base", [FIG_5, HEAVY, replace(HEAVY, offset=-0.15)])
-def test_equilibrium_of_the_pin_satisfies_eq_1_and_lies_on_the_semicircle_4(base, support):
-    pin = replace(base, **support)
-    (found,) = self_centred_equilibria(pin)
-    # A rounding error of 1e-16 m in the position is multiplied by C_s/m.
-    assert np.abs(rates_of_eq_1(pin, found.state)).max() < 1e-13
-    assert formulas.semicircle_residual(pin, found.x, found.y) == pytest.approx(0.0, abs=1e-16)
-    assert math.hypot(found.x, found.y) == pytest.approx(formulas.equilibrium_radius(pin), rel=1e-13)
-    assert math.atan2(found.y, found.x) == pytest.approx(formulas.equilibrium_angle(pin), abs=1e-13)
-    pull = math.hypot(*support_force(pin, found.state))
-    assert pull == pytest.approx(pin.friction_force, rel=1e-13)
-    jacobian = derivative(lambda state: rates_of_eq_1(pin, state), found.state)
-    assert sliding_jacobian(pin, found.state) == pytest.approx(jacobian, abs=1e-10 * np.abs(jacobian).max())
-    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(jacobian), tolerance=1e-8)
-    assert found.stable
 
 
 @pytest.mark.parametrize("support", SUPPORTS)
@@ -75,27 +46,8 @@ def test_equilibrium_exists_up_to_the_support_force_at_the_offset(support):
     assert why_no_equilibrium(exactly).endswith("the pin sticks on the axis")
 
 
-# ---------------------------------------------------------------- the pin's whirl
-
-
 def centred(base, **support):
     return replace(base, offset=0.0, **support)
-
-
-WHIRLING = [centred(replace(base, disc_speed=sign * 4.0), **s) for base in (FIG_5, HEAVY) for s in [{}, *SUPPORTS[:3]]
-            for sign in (1.0, -1.0)]  # fmt: skip
-
-
-@pytest.mark.parametrize("pin", WHIRLING)
-def test_whirl_of_the_pin_is_a_fixed_point_of_eq_1_in_turning_axes_with_its_jacobian(pin):
-    (found,) = whirls(pin)
-    assert np.abs(pin_rates_in_turning_axes(pin, found.frequency, found.state)).max() < 1e-13
-    assert math.copysign(1.0, found.frequency) == math.copysign(1.0, pin.disc_speed)
-    assert abs(found.frequency) < abs(pin.disc_speed)
-    jacobian = derivative(lambda state: pin_rates_in_turning_axes(pin, found.frequency, state), found.state)
-    expected = turning_frame_jacobian(pin)
-    assert expected == pytest.approx(jacobian, abs=1e-10 * np.abs(jacobian).max())
-    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(expected), tolerance=1e-11)
 
 
 def formulas_turning(pin):
@@ -116,9 +68,6 @@ def test_pin_ends_by_sticking_if_the_support_would_carry_it_faster_than_the_disc
     assert trajectory.phases[-1].end - trajectory.phases[-1].start > 50.0
 
 
-# ---------------------------------------------------------------- a stop without a gap is a spring
-
-
 @pytest.mark.parametrize("disc", [FIG8, FIG11, replace(FIG8, disc_speed=1.5, offset=0.0)])
 def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
     stop = replace(disc, stiffness=0.4, stop_stiffness=0.6)
@@ -133,9 +82,6 @@ def test_disc_on_a_stop_without_a_gap_moves_as_on_a_stiffer_spring(disc):
         for found, expected in zip(whirls(stop), whirls(disc), strict=True):
             assert found.state == pytest.approx(expected.state, rel=1e-10)
             assert_same_eigenvalues(found.eigenvalues, expected.eigenvalues, tolerance=1e-10)
-
-
-# ---------------------------------------------------------------- the disc
 
 
 OF_A_DISC = [
@@ -175,7 +121,7 @@ def circles_by_radius(disc, contact):
     ]
 
 
-@pytest.mark.parametrize("load", [0.02, 0.0225, 0.026, 0.05, 0.09, 0.2])
+@pytest.mark.parametrize("load", [0.02, 0.0225, 0.026, 0.09])
 @pytest.mark.parametrize("support", [*OF_A_DISC, {"stop_gap": 0.05, "stop_stiffness": 5.0}])
 def test_whirls_of_the_disc_agree_with_a_search_over_radii(support, load):
     disc = replace(FIG11, friction_force=load, **support)
@@ -183,41 +129,6 @@ def test_whirls_of_the_disc_agree_with_a_search_over_radii(support, load):
     found = whirls(disc)
     assert [whirl.radius for whirl in found] == pytest.approx(expected, rel=1e-9)
     assert (why_no_whirl(disc) is None) == bool(found)
-    for whirl in found:
-        turning = rates_in_turning_axes(
-            disc, points_on_ring(disc, 4096), whirl.frequency, np.delete(whirl.state, 2)
-        )
-        # The error of 4096 points is their distance squared, divided by the distance to a resting point.
-        assert np.abs(turning).max() < 1e-6
-        assert abs(whirl.frequency) == pytest.approx(
-            math.sqrt(Support.of(disc).secant(whirl.radius)), rel=1e-14
-        )
-
-
-LARGE_WHIRLING = replace(LARGE, disc_speed=3.0, offset=0.0, friction_force=1.5)
-
-
-@pytest.mark.parametrize(
-    ("disc", "law"),
-    [
-        (FIG11, Ring),
-        (mirrored(FIG11), Ring),
-        (FIG11, ThreeTermRing),
-        (LARGE_WHIRLING, ThreeTermRing),
-        *((replace(FIG11, friction_force=0.05, **support), Ring) for support in OF_A_DISC),
-    ],
-)
-def test_jacobian_of_a_whirling_disc_is_the_derivative_of_eq_19_in_turning_axes(disc, law):
-    contact = law(disc.contact_radius)
-    friction = eq_23(disc) if law is ThreeTermRing else points_on_ring(disc, 32768)
-    (found,) = whirls(disc, contact)
-    part = np.delete(found.state, 2)
-    jacobian = derivative(lambda p: rates_in_turning_axes(disc, friction, found.frequency, p), part)
-    in_axes = turning_frame_jacobian(disc, found.state, contact)
-    assert in_axes == pytest.approx(jacobian, abs=1e-9 * np.abs(jacobian).max())
-    assert found.eigenvalues == whirl_eigenvalues(disc, found.state, contact)
-    assert found.eigenvalues[0] == 0.0
-    assert_same_eigenvalues(found.eigenvalues, np.linalg.eigvals(in_axes), tolerance=1e-10)
 
 
 def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
@@ -229,6 +140,3 @@ def test_hardening_and_a_stop_with_a_gap_do_not_move_the_onset():
     )
     assert linear[-1].radius < 0.002
     assert hard[-1].radius == pytest.approx(linear[-1].radius, rel=0.05)
-
-
-# ---------------------------------------------------------------- orbits by shooting
