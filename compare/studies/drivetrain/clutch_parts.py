@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -124,11 +125,7 @@ def juddering(gradient: float) -> Rotors:
 
 
 def heating(
-    inertias: tuple[float, float],
-    start: float,
-    conductance: float,
-    tolerance: float,
-    times: FloatArray,
+    inertias: tuple[float, float], start: float, conductance: float, tolerance: float, times: FloatArray
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
@@ -136,17 +133,17 @@ def heating(
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 
+    def fading(temperature: Any) -> Any:
+        return COLD_COEFFICIENT * (1.0 - FADE * (temperature - SURROUNDINGS))
+
     rotors = Rotors(inertias, (start, 0.0))
-    lining = add_thermal_node(
-        rotors.mbs, heat_capacity=CAPACITY, conductance=conductance, surroundings=SURROUNDINGS
-    )
+    losses = {"conductance": conductance, "surroundings": SURROUNDINGS}
+    lining = add_thermal_node(rotors.mbs, heat_capacity=CAPACITY, **losses)
     add_ring_friction(
         rotors.mbs,
         *rotors.nodes,
         contact_radius=RING,
-        friction_coefficient=lambda temperature: (
-            COLD_COEFFICIENT * (1.0 - FADE * (temperature - SURROUNDINGS))
-        ),
+        friction_coefficient=fading,
         normal_load=PRESSED,
         regularisation=CREEP,
         thermal_node=lining,
@@ -168,13 +165,8 @@ def curves() -> Data:
     }
 
 
-STUDY = Study.beside(
-    __file__,
-    "clutch-parts",
-    source="two rotors with a clutch (assumption)",
-    only=("exudyn",),
-    seconds=4.0,
-)
+SOURCE = "two rotors with a clutch (assumption)"
+STUDY = Study.beside(__file__, "clutch-parts", source=SOURCE, only=("exudyn",), seconds=4.0)
 
 
 @STUDY.claim(
@@ -202,10 +194,8 @@ def _growth(gradient: float, tolerance: float) -> float:
 
     Speeds of a linear vibration at equal intervals Δ satisfy v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
     """
-    until = float(TIMES[-1])
-    run = juddering(gradient).run(
-        until, round(until / 1e-3), tolerance=tolerance, breaks=TIMES[1:-1].tolist()
-    )
+    until, breaks = float(TIMES[-1]), TIMES[1:-1].tolist()
+    run = juddering(gradient).run(until, round(until / 1e-3), tolerance=tolerance, breaks=breaks)
     v = run[np.searchsorted(run[:, 0], TIMES - 1e-12), 2]
     (_, last), *_ = np.linalg.lstsq(np.column_stack((v[1:-1], v[:-2])), v[2:], rcond=None)
     return math.log(-last) / (2.0 * float(TIMES[1] - TIMES[0]))
@@ -271,22 +261,14 @@ def settles(engine: Engine) -> Measured:
 def balance(engine: Engine) -> Measured:
     start = 0.5 * INERTIAS[0] * SLIP**2
     runs = [heating(INERTIAS, SLIP, CONDUCTANCE, tolerance, np.array([UNTIL])) for tolerance in BOTH]
-    found, finer = (
-        np.max(
-            np.abs(
-                0.5 * run[:, 1:3] ** 2 @ np.array(INERTIAS)
-                + CAPACITY * (run[:, 3] - SURROUNDINGS)
-                + run[:, 4]
-                - start
-            ),
-            keepdims=True,
-        )
+    sums = (
+        0.5 * run[:, 1:3] ** 2 @ np.array(INERTIAS) + CAPACITY * (run[:, 3] - SURROUNDINGS) + run[:, 4]
         for run in runs
     )
+    found, finer = (np.max(np.abs(each - start), keepdims=True) for each in sums)
     rounding = 8.0 * np.finfo(float).eps * start * math.sqrt(len(runs[1]))
-    return Measured(
-        predicted=0.0, value=found[0], error=change_as_error(found, finer)[0] + rounding, size=start
-    )
+    error = change_as_error(found, finer)[0] + rounding
+    return Measured(predicted=0.0, value=found[0], error=error, size=start)
 
 
 def draw(data: ByEngine) -> Figures:
@@ -295,9 +277,8 @@ def draw(data: ByEngine) -> Figures:
     judder, (growth,) = new_figure(width=5.5, height=3.6)
     growth.axhline(0.0, color=GREY, linewidth=0.6)
     _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
-    growth.set(
-        xlabel="negative slope of μ over slip speed, relative to the onset", ylabel="growth rate in 1/s"
-    )
+    growth.set(xlabel="negative slope of μ over slip speed, relative to the onset")
+    growth.set(ylabel="growth rate in 1/s")
     growth.legend(loc="upper left")
 
     heat, (slips, temperatures) = new_figure(ncols=2, width=10.0, height=3.6)

@@ -92,6 +92,13 @@ def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
     ]
 
 
+PARTS_OF_FRICTION = ("F_x", "F_y", "M")
+
+
+def at_ratios(ratios: Sequence[float]) -> dict[str, list[str]]:
+    return {"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]}
+
+
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
@@ -123,8 +130,8 @@ def friction_on(
         value=found[:, 0],
         error=np.max(error[:, 0], axis=0) + truncation,
         size=1.0,
-        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]},
-        components=("F_x", "F_y", "M"),
+        at=at_ratios(ratios),
+        components=PARTS_OF_FRICTION,
         system=disc,
         parameters={"x": CENTRE.real, "y": CENTRE.imag, "angle": ANGLE},
         data={"ratio": ratios, name: np.column_stack((along, found[:, 0, 2]))[: len(ratios)]},
@@ -156,7 +163,7 @@ def closed_form() -> Measured:
     rows = []
     for sign in (1.0, -1.0):
         for i, ratio in enumerate(COMPARED):
-            slip = ratio * complex(math.cos(i), math.sin(i))
+            slip = cmath.rect(ratio, i)
             integral, error = theory.ring_by_quadrature(slip, sign)
             rows.append((integral, theory.friction(RING, slip, sign), [error + ROUNDING] * 3))
     predicted, measured, errors = zip(*rows, strict=True)
@@ -164,8 +171,8 @@ def closed_form() -> Measured:
         predicted=predicted,
         value=measured,
         error=errors,
-        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in COMPARED]},
-        components=("F_x", "F_y", "M"),
+        at=at_ratios(COMPARED),
+        components=PARTS_OF_FRICTION,
     )
 
 
@@ -200,12 +207,8 @@ def error_of_expansion() -> Measured:
 )
 def place_of_expansion_error() -> Measured:
     integrals, formulas = theory.greatest_errors_of_expansion()
-    return of_laws(
-        predicted=integrals[:, 0],
-        value=formulas[:, 0],
-        error=integrals[:, 2] + formulas[:, 2],
-        components=PARTS,
-    )
+    error = integrals[:, 2] + formulas[:, 2]
+    return of_laws(predicted=integrals[:, 0], value=formulas[:, 0], error=error, components=PARTS)
 
 
 @STUDY.claim(
@@ -284,13 +287,8 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
 
 def of_orders(observed: Sequence[tuple[float, float, float]], order: float, **more: Any) -> Measured:
     exponents, numerical, model = np.array(observed).T
-    return of_laws(
-        predicted=np.full(len(exponents), float(order)),
-        value=exponents,
-        error=numerical,
-        model=float(np.max(model)),
-        **more,
-    )
+    predicted, largest = np.full(len(exponents), float(order)), float(np.max(model))
+    return of_laws(predicted=predicted, value=exponents, error=numerical, model=largest, **more)
 
 
 @STUDY.claim(

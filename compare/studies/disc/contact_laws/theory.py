@@ -114,12 +114,8 @@ def top(error: Callable[[float], float], noise: float) -> tuple[float, float, fl
     from scipy.optimize import minimize_scalar
 
     coarse = max(np.geomspace(1e-2, 1e2, 201).tolist(), key=error)
-    found = minimize_scalar(
-        lambda ratio: -error(ratio),
-        bounds=(0.95 * coarse, 1.05 * coarse),
-        method="bounded",
-        options={"xatol": 1e-6},
-    )
+    around, options = (0.95 * coarse, 1.05 * coarse), {"xatol": 1e-6}
+    found = minimize_scalar(lambda ratio: -error(ratio), bounds=around, method="bounded", options=options)
     place, h = float(found.x), 0.01 * coarse
     curvature = abs(error(place - h) - 2.0 * error(place) + error(place + h)) / h**2
     return place, -float(found.fun), math.sqrt(2.0 * noise / curvature) + 1e-6
@@ -169,9 +165,7 @@ def curves() -> Data:
         found = np.array([[friction(points, ratio, 1.0, angle) for angle in angles] for ratio in ratios])
         exact = data["ring"][:, np.newaxis]
         data[f"points{number}"] = np.stack((found.min(axis=1), found.max(axis=1)))[:, :, [0, 2]] * (-1.0, 1.0)
-        off = (
-            np.hypot(found[:, :, 0] + exact[:, :, 0], found[:, :, 1]),
-            np.abs(found[:, :, 2] - exact[:, :, 1]),
-        )
-        data[f"points{number}_error"] = np.stack([distance.max(axis=1) for distance in off], axis=1)
+        force = np.hypot(found[:, :, 0] + exact[:, :, 0], found[:, :, 1])
+        moment = np.abs(found[:, :, 2] - exact[:, :, 1])
+        data[f"points{number}_error"] = np.stack((force.max(axis=1), moment.max(axis=1)), axis=1)
     return data

@@ -16,8 +16,9 @@ from scipy.optimize import brentq
 from compare.claims import TRUTH, Study
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG8, FIG11
-from compare.engines import Engine
+from compare.engines import Engine, reference
 from compare.studies.toolkit.fig11 import DISCS, RING, SOURCE, START, integrated, rates
+from compare.studies.toolkit.pins import whirl_of
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
@@ -114,7 +115,6 @@ def whirls_by_law() -> list[SteadyWhirl]:
 
 def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     """Return the whirl on points close to ``guess``, with modes of the return map linearised by differences."""
-    reference = Engine("reference", simulate, ("points",))
     motion = steady_motion(reference, disc, guess, TRUTH)
     if motion is None:
         raise RuntimeError(f"no whirl on {disc.contact_points} points near the circle of the ring")
@@ -123,12 +123,9 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     def returned(state: FloatArray) -> FloatArray:
         return rotated(simulate(disc, state, [0.0, period], tolerance=TRUTH).at_end, -turn)
 
-    step = 1e-4 * guess[0]
-    columns = [
-        (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
-        for shift in step * np.eye(disc.state_size)
-    ]
-    multipliers, right = np.linalg.eig(np.column_stack(columns))
+    shifts = 1e-4 * guess[0] * np.eye(disc.state_size)
+    columns = [returned(motion.state + one) - returned(motion.state - one) for one in shifts]
+    multipliers, right = np.linalg.eig(np.column_stack(columns) / (2e-4 * guess[0]))
     values = np.log(multipliers.astype(complex)) / period
     mode, projection = _growing(values, right)
     return SteadyWhirl(
@@ -165,9 +162,8 @@ def modulations(states: FloatArray) -> FloatArray:
     for start, end in itertools.pairwise(largest):
         radii = radius(turning[(start <= turning) & (turning <= end)])
         spins = spin([start, *of_spin[(start < of_spin) & (of_spin < end)]])
-        rows.append(
-            [end - start, angle(end) - angle(start), radii.min(), radii.max(), spins.min(), spins.max()]
-        )
+        extremes = radii.min(), radii.max(), spins.min(), spins.max()
+        rows.append((end - start, angle(end) - angle(start), *extremes))
     return np.array(rows).reshape(-1, 6)
 
 
@@ -216,19 +212,10 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     A parabola through the moduli gives the X0 of modulus 1. The error is the change with a line through the two
     nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
-    orbits: list[Orbit] = []
+    orbits = [_whirl_of_reference()]
     for offset in TRIED:
-        guess = orbits[-1] if orbits else _whirl_of_reference()
-        orbits.append(
-            whirl_orbit(
-                disc_at(offset),
-                simulate=engine.simulate,
-                guess=guess,
-                tolerance=tolerance,
-                samples=SAMPLES_A_TURN,
-                precision=engine.precision,
-            )
-        )
+        orbits.append(whirl_of(engine, disc_at(offset), tolerance, orbits[-1], samples=SAMPLES_A_TURN))
+    orbits = orbits[1:]
     middle = TRIED[1]
     tried, moduli = (np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits])
     parabola = Polynomial.fit(tried, moduli, 2).convert()
@@ -251,7 +238,7 @@ def _whirl_of_reference() -> Orbit:
 
 @functools.cache
 def critical_offset_of_reference() -> float:
-    return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
+    return critical_offset(reference, 1e-10)[0]
 
 
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:

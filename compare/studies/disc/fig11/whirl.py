@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -14,14 +15,9 @@ from compare.claims import WORKING, Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import components_of
 from compare.engines import Engine
-from compare.studies.disc.fig11.theory import (
-    STUDY,
-    SteadyWhirl,
-    last_modulation,
-    predicted_modulation,
-    steady_whirl,
-)
+from compare.studies.disc.fig11.theory import STUDY, SteadyWhirl, predicted_modulation, steady_whirl
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
+from compare.studies.toolkit.measuring import compared
 from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
@@ -57,12 +53,11 @@ def slides(engine: Engine, contact: str) -> Measured:
     predicted, rougher = (
         integrated(disc, SLIDING_START, SLIDING[-1], len(SLIDING), tolerance) for tolerance in (3e-14, 2e-13)
     )
-    found = refined(
-        lambda tolerance: engine.simulate(disc, SLIDING_START, SLIDING, tolerance=tolerance).states, 5e-10
-    )
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    motion = disc, SLIDING_START, SLIDING
+    found = refined(lambda tolerance: engine.simulate(*motion, tolerance=tolerance).states, 5e-10)
+    return compared(
+        predicted,
+        found,
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": SLIDING},
         components=components_of(RING),
@@ -140,12 +135,9 @@ def deviation(
     """
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
+    motions = [(disc, whirl.displaced(sign * amplitude), times) for sign in (1.0, -1.0)]
     outwards, inwards = (
-        rotated(
-            engine.simulate(disc, whirl.displaced(sign * amplitude), times, tolerance=tolerance).states,
-            -turns * whirl.turn,
-        )
-        for sign in (1.0, -1.0)
+        rotated(run.states, -turns * whirl.turn) for run in engine.simulate_many(motions, tolerance=tolerance)
     )
     # The real part of the mode contains half of it, so the whole difference has the share 1 at the start.
     share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
@@ -197,14 +189,8 @@ CYCLE_NOTE = (
     named={"period of the modulation": 0, "turn in it": 1},
 )
 def period_and_turn(engine: Engine) -> Measured:
-    found = modulation(engine)
-    return Measured(
-        predicted=predicted_modulation()[0][:2],
-        value=found.value[:2],
-        error=found.error[:2],
-        components=("period in s", "turn in rad"),
-        data={"the continuous ring": _run(engine, OF_CYCLE).states},
-    )
+    data = {"the continuous ring": _run(engine, OF_CYCLE).states}
+    return _of_modulation(engine, slice(2), components=("period in s", "turn in rad"), data=data)
 
 
 @STUDY.claim(
@@ -216,22 +202,23 @@ def period_and_turn(engine: Engine) -> Measured:
     note=CYCLE_NOTE,
 )
 def extremes(engine: Engine) -> Measured:
-    found = modulation(engine)
-    return Measured(
-        predicted=predicted_modulation()[0][2:],
-        value=found.value[2:],
-        error=found.error[2:],
-        components=theory.EXTREMES,
-    )
+    return _of_modulation(engine, slice(2, None), components=theory.EXTREMES)
+
+
+def _of_modulation(engine: Engine, part: slice, **more: Any) -> Measured:
+    value, error = modulation(engine)
+    return compared(predicted_modulation()[0][part], Measurement(value[part], error[part]), **more)
 
 
 @functools.lru_cache(maxsize=4)
 def modulation(engine: Engine) -> Measurement:
     """Return the engine's ``last_modulation``, with the errors of the engine and the prediction."""
-    found = refined(
-        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
-    )
-    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
+
+    def last(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        return theory.last_modulation(_run(engine, tolerance).states)
+
+    found = refined(lambda tolerance: last(tolerance)[0], OF_CYCLE, alike=False)
+    error = found.error + predicted_modulation()[1] + last(OF_CYCLE)[1]
     return Measurement(found.value, known(found.value, error))
 
 

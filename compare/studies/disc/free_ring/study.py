@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +13,7 @@ from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 import compare.studies.disc.free_ring.theory as theory
-from compare.claims import Measured, Measurement, Study, answers_of, observed_exponent, refined
+from compare.claims import Measured, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine
 from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
@@ -45,9 +46,8 @@ def end_together(
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - theory.REMAINING[:3])
-            speeds = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
-            ends = [_zeros_between(times, speed) for speed in speeds]
-            found.append((ends[0] - ends[1]) / rest)
+            centre, rim = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
+            found.append((_zeros_between(times, centre) - _zeros_between(times, rim)) / rest)
         return np.array(found)
 
     found = refined(apart, theory.TOLERANCE)
@@ -55,14 +55,18 @@ def end_together(
     noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=np.zeros(len(throws)),
         value=found.value[:, 0],
         error=found.largest + noise + bend,
-        at={"throw": [throw.name for throw in throws]},
         source=theory.SOURCE + theory.CITED,
     )
+
+
+def of_throws(throws: Sequence[theory.Throw], **measured: Any) -> Measured:
+    at = {"throw": [throw.name for throw in throws]} | measured.pop("at", {})
+    return Measured(system=theory.TABLE, at=at, **measured)
 
 
 def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
@@ -78,22 +82,19 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
 )
 def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
 
-    def ratio(tolerance: float) -> FloatArray:
-        speeds = [
-            theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[0]) for throw in throws
-        ]
-        return np.array([sliding[0] / rim[0] for sliding, rim in speeds])
+    def ratio(tolerance: float) -> list[float]:
+        found = (theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[0]) for throw in throws)
+        return [sliding[0] / rim[0] for sliding, rim in found]
 
     found = refined(ratio, theory.TOLERANCE)
-    rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
-    farthest = np.array([theory.expected_approach(throw) for throw in throws]) / (theory.REMAINING[0] * rests)
-    return Measured(
-        system=theory.TABLE,
+    left = theory.REMAINING[0] * np.array([theory.roughly_rest(engine, throw) for throw in throws])
+    farthest = np.array([theory.expected_approach(throw) for throw in throws]) / left
+    return of_throws(
+        throws,
         predicted=np.ones(len(throws)),
         value=found.value,
-        error=found.largest + ratio_noise(theory.REMAINING[0] * rests),
+        error=found.largest + ratio_noise(left),
         model=float(np.max(theory.deviation(farthest))),
-        at={"throw": [throw.name for throw in throws]},
         source=theory.SOURCE + theory.CITED,
         data={"ratio of rings": np.mean(found.value)},
     )
@@ -133,36 +134,28 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
     left = predicted[:, np.newaxis] / np.array(theory.NEARNESSES)
     noise = left * ratio_noise(left) / theory.deviation(theory.NEARNESSES)
     # The law of the approach is valid for small δ; integrals to the measured δ give its error.
-    left_out = [
-        abs(
-            theory.expected_approach(throw, float(theory.deviation(theory.NEARNESSES[0])))
-            - theory.expected_approach(throw)
-        )
-        for throw in throws
-    ]
-    return Measured(
-        system=theory.TABLE,
+    near = float(theory.deviation(theory.NEARNESSES[0]))
+    left_out = np.abs([theory.expected_approach(throw, near) for throw in throws] - predicted)
+    return of_throws(
+        throws,
         predicted=np.repeat(predicted[:, np.newaxis], len(theory.NEARNESSES), axis=1),
         value=found.value,
         error=largest + noise,
-        model=max(left_out),
+        model=float(np.max(left_out)),
         resolution=1e-2 * float(np.min(predicted)),
-        at={"throw": [throw.name for throw in throws], "A/t": theory.NEARNESSES},
+        at={"A/t": theory.NEARNESSES},
         data=_drawn(engine, throws),
     )
 
 
 def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
-    speeds, approaches = [], []
+    rows = []
     for throw in throws:
-        trajectory, times = (
-            theory.thrown(engine, throw, theory.TOLERANCE),
-            theory.uniform_times(engine, throw),
-        )
-        speeds.append(theory.speeds_at(trajectory, times))
-        approaches.append(theory.expected_approach(throw) / (theory.rest_of(trajectory) - times))
-    sliding, rim = zip(*speeds, strict=True)
-    return {"sliding": sliding, "rim": rim, "approach": approaches}
+        trajectory = theory.thrown(engine, throw, theory.TOLERANCE)
+        times = theory.uniform_times(engine, throw)
+        approach = theory.expected_approach(throw) / (theory.rest_of(trajectory) - times)
+        rows.append((*theory.speeds_at(trajectory, times), approach))
+    return dict(zip(("sliding", "rim", "approach"), zip(*rows, strict=True), strict=True))
 
 
 @STUDY.claim(
@@ -185,12 +178,11 @@ def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS)
         return np.array(found)
 
     found = refined(ratios, theory.TOLERANCE)
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=[math.exp(Slowing(throw.inertia).terminal) for throw in throws],
         value=found.value[:, 0],
         error=found.largest + np.abs(found.value[:, 1] - found.value[:, 0]),
-        at={"throw": [throw.name for throw in throws]},
         source=theory.SOURCE + theory.CITED,
         data={"inertia": [throw.inertia for throw in throws], "ratio": found.value[:, 0]},
     )
@@ -225,13 +217,12 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
             observed_exponent(theory.ENDING, share.value, next_term=2.0 * power, noise=share.largest)
         )
     exponents, errors, models = zip(*found, strict=True)
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=predicted,
         value=exponents,
         error=errors,
         model=max(models),
-        at={"throw": [throw.name for throw in throws]},
         source=theory.SOURCE + "; limits as Goyal et al. 1991",
     )
 
@@ -249,28 +240,22 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     swept=("polar_inertia",),
 )
 def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
-    found = stops_of(engine, throws)
+
+    def stops_at(tolerance: float) -> list[tuple[float, ...]]:
+        runs = [theory.thrown(engine, throw, tolerance) for throw in throws]
+        return [(theory.rest_of(run), *run.at_end[:3]) for run in runs]
+
+    found = refined(stops_at, theory.TOLERANCE)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
     )
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=predicted,
         value=found.value,
         error=found.largest + float(np.max(np.abs(predicted - nearly))),
-        at={"throw": [throw.name for throw in throws]},
         components=("time in s", "x in m", "y in m", "angle in rad"),
     )
-
-
-def stops_of(engine: Engine, throws: Sequence[theory.Throw]) -> Measurement:
-    """Return the time to rest (s), x, y (m) and the angle (rad), shape (n, 4)."""
-
-    def found(tolerance: float) -> FloatArray:
-        trajectories = [theory.thrown(engine, throw, tolerance) for throw in throws]
-        return np.array([[theory.rest_of(trajectory), *trajectory.at_end[:3]] for trajectory in trajectories])
-
-    return refined(found, theory.TOLERANCE)
 
 
 def _integrated(throw: theory.Throw, near: float) -> list[float]:
@@ -308,13 +293,8 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
 
     found = refined(imbalance, theory.TOLERANCE)
     halved = np.abs(found.value[:, 1] - found.value[:, 0])
-    return Measured(
-        system=theory.TABLE,
-        predicted=np.zeros(len(throws)),
-        value=found.value[:, 0],
-        error=found.largest + 2.0 * theory.TOLERANCE / theory.SPEED + halved,
-        at={"throw": [throw.name for throw in throws]},
-    )
+    error = found.largest + 2.0 * theory.TOLERANCE / theory.SPEED + halved
+    return of_throws(throws, predicted=np.zeros(len(throws)), value=found.value[:, 0], error=error)
 
 
 # --- Existence of a terminal ratio
@@ -352,10 +332,6 @@ def published_ratio() -> Measured:
         resistance, moment = face.shares(ratio, 1.0)
         return resistance / ratio - moment / 0.5
 
-    return Measured(
-        predicted=0.653,
-        value=brentq(unevenness, 0.1, 0.9, xtol=1e-12),
-        error=1e-10,
-        model=5e-4,  # half of the last published digit
-        source="Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007",
-    )
+    found = brentq(unevenness, 0.1, 0.9, xtol=1e-12)
+    source = "Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007"
+    return Measured(predicted=0.653, value=found, error=1e-10, model=5e-4, source=source)

@@ -152,14 +152,9 @@ def roughly_rest(engine: Engine, throw: Throw) -> float:
 @functools.cache
 def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
     rest = roughly_rest(engine, throw)
-    times = [
-        *uniform_times(engine, throw),
-        *(rest * (1.0 - REMAINING)),
-        *(rest * (1.0 - ENDING)),
-        1.02 * rest,
-    ]
-    if throw in RINGS:
-        times += [*approach_times(engine, throw)]
+    shares = 1.0 - np.concatenate((REMAINING, ENDING, [-0.02]))
+    approach = approach_times(engine, throw) if throw in RINGS else ()
+    times = np.concatenate((uniform_times(engine, throw), rest * shares, approach))
     return engine.simulate(throw.disc, throw.state, np.unique(times), tolerance=tolerance)
 
 

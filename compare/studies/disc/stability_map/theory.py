@@ -130,11 +130,12 @@ def nearest(values: Sequence[float], to: float) -> list[float]:
 
 
 def curves() -> Data:
-    data: Data = {}
-    for (plane, law, kind), found in traced().items():
-        for i, curve in enumerate(found):
-            data[f"{plane}/{law}/{kind}/{i}"] = np.column_stack((curve.parameters, curve.alpha))
-    return data | section()
+    points = {
+        f"{plane}/{law}/{kind}/{i}": np.column_stack((curve.parameters, curve.alpha))
+        for (plane, law, kind), found in traced().items()
+        for i, curve in enumerate(found)
+    }
+    return points | section()
 
 
 def section() -> Data:
@@ -217,10 +218,8 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
 
 
 def changes(disc: DiscOnDisc) -> str:
-    differing = [
-        f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
-    ]
-    return ", ".join(differing) or "Fig. 11"
+    differing = asdict(disc).items() - asdict(DISC).items()
+    return ", ".join(f"{name} = {value:.4g}" for name, value in sorted(differing)) or "Fig. 11"
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

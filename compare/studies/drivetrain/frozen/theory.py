@@ -18,21 +18,8 @@ from scipy.optimize import brentq
 
 from compare.claims import WORKING, Data, Study
 from compare.claims.linearised_flow import ComplexArray
-from compare.studies.toolkit.drivetrain_bench import (
-    EPSILON,
-    RINGS,
-    RPM,
-    SOURCE,
-    Operation,
-    centred_car,
-    facings,
-    natural_frequency,
-    onset_speed,
-    passenger_car,
-    rest_of,
-    start_disc,
-    whirl_of,
-)
+from compare.studies.toolkit import drivetrain_bench as bench
+from compare.studies.toolkit.drivetrain_bench import EPSILON, RINGS, RPM, SOURCE, Operation, facings
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support
@@ -147,7 +134,7 @@ def whirl_under_surplus(
     def left(radius: float) -> float:
         return damping * math.sqrt(support.secant(radius) / mass) * radius - drive
 
-    largest = drive / (damping * natural_frequency(car)) * ROUNDED_UP
+    largest = drive / (damping * bench.natural_frequency(car)) * ROUNDED_UP
     radius = float(brentq(left, 0.0, largest, xtol=1e-18, rtol=1e-14))
     frequency = math.sqrt(support.secant(radius) / mass)
     if frequency >= engine_speed:
@@ -225,12 +212,12 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 def curves(every: int = 1) -> Data:
     """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
-    car, centred = passenger_car(), centred_car()
-    onset = onset_speed(car, SLIPPING, TORQUE) / RPM
+    car, centred = bench.passenger_car(), bench.centred_car()
+    onset = bench.onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]
     fast = np.linspace(onset + 5.0, 6200.0, 25)[::every]
-    rests = [rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
-    circles = [whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
+    rests = [bench.rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
+    circles = [bench.whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
     speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
     return {
         "onset": np.array(onset),
@@ -269,20 +256,11 @@ def build(
         shaft_torque=whirl.torque,
     )
     scale = 1.0 + deviation
-    start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
+    bench.start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
     return model
 
 
-STUDY = Study.beside(
-    __file__,
-    "drivetrain-frozen",
-    words={
-        "surplus": f"{100.0 * BORDER_SURPLUS:g}",
-        "low": f"{BORDER_TORQUES[0]:g}",
-        "high": f"{BORDER_TORQUES[-1]:g}",
-    },
-    source=SOURCE,
-    only=("exudyn",),
-    seconds=4.0,
-)
+LOW, *_, HIGH = (f"{torque:g}" for torque in BORDER_TORQUES)
+WORDS = {"surplus": f"{100.0 * BORDER_SURPLUS:g}", "low": LOW, "high": HIGH}
+STUDY = Study.beside(__file__, "drivetrain-frozen", words=WORDS, source=SOURCE, only=("exudyn",), seconds=4.0)
 STUDY.provides(curves=curves)

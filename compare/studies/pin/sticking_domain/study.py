@@ -16,13 +16,9 @@ from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG4
 from compare.claims.study import Data, Study
 from compare.engines import Engine
+from compare.studies.toolkit.measuring import compared
 from compare.studies.toolkit.pins import first_release, safest_angle, stuck
-from reference_model.formulas.pin import (
-    release_time,
-    resonant_disc_speed,
-    sticking_radius,
-    turn_until_release,
-)
+from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 
 PIN = FIG4
@@ -97,10 +93,8 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
     middle = found(values)
     if not np.all(np.isfinite(relative_error)):
         return middle, math.inf
-    shifts = [
-        abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)
-    ]
-    return middle, sum(shifts)
+    moved = values * (1.0 + 2.0 * np.diag(relative_error))
+    return middle, sum(abs(found(each) - middle) for each in moved)
 
 
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
@@ -122,18 +116,14 @@ def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
     """Return displacements, in radii, of pins inside (9), shape (n, 2), and which pins always stick."""
-    pins = [pin_at(speed) for speed in speeds]
-    radii = [INSIDE * sticking_radius(pin) for pin in pins]
-    starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]
     turn = REVOLUTIONS * 2.0 * math.pi
-    runs = engine.simulate_many(
-        [(pin, start, [0.0, turn / pin.disc_speed]) for pin, start in zip(pins, starts, strict=True)],
-        tolerance=tolerance,
-    )
+    motions = [
+        (pin, stuck(pin, INSIDE * sticking_radius(pin), safest_angle(pin)), [0.0, turn / pin.disc_speed])
+        for pin in map(pin_at, speeds)
+    ]
     displacements, sticks = [], []
-    for radius, start, run in zip(radii, starts, runs, strict=True):
-        on_disc = rotated(run.at_end, -turn)
-        displacements.append((on_disc - start)[:2] / radius)
+    for run, (_, start, _) in zip(engine.simulate_many(motions, tolerance=tolerance), motions, strict=True):
+        displacements.append((rotated(run.at_end, -turn) - start)[:2] / np.hypot(*start[:2]))
         sticks.append(all(phase.kind != "slip" for phase in run.phases))
     return np.array(displacements), sticks
 
@@ -159,9 +149,9 @@ def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = 
 )
 def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     found = displaced(engine, speeds)
-    return Measured(
-        predicted=np.zeros_like(found.value),
-        value=found.value,
+    return compared(
+        np.zeros_like(found.value),
+        found,
         error=found.rows,
         size=1.0,
         at={"ω in rad/s": speeds},
@@ -198,16 +188,16 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
         for pin in map(pin_at, speeds):
             for share in OUTSIDE:
                 radius, angle = share * sticking_radius(pin), safest_angle(pin)
-                end = LATEST * release_time(pin, radius, angle)
-                motions.append((pin, stuck(pin, radius, angle), [0.0, end]))
+                release = turn_until_release(pin, radius, angle) / pin.disc_speed
+                motions.append((pin, stuck(pin, radius, angle), [0.0, LATEST * release]))
         runs = engine.simulate_many(motions, tolerance=tolerance)
         found = [run.system.disc_speed * first_release(run) for run in runs]
         return np.array(found).reshape(len(speeds), len(OUTSIDE))
 
     found = refined(turns, TOLERANCE)
-    return Measured(
-        predicted=predicted_turns(speeds),
-        value=found.value,
+    return compared(
+        predicted_turns(speeds),
+        found,
         error=_unless_missing(engine, found.value, found.rows),
         at={"ω in rad/s": speeds, "radius/(9)": OUTSIDE},
         data={"speed": speeds, "turn": found.value, "turn_error": found.rows},
@@ -220,16 +210,14 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     pins = [pin_at(speed) for speed in searched]
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
-    def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
-        return near if np.all(np.isfinite(near)) else _anywhere(pin)
+    around = [
+        near if np.all(np.isfinite(near)) else _anywhere(pin) for pin, near in zip(pins, first, strict=True)
+    ]
 
     def radii(tolerance: float) -> FloatArray:
         found = first
         if tolerance != SEARCH_TOLERANCE:
-            found = [
-                _between(engine, pin, tolerance, around(pin, near))
-                for pin, near in zip(pins, first, strict=True)
-            ]
+            found = [_between(engine, pin, tolerance, near) for pin, near in zip(pins, around, strict=True)]
         return np.asarray(np.sqrt(np.prod(found, axis=1)))
 
     found = refined(radii, SEARCH_TOLERANCE)
@@ -242,11 +230,8 @@ def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> F
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
-    return np.where(
-        missing,
-        np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0,
-        np.where(np.isnan(errors), np.inf, errors),
-    )
+    of_missing = np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0
+    return np.where(missing, of_missing, np.where(np.isnan(errors), np.inf, errors))
 
 
 def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
@@ -281,10 +266,7 @@ def _between(
             return math.nan, math.nan
     while outside - inside > PRECISION * outside:
         middle = math.sqrt(inside * outside)
-        if sticks(middle):
-            inside = middle
-        else:
-            outside = middle
+        inside, outside = (middle, outside) if sticks(middle) else (inside, middle)
     return inside, outside
 
 

@@ -15,6 +15,7 @@ from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, r
 from compare.claims.parameters import CENTRED
 from compare.engines import Engine
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
+from compare.studies.toolkit.measuring import compared
 from reference_model.formulas.pin import (
     characteristic_coefficients,
     coefficient_margins,
@@ -209,7 +210,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
         )
         for speed in speeds
     ]
-    value, error, left = (np.array(each) for each in zip(*ends, strict=True))
+    value, error, left = map(np.array, zip(*ends, strict=True))
     return Measurement(value, error + left)
 
 
@@ -277,9 +278,9 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
     found = refined(functools.partial(rates_of, interval), 10.0 * TIGHTEST)
     wide = np.abs(rates_of(2.0 * interval, 10.0 * TIGHTEST) - found.value)
     rounding = 8.0 * np.finfo(float).eps * CENTRED.mass * K / (CENTRED.damping * interval)
-    return Measured(
-        predicted=[0.0 if speed > K else -2.0 for speed in starts],
-        value=found.value,
+    return compared(
+        [0.0 if speed > K else -2.0 for speed in starts],
+        found,
         error=np.full(len(starts), found.largest + np.max(wide) + rounding),
         at={"ω in rad/s": starts},
     )
@@ -306,16 +307,13 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
     below = [speed for speed in starts if speed < K]
     found = refined(turning, 1e-7)
     times = np.linspace(0.0, CAUGHT, 181)
-    return Measured(
-        predicted=np.ones(len(below)),
-        value=found.value,
+    leaving = [leave(speed, times, 1e-7).radius for speed in starts]
+    return compared(
+        np.ones(len(below)),
+        found,
         error=np.full(len(below), found.largest),
         at={"ω in rad/s": below},
-        data={
-            "start": starts,
-            "leaving_time": times,
-            "leaving": [leave(speed, times, 1e-7).radius for speed in starts],
-        },
+        data={"start": starts, "leaving_time": times, "leaving": leaving},
     )
 
 
@@ -388,9 +386,9 @@ def history(engine: Engine) -> Measured | None:
 
     found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
     twice = deviation(2.0 * DEVIATION, WORKING / 10)
-    return Measured(
-        predicted=linear_deviation(DEVIATION_TIMES),
-        value=found.value,
+    return compared(
+        linear_deviation(DEVIATION_TIMES),
+        found,
         error=np.full(len(DEVIATION_TIMES), found.largest),
         model=float(np.max(np.abs(twice - found.value))),
         at={"t in s": DEVIATION_TIMES},
