@@ -1,7 +1,7 @@
 """Angular momentum of an isolated drivetrain on every kind of node.
 
-Friction, an elastic shaft attached off-centre, and a torsional spring connect engine, clutch disc and vehicle. The
-claims fail if a part lacks the moment of its force about a body, or acts on two bodies along different axes.
+Friction, an elastic shaft attached off-centre, and a torsional spring connect the bodies. The claims fail if a part
+lacks the moment of its force about a body, or acts on two bodies along different axes.
 """
 
 from __future__ import annotations

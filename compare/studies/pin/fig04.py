@@ -55,7 +55,7 @@ def curves() -> Data:
 def error_of_eq18(pin: PinOnDisc) -> float:
     """Return a bound of the error of (18) in m: the second harmonic, and all orders of X0 except the first.
 
-    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k), the angle of the slip due to the offset.
+    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k).
     """
     turn = pin.offset / whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
     higher = abs(third_order_of_whirl_shift(pin)) / (1.0 - turn**2)

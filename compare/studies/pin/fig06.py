@@ -51,10 +51,7 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Return the branch of whirls through its folds, and (3) and (9) against the friction force.
-
-    The branch ends at the crossing ``innermost`` (m), with relative steps ``step``.
-    """
+    """Return (3), (9) and the branch of whirls, down to the crossing ``innermost`` (m), against μN."""
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep

@@ -86,7 +86,7 @@ def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> Flo
 
 @functools.cache
 def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
-    """Return the largest errors of (23) by integrals (20), with and without (22), and by closed forms.
+    """Return the largest errors of (23) by integrals (20), and by closed forms.
 
     Each array contains U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
@@ -130,7 +130,7 @@ def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
     """Return the U/W of the largest error of ``number`` points, its size, and the errors of size and U/W.
 
-    ``part`` selects force or moment. The search uses no slopes, because the maximum is next to a jump.
+    The search uses no slopes, because the maximum is next to a jump.
     """
     law = PointsOnRing(R, number)
     centre, spans, history = np.zeros(2), np.array((math.log(20.0), math.pi / number)), []

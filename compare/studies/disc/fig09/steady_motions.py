@@ -42,8 +42,7 @@ def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> M
 def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
     """Return the means over a steady motion, NaN if none is found.
 
-    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin of the equilibrium over X0
-    and ω.
+    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin at rest over X0 and ω.
     """
     disc = theory.disc_of(load, which, points)
     motion = steady_motion(engine, disc, theory.exact_motion(load, which).state, tolerance)
@@ -59,7 +58,7 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    The tolerance times ``amplified`` is added, because two flows may agree to within it.
+    It includes the tolerance times ``amplified``, because two flows may agree to within it.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -69,7 +68,7 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
-    The order converges like the square of the variable. ``error``, shape (3, 1), is that of the gaps.
+    The order converges like the square of the variable.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])

@@ -140,9 +140,9 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 def first_order_shift(disc: DiscOnDisc) -> complex:
     """Return the time mean of x + iy (m) of a disc's whirl, to first order in X0.
 
-    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation from the
-    circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
-    + i·a_y)/2, is fixed in space.
+    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation is
+    Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x +
+    i·a_y)/2, is fixed in space.
     """
     circle = whirls(replace(disc, offset=0.0))[0]
     jacobian = turning_frame_jacobian(replace(disc, offset=0.0), circle.state)
@@ -194,10 +194,9 @@ def smallest_load(disc: DiscOnDisc) -> float:
 def weak_damping_load(disc: DiscOnDisc) -> float:
     """Return the friction force (N) where the equilibrium loses its stability, to first order in β.
 
-    Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Friction resists a small additional slip
-    u = ż − iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s +
-    μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ. A pin has F' = 0,
-    so σ = 0.
+    Small loads leave the centre at X0, with U = ωX0 and S = ω − Ω. Friction resists a small additional slip u = ż −
+    iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s + μN·F/U)(s
+    + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ.
     """
     slip = disc.disc_speed * disc.offset
     law = contact_of(disc)
@@ -248,8 +247,7 @@ def orbits() -> tuple[Orbit, ...]:
 def smooth(found: Sequence[Orbit]) -> Data:
     """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
-    Positions are interpolated, because the smallest radius has a kink where the orbit passes the axis. Beyond the
-    last orbit, its shape shrinks onto the equilibrium, with the square of its size linear in the load.
+    Beyond the last orbit, its shape shrinks onto the equilibrium, with the square of its size linear in the load.
     """
     limit, per_load = spin_of_large_whirl(RING), 1.0 / (RING.damping * RING.natural_frequency)
     load = np.array([orbit.system.friction_force for orbit in found])

@@ -58,15 +58,15 @@ STUDY = Study.beside(
 class SteadyWhirl:
     """A whirl that is periodic up to a rotation, and its least damped pair of modes.
 
-    On n points it has a ripple, which repeats each time the disc has turned by 2π/n relative to the line from the
-    axis to its centre.
+    On n points it has a ripple, with a period of 2π/n of the disc's turn relative to the line from the axis to its
+    centre.
 
     - ``state``: a state on the whirl, shape (6,).
     - ``period``: in s.
     - ``turn``, ``advance``: rotation of the whirl in a period (rad), and the disc's additional rotation.
     - ``eigenvalue``: growth rate and frequency > 0 (1/s) of the pair.
-    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). The share projection·d of a
-      deviation d grows with the eigenvalue, in axes that turn with the whirl.
+    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,), in axes that turn with the
+      whirl.
     """
 
     state: FloatArray
@@ -151,7 +151,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 def modulations(states: FloatArray) -> FloatArray:
     """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    A modulation is the interval between successive maxima of the radius; ``states`` are those at ``TIMES``.
+    A modulation lasts from one maximum of the radius to the next; ``states`` are those at ``TIMES``.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -210,7 +210,7 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
     A parabola through the moduli gives the X0 of modulus 1. The error is the change with a line through the two
-    nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
+    nearest points. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
     orbits = [_whirl_of_reference()]
     for offset in TRIED:
@@ -244,8 +244,7 @@ def critical_offset_of_reference() -> float:
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    Newton's method finds the orbit by integrating (19) with its linearisation. Raise ``RuntimeError`` if it does not
-    converge.
+    Newton's method integrates (19) with its linearisation. Raise ``RuntimeError`` if it does not converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:

@@ -116,7 +116,7 @@ def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str
 def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
     """Return growth rate and frequency (1/s) of a deviation from the whirl under the law ``contact``, shape (2,).
 
-    The error is the 95 % interval of the fit plus the changes with twice the deviation and at a smaller tolerance.
+    The error is the 95 % interval plus the changes with twice the deviation and at a smaller tolerance.
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
@@ -131,7 +131,7 @@ def deviation(
 ) -> tuple[FloatArray, ComplexArray]:
     """Return times (s), once a period, and the pair's share q of a deviation, 1 at the start.
 
-    Half the difference of two simulations that start on opposite sides of the whirl has no even powers.
+    Half the difference of two simulations from opposite sides of the whirl has no even powers.
     """
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
@@ -159,7 +159,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
     """Return times (s), once a period, and the size of the pair's share over the radius.
 
-    The deviation starts ten times larger than in :func:`deviation`, and reaches the modulated cycle in 900 s.
+    The deviation starts ten times larger than in :func:`deviation`, and reaches the cycle in 900 s.
     """
     turns = np.arange(round(900.0 / whirl.period) + 1)
     times = turns * whirl.period

@@ -44,10 +44,7 @@ HEADING = 0.7  # direction of the throw in rad from the x axis
 
 @dataclass(frozen=True)
 class Throw:
-    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees.
-
-    0 only slides, 90 only spins, and a negative value reverses the spin.
-    """
+    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees; a negative value reverses the spin."""
 
     inertia: float
     degrees: float
@@ -141,8 +138,7 @@ def curves() -> Data:
 def roughly_rest(engine: Engine, throw: Throw) -> float:
     """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    At a smaller tolerance the rest moves relative to the samples, so the change of a measured value includes the
-    error of the sample times.
+    At a smaller tolerance the rest moves relative to the samples, so a change includes the error of their times.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))

@@ -30,8 +30,8 @@ K = FIG11.natural_frequency
 class Panel(NamedTuple):
     """Labels and ranges of a plane, and the ``places`` of the names ``REGIONS``.
 
-    ``outward`` is the sign of the change of the second coordinate from the onset to the large whirls. ``tip`` is that
-    of the arrow from the name of the modulated cycle, if it does not fit into its region.
+    ``outward`` is the sign of the change of the second coordinate from the onset to the large whirls. An arrow with
+    this ``tip`` leads to a modulated cycle that is too small for its name.
     """
 
     labels: tuple[str, str]

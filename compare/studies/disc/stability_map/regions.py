@@ -198,10 +198,7 @@ def starts_in_regions() -> tuple[Start, ...]:
 
 
 def coexisting() -> tuple[Start, ...]:
-    """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off.
-
-    The cycle coexists with the whirl 0.3 % outside, but not 2 % outside.
-    """
+    """Return motions 0.3 % outside both Hopf curves, from whirl and cycle, and 2 % outside, where no cycle exists."""
     lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed)
     starts = []
     for border, outward, settled in ((lower, -1.0, theory.SLOWLY_SETTLED), (upper, 1.0, theory.SETTLED)):

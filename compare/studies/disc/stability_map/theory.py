@@ -60,7 +60,7 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    The error includes that of the state: if U and W are nearly equal, friction's slopes depend on their difference.
+    The error includes that of the state, because friction's slopes depend on small differences of U and W.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -104,10 +104,7 @@ def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
-    """Return the value where a pair of the whirl crosses the imaginary axis, and its error.
-
-    The value is NaN if no pair crosses within 0.1 % of ``near``.
-    """
+    """Return the value where a pair of the whirl crosses the imaginary axis, NaN if beyond 0.1 %, and its error."""
 
     def crossing_pair(value: float) -> tuple[float, float]:
         disc = at(**{name: value})

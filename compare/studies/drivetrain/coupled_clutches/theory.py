@@ -197,10 +197,9 @@ def _rotors() -> Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s).
+    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s), which stops at ``SHOWN``.
 
-    The solver is implicit with a ``step`` (s), otherwise explicit. The run stops at ``SHOWN``, so speeds there
-    need no interpolation.
+    The solver is implicit with a ``step`` (s), otherwise explicit.
     """
     from exudyn_models import add_ring_friction
 
@@ -228,8 +227,8 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
 def with_bristles(step: float, stiffness: float) -> Run:
     """Return the run with Exudyn's own connector, for a bristle ``stiffness`` (N m/rad) and a ``step`` (s).
 
-    The connector has no input for the load. A function sets its torques before each step, and the resulting slip is
-    of second order in the step. Without load the clutch is switched off, because its bristle would hold on.
+    The connector has no input for the load, so a function sets its torques before each step, an error of second
+    order. Without load the clutch is switched off, because its bristle would hold on.
     """
     rotors = _rotors()
     mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS

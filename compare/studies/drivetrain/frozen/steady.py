@@ -129,7 +129,7 @@ NOTE = (
 class Steady(NamedTuple):
     """A steady motion on the bench at ``speed`` (rpm), measured and predicted by the reference, shape (3,) each.
 
-    The values are x, y (m) and slip (rad/s), or radius (m), frequency and slip (rad/s) of a whirl.
+    The values are x, y (m), or radius (m) and frequency (rad/s) of a whirl, and the slip (rad/s).
     """
 
     speed: float

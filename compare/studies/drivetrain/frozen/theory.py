@@ -2,8 +2,7 @@
 
 Their five coordinates are x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the vehicle. The
 slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The transpose of this map
-applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes that turn with the whirl,
-its stability is an eigenvalue problem.
+applies friction to the disc and its reaction, the moment −(M + z×F), to the engine.
 """
 
 from __future__ import annotations
@@ -102,8 +101,7 @@ CENTRE = slice(2, 4)
 class CarWhirl:
     """A steady whirl of the clutch disc in a car whose engine and load have constant torques (N m).
 
-    ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
-    ρ·βκρ of friction.
+    ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with ρ·βκρ.
     """
 
     engine_speed: float
@@ -120,9 +118,8 @@ def whirl_under_surplus(
 ) -> CarWhirl | None:
     """Return the whirl of a clutch whose load exceeds that for ``torque`` by the fraction ``surplus``, or None.
 
-    A centred disc would lock up, but the whirl reduces the friction moment. M(U, S), with the slips U of the centre
-    and S of the rim, equals the torque at one ratio U/S. This ratio determines F, and ρ·β·κ(ρ) = μN·F determines the
-    radius. Then S = (ω − κ)ρ/(U/S).
+    M(U, S), with the slips U of the centre and S of the rim, equals the torque at one ratio U/S. This ratio
+    determines F, and ρ·β·κ(ρ) = μN·F determines the radius. Then S = (ω − κ)ρ/(U/S).
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)

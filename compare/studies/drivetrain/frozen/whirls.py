@@ -1,7 +1,6 @@
 """The modulated whirl of the clutch disc: eigenvalues, growth and the resulting cycle.
 
-A whirl reduces the friction moment, so a clutch may slip under a load larger than its torque needs. Slip and radius
-of this whirl oscillate together; the map shows where the oscillation grows.
+A whirl reduces the friction moment, so a clutch may slip under a load larger than its torque needs.
 """
 
 from __future__ import annotations

@@ -115,7 +115,7 @@ HOP = 2 * SAMPLES
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return speeds (rad/s, shape (m,)), orders (n,) and amplitudes of x + iy (m, shape (n, m)).
 
-    Samples at equal angles of the engine keep an order constant although the speed increases.
+    Samples at equal angles of the engine keep an order constant.
     """
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
@@ -136,8 +136,7 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    Orders below one half are excluded, so a disc almost at rest does not count. A parabola locates the maximum
-    between the lines.
+    Orders below one half are excluded, so a disc almost at rest does not count.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))

@@ -132,7 +132,7 @@ def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
 def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
     """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
 
-    Only starts in cells whose corners have different ends are simulated. All others get the end of their cell.
+    Only starts in cells whose corners have different ends are simulated.
     """
     coarse = ends_on_grid(pin, side)
     cell = np.arange(FINER * (side - 1) + 1) // FINER

@@ -76,8 +76,7 @@ def reference_events(name: str) -> FloatArray:
 def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
     """Return both times from (1) with a simple event on the slip speed, and (7), without ``simulate``.
 
-    The event occurs at a slip speed s that falls with the tolerance. The remaining slip lasts for ms/(μN − F), where
-    F is the force (7) that holds a stuck pin.
+    The event occurs at a slip speed s. The remaining slip lasts for ms/(μN − F), with the force F that (7) holds.
     """
     omega, limit = FIG5.disc_speed, 1e4 * tolerance
     friction = plain.on_ring(FIG5.friction_force, 0.0, 1, 0.0)
@@ -107,8 +106,7 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 def critical_velocity(engine: Engine, tolerance: float) -> float:
     """Return vx(0) (m/s) that puts the second stick phase as far from the axis as the first.
 
-    It is NaN if a pin does not stick twice, or moves in the same direction from both starts. At small tolerances, the
-    search begins near the result of a larger tolerance.
+    It is NaN if a pin does not stick twice, or moves in the same direction from both starts.
     """
 
     def outward(velocity: float) -> float:

@@ -79,8 +79,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if the errors of
-    all missing radii are infinite.
+    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if all missing
+    radii are.
     """
 
     def found(values: FloatArray) -> float:
@@ -135,7 +135,7 @@ def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement
 
 
 def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = CREEP) -> bool:
-    """Return whether stuck pins may creep by more than ``most``, which leaves conclusions about stick open."""
+    """Return whether stuck pins may creep by more than ``most``."""
     return displaced(engine, speeds).largest > most
 
 
@@ -226,7 +226,7 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
 
 
 def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
-    """Return the errors of ``values``; a missing value is open if the engine creeps, and a mistake otherwise."""
+    """Return the errors of ``values``; a missing one is open if the engine creeps, and a mistake otherwise."""
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
@@ -241,10 +241,7 @@ def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
 def _between(
     engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return radii (m) that enclose the largest sticking radius, by bisection, or NaN if the search fails.
-
-    The search begins between the radii ``around`` and extends beyond them if necessary.
-    """
+    """Return radii (m) around the largest sticking radius, by bisection from ``around``, or NaN."""
     # The holding force goes from its minimum to its maximum in half a revolution.
     end = 1.02 * math.pi / pin.disc_speed
 
