@@ -69,8 +69,8 @@ def steady_motion(
 ) -> SteadyMotion | None:
     """Return the steady motion near the state ``guess``, shape (6,); None if the search fails.
 
-    The unknowns are the state and the period T; all but the disc's angle repeats after T. Without offset, the angle θ
-    by which the centre moves during T replaces the unknown y, and y of the ``guess`` must be 0.
+    The unknowns are the state and the period T; all but the disc's angle repeats after T. Without offset, the centre
+    moves by an angle θ during T, which replaces the unknown y, and y of the ``guess`` must be 0.
     """
     guess = np.asarray(guess, dtype=float)
     circles = disc.offset == 0.0

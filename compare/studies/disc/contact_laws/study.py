@@ -104,7 +104,7 @@ def friction_on(
 ) -> Measured:
     """Compare F_x, F_y (over μN) and M (over μN·R) with ``predicted``, shape (2n, 3).
 
-    By (19), friction is the initial acceleration times inertia plus the forces of springs and dampers.
+    Friction is the initial acceleration times inertia plus the forces of springs and dampers, see (19).
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 
