@@ -84,8 +84,8 @@ LEFT_OUT = 2e-13
 def slipping_time(end: float) -> float:
     """Return the time (s) until the slip of the engaging clutch has fallen to ``end`` (rad/s).
 
-    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with c = k·J/(2C) and
-    b = 1 − c·S₀²; the solution is a tangent.
+    If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with c = k·J/(2C)
+    and b = 1 − c·S₀²; the solution is a tangent.
     """
     c = FADE * REDUCED / (2.0 * CAPACITY)
     b = 1.0 - c * SLIP**2

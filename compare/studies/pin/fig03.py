@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -211,12 +212,8 @@ def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, loads: Sequence[float]) -> Rates:
     pins = [with_load(load) for load in loads]
-    return measured_rates(
-        engine,
-        [(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins],
-        [equilibrium_eigenvalues(pin) for pin in pins],
-        duration=FLOW_DURATION,
-    )
+    motions = [(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins]
+    return measured_rates(engine, motions, map(equilibrium_eigenvalues, pins), duration=FLOW_DURATION)
 
 
 @STUDY.claim(
@@ -256,9 +253,7 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 def stable_on_a_grid() -> Measured:
     pins = [
         replace(PIN, friction_force=share * LIMIT, disc_speed=speed, damping=damping)
-        for share in GRID_SHARES
-        for speed in GRID_SPEEDS
-        for damping in GRID_DAMPINGS
+        for share, speed, damping in itertools.product(GRID_SHARES, GRID_SPEEDS, GRID_DAMPINGS)
     ]
     values, rounding = eigenvalues_with_rounding(
         [sliding_jacobian(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins]
@@ -292,9 +287,8 @@ def draw_semicircle(data: ByEngine) -> Figure:
     if data:
         plane.legend(loc="center", bbox_to_anchor=(0.5, 0.42))
     distance.axhline(1e-9 * PIN.offset, color=GREY, linewidth=0.9, linestyle=":", label=r"$10^{-9}\,X_0$")
-    distance.set(
-        xlabel=axis(r"\mu N", "N"), ylabel="distance in m", ylim=(1e-16, 1e-8), title="Distance from (3)"
-    )
+    distance.set(xlabel=axis(r"\mu N", "N"), title="Distance from (3)")
+    distance.set(ylabel="distance in m", ylim=(1e-16, 1e-8))
     distance.legend(loc="upper left", ncols=2, fontsize=9.0)
     return figure
 
@@ -308,22 +302,12 @@ def _label(plane: Axes) -> None:
     for load in LOADS:
         x, y = equilibrium_position(with_load(load))
         outwards = np.array([x - X0 / 2.0, y]) / (X0 / 2.0)
-        plane.annotate(
-            f"{load:g}",
-            (x, y),
-            tuple(9.0 * outwards),
-            ha="left" if outwards[0] > 0.3 else "right" if outwards[0] < -0.3 else "center",
-            va="bottom" if outwards[1] > 0.3 else "center",
-            **small,
-        )
-    plane.set(
-        xlabel=axis("x", "m"),
-        ylabel=axis("y", "m"),
-        xlim=(-0.018, 0.121),
-        ylim=(-0.012, 0.066),
-        aspect="equal",
-        title=r"Positions of rest, labelled with $\mu N$ in N",
-    )
+        small["ha"] = "left" if outwards[0] > 0.3 else "right" if outwards[0] < -0.3 else "center"
+        small["va"] = "bottom" if outwards[1] > 0.3 else "center"
+        plane.annotate(f"{load:g}", (x, y), tuple(9.0 * outwards), **small)
+    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
+    plane.set(xlim=(-0.018, 0.121), ylim=(-0.012, 0.066))
+    plane.set(title=r"Positions of rest, labelled with $\mu N$ in N")
 
 
 def draw_eigenvalues(data: ByEngine) -> Figure:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -82,7 +82,7 @@ class Rates(NamedTuple):
 def measured_rates(
     engine: Engine,
     motions: Sequence[tuple[System, ArrayLike]],
-    predicted: Sequence[ArrayLike],
+    predicted: Iterable[ArrayLike],
     *,
     duration: float,
     frame_speed: float = 0.0,
@@ -93,6 +93,5 @@ def measured_rates(
         for system, state in motions
     ]
     fitting = [matched(values, to=own) for values, (own, _) in zip(predicted, found, strict=True)]
-    return Rates(
-        np.array([own for own, _ in found]), np.array(fitting), np.array([error for _, error in found])
-    )
+    measured, errors = zip(*found, strict=True)
+    return Rates(np.array(measured), np.array(fitting), np.array(errors))

@@ -15,14 +15,8 @@ import numpy as np
 
 from compare.claims import Measured, change_as_error
 from compare.claims.linearised_flow import ComplexArray
-from reference_model import (
-    Annulus,
-    DiscOnDisc,
-    SpinningEquilibrium,
-    SpinningWhirl,
-    self_centred_equilibria,
-    whirls,
-)
+from reference_model import Annulus, DiscOnDisc, self_centred_equilibria, whirls
+from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:

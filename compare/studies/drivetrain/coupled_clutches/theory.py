@@ -121,13 +121,12 @@ def exact() -> Motion:
 @functools.cache
 def switches() -> list[tuple[float, int, int]]:
     """Return time (s), clutch number and new mode of each event that friction alone causes."""
-    found = [
+    return sorted(
         (time, clutch, mode)
         for clutch in range(len(INERTIAS) - 1)
         for time, mode in exact().switches(clutch)
         if time not in exact().chain.breaks
-    ]
-    return sorted(found)
+    )
 
 
 @dataclass(frozen=True)
@@ -232,14 +231,14 @@ def with_bristles(step: float, stiffness: float) -> Run:
     """
     rotors = _rotors()
     mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS
+    backward = items.NodeGenericData(
+        initialCoordinates=[-sliding * LOAD, 0.0, 0.0], numberOfDataCoordinates=3
+    )
     clutches = []
     for *pair, begins in zip(rotors.nodes, rotors.nodes[1:], (0.0, *ENGAGED_FROM), strict=False):
-        slipping = [-sliding * LOAD, 0.0, 0.0]  # backward
         connector = items.ObjectConnectorCoordinateSpringDamperExt(
             markerNumbers=[rotors.marker(node) for node in pair],
-            nodeNumber=mbs.AddNode(
-                items.NodeGenericData(initialCoordinates=slipping, numberOfDataCoordinates=3)
-            ),
+            nodeNumber=mbs.AddNode(backward),
             stickingStiffness=stiffness,
             stickingDamping=2.0 * math.sqrt(stiffness),
             exponentialDecayStatic=DECAY,

@@ -298,14 +298,12 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
         return None
 
     def leave(speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
-        pin = pin_at(speed)
-        return engine.simulate(pin, on_circle(pin), times, tolerance=tolerance)
+        return engine.simulate(pin_at(speed), on_circle(pin_at(speed)), times, tolerance=tolerance)
 
-    def turning(tolerance: float) -> list[FloatArray]:
-        return [turning_speed(leave(speed, [0.0, CAUGHT], tolerance).at_end) / speed for speed in below]
-
-    below = [speed for speed in starts if speed < K]
-    found = refined(turning, 1e-7)
+    below, both = [speed for speed in starts if speed < K], [0.0, CAUGHT]
+    found = refined(
+        lambda tolerance: [turning_speed(leave(one, both, tolerance).at_end) / one for one in below], 1e-7
+    )
     times = np.linspace(0.0, CAUGHT, 181)
     leaving = [leave(speed, times, 1e-7).radius for speed in starts]
     return compared(
@@ -320,13 +318,8 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     pins = [pin_at(*point) for point in points]
-    return measured_rates(
-        engine,
-        [(pin, on_circle(pin)) for pin in pins],
-        [whirl_eigenvalues(pin) for pin in pins],
-        duration=FLOW_DURATION,
-        frame_speed=K,
-    )
+    motions, predicted = [(pin, on_circle(pin)) for pin in pins], map(whirl_eigenvalues, pins)
+    return measured_rates(engine, motions, predicted, duration=FLOW_DURATION, frame_speed=K)
 
 
 @STUDY.claim(
