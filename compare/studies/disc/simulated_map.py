@@ -30,10 +30,8 @@ TOLERANCE = 10.0 * WORKING  # sufficient for the kind of final motion
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5  # stride of the discs for eigenvalues of whirls
-
-GROWN = 15.0
-"""Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
+EVERY, GROWN = 5, 15.0
+"""Stride of the discs for eigenvalues of whirls, and growth exponent that lets motions leave an unstable whirl."""
 
 UNDECIDED_IS_OPEN = 2.0
 """Error of an undecided motion, larger than the margins ±1 of the answers."""

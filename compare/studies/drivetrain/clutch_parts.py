@@ -33,11 +33,8 @@ ONSET = DAMPING / (RADIUS**2 * LOAD)
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
 """Negative slopes in s/m."""
 
-EPSILON = 1e-4
-"""ε in m/s, without effect because the disc does not stick."""
-
-PERTURBED = 0.1
-"""Initial speed of the disc in rad/s."""
+EPSILON, PERTURBED = 1e-4, 0.1
+"""ε in m/s, without effect because the disc does not stick, and the disc's initial speed in rad/s."""
 
 PERIODS = 10
 TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
@@ -57,14 +54,11 @@ COLD_COEFFICIENT, FADE = 0.33, 2e-3
 CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
 """Heat capacity of the linings in J/K, heat loss in W/K and ambient temperature in °C."""
 
-CREEP = 1e-2
-"""ε in m/s; 0.1 rad/s at this radius."""
+CREEP, NEARLY_HOLDS = 1e-2, 1.0
+"""ε in m/s, 0.1 rad/s at this radius, and the slip in rad/s that ends the slipping time."""
 
 ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
 """Times in s during slip, and a time after lock-up."""
-
-NEARLY_HOLDS = 1.0
-"""Slip in rad/s that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
 """Sustained slip: slip in rad/s, inertias in kg m² and times in s."""
@@ -74,11 +68,8 @@ REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
 HEAT = 0.5 * REDUCED * SLIP**2
 """Moment of cold friction in N m, effective inertia in kg m², and energy of the slip in J."""
 
-BOTH = (1e-10, 1e-10 / COARSENING)
-"""Tolerances of explicit steps."""
-
-LEFT_OUT = 2e-13
-"""Fraction of a run's span that ``solve_dynamic`` skips at each break."""
+BOTH, LEFT_OUT = (1e-10, 1e-10 / COARSENING), 2e-13
+"""Tolerances of explicit steps, and fraction of a run's span that ``solve_dynamic`` skips at each break."""
 
 
 def slipping_time(end: float) -> float:

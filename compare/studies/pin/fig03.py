@@ -28,14 +28,13 @@ SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in F
 LIMIT = formulas.largest_load_with_equilibrium(PIN)  # (5), in N
 START = (0.1, 0.05, 0.0, 0.0)  # position in m, displaced from every equilibrium
 LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # μN in N, within (5)
-DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12
-DELAY = 60.0  # final part of a run in s, for the remaining transient
+DURATION, DELAY, TOLERANCE = 520.0, 60.0, 0.03 * WORKING
+"""Runs to rest: duration in s until the slowest transient, exp(−βt/2m), has fallen to 5e-12, its final part for the
+remaining transient, and tolerance for a resolution of 1e-9 of X0.
+"""
 
-TOLERANCE = 0.03 * WORKING
-"""For positions of rest, whose resolution is 1e-9 of X0."""
-
-SHARES = (0.98, 0.999, 1.05, 1.2)  # μN as a multiple of the limit (5)
-SETTLING = 300.0  # duration in s from the axis to the equilibrium
+SHARES, SETTLING = (0.98, 0.999, 1.05, 1.2), 300.0
+"""μN as a multiple of the limit (5), and duration in s from the axis to the equilibrium."""
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
 """Period of the disc in s. Above the limit the pin sticks at once, so two periods suffice."""

@@ -32,18 +32,13 @@ WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N; the paper omits the range, and up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
+CYCLE_LOAD, CYCLE_DEVIATION, CYCLE_TURNS = 0.102, 0.01, 5
+"""μN in N between C·X0 and the end of the stick–slip cycle, relative distance from the cycle, and number of turns."""
 
-CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
-"""Relative distance of the starts from the cycle, and number of turns."""
-
-TOLERANCE = 10.0 * WORKING
-"""For all claims except the end of the whirl, which is measured to 1e-8 N."""
+TOLERANCE, ON_THE_WAY = 10.0 * WORKING, 1e-8
+"""For claims except the end of the whirl, and for the branch, whose friction forces have errors below 1e-10 N."""
 
 INNERMOST = 0.012  # crossing of the x axis in m that ends the branch
-
-ON_THE_WAY = 1e-8
-"""For the branch in the figure; its friction forces have errors below 1e-10 N."""
 
 
 def with_load(load: float) -> PinOnDisc:

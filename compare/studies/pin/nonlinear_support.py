@@ -58,13 +58,10 @@ TOLERANCE = 10 * WORKING
 
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
-GROWING_LOADS = (0.12, 0.06, 0.03)
-"""μN in N without damping; its effect on the final radius falls with it."""
-
-GROWING_FROM = 0.3
-"""Initial radius in m; closer to the axis, the largest of these friction forces holds a pin on the disc."""
-
-GROWN = 1e-6  # for growing motions, whose ends suffice
+GROWING_LOADS, GROWING_FROM, GROWN = (0.12, 0.06, 0.03), 0.3, 1e-6
+"""Growth without damping: μN in N, initial radius in m, and tolerance. Closer to the axis, the largest of these
+friction forces holds a pin on the disc.
+"""
 
 
 def curves() -> Data:

@@ -27,11 +27,8 @@ SOURCE = "passenger car of exudyn_models.drivetrain.parameters; torque and slip 
 
 RPM = math.pi / 30.0
 
-BRAKE = 100.0
-"""b of the brake in N m s/rad; the slip settles with a time constant J/b = 0.008 s."""
-
-HELD = 1e18
-"""Inertia in kg m² of a flywheel with constant speed: 100 N m reduce it by 1e-16 rad/s in 1 s."""
+BRAKE, HELD = 100.0, 1e18
+"""b of the brake in N m s/rad; inertia in kg m² of a flywheel that 100 N m slow by only 1e-16 rad/s in 1 s."""
 
 EPSILON = 1e-3
 """ε in m/s; the facings slip a thousand times faster, so friction is Coulomb's."""

@@ -27,11 +27,8 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 CONVERGED = 1e-9
 """Largest relative residual of a fixed point."""
 
-SAMPLES = 12
-"""Samples for the means of a motion."""
-
-SYMMETRY = 6
-"""Divisor of the revolution for a continuous ring, which allows any value."""
+SAMPLES, SYMMETRY = 12, 6
+"""Samples for the means of a motion, and divisor of the revolution for a continuous ring, which allows any value."""
 
 Y = 1
 """Index of y in the state and of θ in the unknowns, which replaces y."""

@@ -25,13 +25,10 @@ SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """U/W, not too close to 1, where friction is not differentiable."""
 
-SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
-
-CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
+SPEED, CENTRE, DIRECTION, ANGLE = 0.3, 0.05 - 0.02j, 0.4, 0.3
+"""√(U² + W²) in m/s, position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
 
 STEP = 2e-3  # time step in s
-
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
     (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
@@ -41,11 +38,8 @@ DIFFERENCES = (
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
 """U/W of the comparison."""
 
-RESTING = (INNER, 0.75 * R, R)
-"""Radii (m) of a point at rest on the annulus."""
-
-RINGS = (8, 9, 10, 11, 12)
-"""Numbers of rings on either side of that radius, few enough for errors above rounding."""
+RESTING, RINGS = (INNER, 0.75 * R, R), (8, 9, 10, 11, 12)
+"""Radii (m) of a resting point, and numbers of rings on either side of it, few enough for errors above rounding."""
 
 WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli as shares of their mean radius
 

@@ -45,10 +45,8 @@ DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """μN in N near the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN as a multiple of the largest μN with an equilibrium
-
-STICKING_TIME = 80.0
-"""Time (s) within which friction accelerates a disc from 95 % to the speed of the master disc."""
+STICKING_RATIOS, STICKING_TIME = (0.98, 1.02, 1.05), 80.0
+"""μN as a multiple of the largest μN with an equilibrium, and time (s) until a disc gains the last 5 % of ω."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""

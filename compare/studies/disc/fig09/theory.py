@@ -45,27 +45,18 @@ REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
 """μN in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
 
-HALVED_OFFSETS = (0.2, 0.1, 0.05)
-OFFSET_LOAD = 0.02
+HALVED_OFFSETS, OFFSET_LOAD = (0.2, 0.1, 0.05), 0.02
 """X0 in m and μN in N of whirls that show the effect of X0."""
 
-STICK_LOADS = (0.12, 0.2)
-INSIDE = 0.98
-OUTSIDE = (1.02, 1.5)
-"""Sticking discs: μN in N, and initial radii as multiples of (9)."""
-LATEST = 1.1  # duration for a disc outside (9), as a multiple of its release time (7)
+STICK_LOADS, INSIDE, OUTSIDE, LATEST = (0.12, 0.2), 0.98, (1.02, 1.5), 1.1
+"""Sticking discs: μN in N, initial radii as multiples of (9), and duration outside (9) as a multiple of (7)."""
 
-DECAY = (0.02, 60.0)
-GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
-"""μN in N and duration in s of deviations from the whirl, and from equilibria."""
+DECAY, GROWTHS = (0.02, 60.0), ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
+DISPLACED = 1e-4
+"""μN in N and duration in s of deviations from the whirl and from equilibria; share of the distance from the axis."""
 
-DISPLACED = 1e-4  # initial deviation as a share of the distance from the axis
-
-ORBIT_TOLERANCE = WORKING / 10
-"""For periodic motions of engines; the reference has a hundredth of it."""
-
-TOLERANCE = 3e-8
-"""For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
+ORBIT_TOLERANCE, TOLERANCE = WORKING / 10, 3e-8
+"""For periodic motions of engines, and for sticking ones, where regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
 """End of the axis in N, which the paper omits; sticking begins at about half of it, C·X0."""
@@ -75,10 +66,8 @@ BRANCH_START, BRANCH_END, BRANCH_STEP = 0.1, 1.0, 0.24
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
-FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""μN/(C·X0) slightly above the fold, and the smallest μN in N."""
-
-FOLD_STEP = 0.12  # relative step of the branch to the fold
+FOLD_START, LEAST_FOLD_START, FOLD_STEP = 0.016, 4.5e-4, 0.12
+"""μN/(C·X0) slightly above the fold, the smallest μN in N, and the relative step of the branch to the fold."""
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)

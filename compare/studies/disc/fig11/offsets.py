@@ -26,14 +26,11 @@ OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last is that of the other figures."""
 
-ENDS_UNTIL = 720.0  # duration in s
-LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
-ENDS_TOLERANCE = 1e-4  # for the long simulations
+ENDS_UNTIL, LOOKED_AT, ENDS_TOLERANCE = 720.0, 240.0, 1e-4
+"""Duration in s, its evaluated end in s, a period of the modulation, and tolerance."""
 
-SWING = 0.005
-"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of that at X0 = 0."""
-
-ORBITS_EXTENT = 1e-4  # smallest swing (m) of a whirl's radius
+SWING, ORBITS_EXTENT = 0.005, 1e-4
+"""Smallest swings of a modulated motion's spin (rad/s, mean over a turn) and of a whirl's radius (m)."""
 
 MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
 """Near the modulated motion at ``theory.BOTH_STABLE``, found by raising X0 in small steps."""

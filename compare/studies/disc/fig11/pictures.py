@@ -207,8 +207,8 @@ def draw_growth(data: ByEngine) -> Figure:
             times = np.array([0.0, 640.0 if row == 0 else 440.0])
             style = curve("theory", rf"$\propto \exp({rate:.5f}\,t)$, linearised", linewidth=1.2)
             panel.semilogy(times, 5e-4 * np.exp(rate * times), **style)
-            words = rf"$\lambda = {rate:.5f} \pm {frequency:.5f}\,\mathrm{{i}}$ 1/s"
-            panel.annotate(words, (0.97, 0.30), xycoords="axes fraction", ha="right")
+            value = rf"$\lambda = {rate:.5f} \pm {frequency:.5f}\,\mathrm{{i}}$ 1/s"
+            panel.annotate(value, (0.97, 0.30), xycoords="axes fraction", ha="right")
         panel.set(xlabel=axis("t", "s"), title=words[:1].upper() + words[1:], xlim=(0.0, None))
         if panel.lines:
             panel.legend(loc="lower right", fontsize=9.0)

@@ -32,14 +32,10 @@ CENTRED = f"{SOURCE}: 0 here"
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
 UNTIL = 700.0  # duration in s, three periods of the modulation
-
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
-TRIED = (0.0072, 0.00725, 0.0073)  # X0 in m between which the critical X0 is interpolated
-
-SAMPLES_A_TURN = 16
-
-BOTH_STABLE = 0.0073  # X0 in m, slightly above the critical one
+TRIED, BOTH_STABLE, SAMPLES_A_TURN = (0.0072, 0.00725, 0.0073), 0.0073, 16
+"""X0 in m between which the critical X0 is interpolated, and slightly above it."""
 
 STUDY = Study.beside(
     __file__,

@@ -22,15 +22,13 @@ from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
+SLIDING_START, SLIDING = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39), np.linspace(0.0, 100.0, 101)
 """All contact points slip for 100 s (our choice)."""
 
-SLIDING = np.linspace(0.0, 100.0, 101)
+AMPLITUDE, DURATION, TOLERANCE = 1e-4, 200.0, 2000 * WORKING
+"""Initial deviation as a share of the whirl's radius, duration in s until it is ten times larger, and tolerance."""
 
 OF_CYCLE = 10 * WORKING  # for the motion that settles on the modulated cycle
-AMPLITUDE = 1e-4  # initial deviation as a share of the whirl's radius
-DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
-TOLERANCE = 2000 * WORKING  # small compared with ``AMPLITUDE``
 
 
 GROWTH_NOTE = (

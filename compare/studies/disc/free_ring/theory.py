@@ -89,13 +89,10 @@ LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees i
 
 INTERVALS = 400  # samples until rest
 
-REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
-"""Remaining times of samples over the time to rest."""
+REMAINING, ENDING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3]), np.geomspace(1e-3, 3e-2, 10)
+"""Remaining times of samples as shares of the time to rest, also for a power law."""
 
 NEARNESSES = (7.0, 9.0)  # A/t of the samples
-
-ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times for a power law, as shares of the time to rest."""
 
 TOLERANCE = WORKING / 10
 """For ratios near rest, where less than a thousandth of the initial speed is left."""

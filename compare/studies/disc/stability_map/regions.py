@@ -31,12 +31,8 @@ LINES = (
 )
 """Lines across the ring's Hopf curves: plane, fixed parameter, its value."""
 
-ASIDE = 0.01  # relative distance from the curves
-
-DEVIATION = 0.02
-"""Initial deviation from the whirl as a share of the distance to U = W, where a point of the ring comes to rest."""
-
-FLOW_TOLERANCE = 100 * WORKING  # for motions whose small differences are evaluated
+ASIDE, DEVIATION, FLOW_TOLERANCE = 0.01, 0.02, 100 * WORKING
+"""Relative distance of discs from the curves, deviation as a share of the distance to U = W, and tolerance."""
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
 """x, y, angle, vx, vy, spin near the largest radius of the modulated cycle."""

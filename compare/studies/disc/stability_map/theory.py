@@ -148,19 +148,17 @@ def section() -> Data:
     return data
 
 
-SETTLED = 600.0
-WATCHED = 350.0
-"""Time until motions have settled, and length of the evaluated end, in s."""
-
-SLOWLY_SETTLED = 2400.0
-"""Settling time (s) just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
+SETTLED, WATCHED, SLOWLY_SETTLED = 600.0, 350.0, 2400.0
+"""Time until motions have settled, length of the evaluated end, and settling time just outside the range of a cycle,
+where disturbances decay at less than 0.01 1/s; in s.
+"""
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3  # largest radius of rotation about the axis, as a share of R
-
-MODULATED = 0.05
-"""Smallest (largest − smallest)/(largest + smallest) radius of a modulated motion."""
+AXIS, MODULATED = 1e-3, 0.05
+"""Largest radius of rotation about the axis as a share of R, and smallest (largest − smallest)/(largest + smallest)
+radius of a modulated motion.
+"""
 
 
 ENDS = ("rotation", "whirl", "modulated cycle", "sticking")

@@ -32,10 +32,8 @@ FINER = 24
 """Rings of the reference's annulus instead of 16, to estimate their error."""
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
-"""Torque in N m and slip in rad/s for each onset."""
-
 TORQUE, SLIPPING = 80.0, 12.0
-"""Torque in N m and slip in rad/s on the bench, similar to the run-up."""
+"""Torque in N m and slip in rad/s for each onset, and on the bench, similar to the run-up."""
 
 BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""
@@ -43,11 +41,8 @@ BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 DECAYS, SEEN = 20.0, 5.0
 """Length of a run in decay times of its slowest mode; the last ``SEEN`` show the remaining transient."""
 
-START = 3e-4
-"""Initial position of a whirl in m, within the play."""
-
-SAMPLE = 5e-4
-"""Sampling interval in s."""
+START, SAMPLE = 3e-4, 5e-4
+"""Initial position of a whirl in m, within the play, and sampling interval in s."""
 
 MODULATED = (6000.0, 0.6, 0.1)
 """Speed in rpm, torque in N m, and relative surplus of the load over the load that this torque needs."""
@@ -61,40 +56,23 @@ BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
 BETWEEN = (3900.0, 4300.0)
 """Speeds in rpm below and above the border."""
 
-TIME = 0.4
-"""Duration in s of runs with small deviations."""
+TIME, DEVIATION, TOLERANCE = 0.4, 3e-3, 20 * WORKING
+"""Runs whose difference is taken: duration in s, initial deviation as a share of the radius, and tolerance."""
 
-DEVIATION = 3e-3
-"""Initial deviation as a share of the radius."""
+PUSH, UNTIL, CYCLE_SAMPLE, ROUGHER = 0.2, 6.0, 2e-3, 80.0
+"""Modulated motion: initial deviation as a share of the radius, end and sampling interval in s, and tolerance as a
+multiple of the usual one.
+"""
 
-TOLERANCE = 20 * WORKING
-"""For runs whose difference is taken."""
-
-PUSH, UNTIL = 0.2, 6.0
-"""Modulated motion: initial deviation as a share of the radius, and end in s."""
-
-ROUGHER = 80.0
-"""Its tolerance as a multiple of the usual one."""
-
-CYCLE_SAMPLE = 2e-3
-"""Its sampling interval in s."""
-
-SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""Speeds in rpm, from just above the natural frequency."""
-
-TORQUES = np.geomspace(0.2, 60.0, 32)
-"""Torques in N m."""
-
+SPEEDS, TORQUES = np.linspace(2900.0, 6500.0, 32), np.geomspace(0.2, 60.0, 32)
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
-
 SURPLUS, SPEED = 0.1, 6000.0
-"""Surplus in the map of speeds, and speed in rpm in the map of surpluses."""
+"""Speeds in rpm, from just above the natural frequency, torques in N m and surpluses of the maps; surplus in the map
+of speeds, and speed in the map of surpluses.
+"""
 
-
-ENGINE, VEHICLE, ANGLE = 0, 1, 4
-"""Indices of θ, ψ and φ among the coordinates; x and y lie between them."""
-
-CENTRE = slice(2, 4)
+ENGINE, VEHICLE, ANGLE, CENTRE = 0, 1, 4, slice(2, 4)
+"""Indices of θ, ψ, φ, and of x and y, among the coordinates."""
 
 
 @dataclass(frozen=True)

@@ -20,23 +20,11 @@ MM = 1e3
 
 CYAN = "#58e0ff"
 
-OPEN = 0.7
-"""Angle in rad that turns the cut of the cover towards the viewer."""
+SHOWN, ENLARGED, OPEN = (2000.0, 3100.0, 5000.0), 50.0, 0.7
+"""Speeds in rpm, magnification of radial motion, and angle in rad that turns the cut of the cover to the viewer."""
 
-ENLARGED = 50.0
-"""Magnification of radial motion."""
-
-SHOWN = (2000.0, 3100.0, 5000.0)
-"""Speeds in rpm."""
-
-FRAMES = 15
-"""Frames of each slow motion."""
-
-SIZE = (330, 280)
-"""Size in pixels."""
-
-STEP = math.radians(48.0)
-"""Rotation of the engine per frame in rad."""
+FRAMES, SIZE, STEP = 15, (330, 280), math.radians(48.0)
+"""Slow motions: number of frames, size in pixels, and rotation of the engine per frame in rad."""
 
 
 def draw(data: ByEngine) -> Figures:

@@ -20,23 +20,17 @@ if TYPE_CHECKING:
     from exudyn_models import Drivetrain
     from exudyn_models.drivetrain.model import DrivetrainMotion
 
-IDLE, TOP = 800.0, 6000.0
-"""Speeds in rpm."""
-
-TORQUE, RIPPLE = 100.0, 1.0
-"""Mean torque of the engine in N m, and amplitude of its firing order over the mean."""
+IDLE, TOP, TORQUE, RIPPLE = 800.0, 6000.0, 100.0, 1.0
+"""Speeds in rpm, mean torque of the engine in N m, and amplitude of its firing order relative to the mean."""
 
 SLIP, GAIN = 12.0, 0.05
 """Target slip in rad/s, and relative increase of the load per rad/s of excess slip."""
 
-TOLERANCE = 6.4e-6
-"""Gives the energy balance an error of 2.5e-7; the claim allows 1e-6."""
+TOLERANCE, SAMPLE = 6.4e-6, 5e-4
+"""Tolerance, which gives the energy balance an error of 2.5e-7, and sampling interval in s."""
 
 LINES_APART = 0.06
 """Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
-
-SAMPLE = 5e-4
-"""Sampling interval in s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
 """Window of the spectrum in turns of the engine, and samples per turn."""

@@ -44,9 +44,10 @@ ASKED, BARELY = 64, 1e-6
 UNTIL = 3000.0  # duration in s
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
 STARTS, SEED = 2000, 5  # random starts, the same at every speed
-RECOMPUTED = 16  # starts for the plain reference, half of them near the boundary
-SETTLED = 250.0  # duration in s until these starts have reached one of the two ends
 STEP = 5e-3  # distance (rad) of neighbouring releases, whose differences give the multiplier
+
+RECOMPUTED, SETTLED = 16, 250.0
+"""Starts for the plain reference, half of them near the boundary, and duration in s until their ends."""
 
 PLACES, ASIDE = 4, 5e-3
 """Starts on the boundary, and distance of simulated starts from it in m and m/s."""

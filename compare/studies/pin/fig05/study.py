@@ -30,24 +30,19 @@ UNTIL = 400.0
 SAMPLES = 4001
 
 FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # permanent slip near the whirl (our choice)
+SLIDING_START, SLIDING_TIMES = (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 100.0, 101)
+"""Permanent slip near the whirl (our choice)."""
 
-SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
+CAPTURE, AFTERWARDS = 1e-6, 220.0
+"""Accuracy of the critical velocity in m/s, and duration in s until such a deviation, which grows by a quarter per
+turn, is of order one.
+"""
 
-CAPTURE = 1e-6  # required accuracy of the critical velocity in m/s
+RUNS_TOLERANCE, CRITICAL_TOLERANCE = 5.0 * WORKING, WORKING / 5.0
+"""For runs, and for the critical velocity, whose error under a regularised law is about a hundred times larger."""
 
-AFTERWARDS = 220.0
-"""Duration in s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
-
-SIDES_TOLERANCE = 1e-7
-
-BESIDE = 2e-5
-"""Half width in m/s of the search for the critical velocity, about its value at ``SIDES_TOLERANCE``."""
-
-RUNS_TOLERANCE = 5.0 * WORKING
-
-CRITICAL_TOLERANCE = WORKING / 5.0
-"""For the critical velocity, whose error under a regularised law is about a hundred times larger."""
+SIDES_TOLERANCE, BESIDE = 1e-7, 2e-5
+"""Tolerance and half width in m/s of the first search for the critical velocity and of the next one."""
 
 LEAST_SHARE = 1e-5
 """Smallest error of stick times over their resolution.

@@ -35,18 +35,14 @@ CREEP = 1e-2  # relative displacement that leaves stick uncertain
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
-LATEST = 1.1  # duration for a pin outside, over the time (7)
-REVOLUTIONS = 2.0  # turns of a pin inside; the holding force has the period of one revolution
+LATEST, REVOLUTIONS = 1.1, 2.0
+"""Duration for a pin outside as a multiple of (7), and turns of a pin inside, two periods of the holding force."""
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
 
-BRACKET = (0.03, 4.0)
-"""Initial bracket of the search in units of X0, independent of (9)."""
-
-PRECISION = 6e-5  # relative accuracy of this search
-
-SEARCH_TOLERANCE = 1e-7
+BRACKET, PRECISION, SEARCH_TOLERANCE = (0.03, 4.0), 6e-5, 1e-7
+"""Initial bracket of the search in units of X0, independent of (9), its relative accuracy and its tolerance."""
 
 TOLERANCE = 3e-8  # moderate, because regularised laws close to Coulomb's make stick expensive
 DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m

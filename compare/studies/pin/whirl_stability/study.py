@@ -37,16 +37,14 @@ DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
 the remaining transient. The slowest deviation falls to 1e-10.
 """
 
-STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
-CAUGHT = 18.0
+STARTS, CAUGHT = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0), 18.0
 """Starts on the circle (11): ω in rad/s below and above k, and the time in s until a pin sticks if ω < k."""
 
 POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
 FLOW_DURATION = 0.5
 """Eigenvalues: ω in rad/s and β in N s/m, and duration in s."""
 
-DEVIATION = 1e-3
-DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
+DEVIATION, DEVIATION_TIMES = 1e-3, np.linspace(0.0, 60.0, 301)
 """Amplitude of the decaying deviation as a share of the radius (11), and times in s."""
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
