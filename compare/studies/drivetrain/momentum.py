@@ -78,10 +78,7 @@ class Solver(NamedTuple):
     resolution: float
 
 
-SOLVERS = {
-    "explicit": Solver("RK67", 200, 6, 1e-11),
-    "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8),
-}
+SOLVERS = {"explicit": Solver("RK67", 200, 6, 1e-11), "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8)}
 
 STUDY = Study.beside(
     __file__,

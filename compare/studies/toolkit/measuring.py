@@ -20,10 +20,7 @@ def compared(predicted: ArrayLike, found: Measurement, **more: Any) -> Measured:
 
 
 def followed(
-    engine: Engine,
-    motions: Sequence[tuple[System, ArrayLike, ArrayLike]],
-    tolerance: float,
-    part: Any = ...,
+    engine: Engine, motions: Sequence[tuple[System, ArrayLike, ArrayLike]], tolerance: float, part: Any = ...
 ) -> Measurement:
     """Return a ``part`` of the states of ``motions`` (system, initial state, times in s), equally large ones."""
     return refined(

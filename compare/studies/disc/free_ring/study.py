@@ -16,12 +16,15 @@ import compare.studies.disc.free_ring.theory as theory
 from compare.claims import Measured, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine
+from compare.studies.disc.free_ring.theory import OTHERS, REMAINING, RINGS, SOURCE, TOLERANCE, Throw
 from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
+Throws = Sequence[Throw]
+
+STUDY = Study.beside(__file__, "free-ring", source=SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
@@ -33,26 +36,24 @@ STUDY.provides(curves=theory.curves)
     equation="(19), (20)",
     resolution=1e-4,
     note="Delay of the end of sliding after the end of spinning, over the time to rest; U and W are extrapolated "
-    f"linearly from t/T = {theory.REMAINING[1]:g}, {theory.REMAINING[0]:g} before rest. Error: the change for "
+    f"linearly from t/T = {REMAINING[1]:g}, {REMAINING[0]:g} before rest. Error: the change for "
     "earlier samples, and at a smaller tolerance.",
 )
-def end_together(
-    engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
-) -> Measured:
+def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured:
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
         """Return the delay of the centre's rest after the rim's over the time to rest, by two pairs of samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
-            times = rest * (1.0 - theory.REMAINING[:3])
+            times = rest * (1.0 - REMAINING[:3])
             centre, rim = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
             found.append((_zeros_between(times, centre) - _zeros_between(times, rim)) / rest)
         return np.array(found)
 
-    found = refined(apart, theory.TOLERANCE)
+    found = refined(apart, TOLERANCE)
     # Three errors of a speed over its slope, which exceeds 0.4·g.
-    noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
+    noise = 2.0 * 3.0 * TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
     return of_throws(
@@ -60,11 +61,11 @@ def end_together(
         predicted=np.zeros(len(throws)),
         value=found.value[:, 0],
         error=found.largest + noise + bend,
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
     )
 
 
-def of_throws(throws: Sequence[theory.Throw], **measured: Any) -> Measured:
+def of_throws(throws: Throws, **measured: Any) -> Measured:
     at = {"throw": [throw.name for throw in throws]} | measured.pop("at", {})
     return Measured(system=theory.TABLE, at=at, **measured)
 
@@ -77,17 +78,17 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
     "The ratio of sliding speed to rim speed ends at 1 for a ring with J = mR², whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note=f"U/W when {theory.REMAINING[0]:g} of the time to rest remains. Error: the tolerance of both speeds, "
+    note=f"U/W when {REMAINING[0]:g} of the time to rest remains. Error: the tolerance of both speeds, "
     "and the change at a smaller one. Model error: the remaining distance to 1.",
 )
-def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def ratio_one(engine: Engine, throws: Throws = RINGS) -> Measured:
 
     def ratio(tolerance: float) -> list[float]:
-        found = (theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[0]) for throw in throws)
+        found = (theory.speeds_before_rest(engine, throw, tolerance, REMAINING[0]) for throw in throws)
         return [sliding[0] / rim[0] for sliding, rim in found]
 
-    found = refined(ratio, theory.TOLERANCE)
-    left = theory.REMAINING[0] * np.array([theory.roughly_rest(engine, throw) for throw in throws])
+    found = refined(ratio, TOLERANCE)
+    left = REMAINING[0] * np.array([theory.roughly_rest(engine, throw) for throw in throws])
     farthest = np.array([theory.expected_approach(throw) for throw in throws]) / left
     return of_throws(
         throws,
@@ -95,7 +96,7 @@ def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> 
         value=found.value,
         error=found.largest + ratio_noise(left),
         model=float(np.max(theory.deviation(farthest))),
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
         data={"ratio of rings": np.mean(found.value)},
     )
 
@@ -103,7 +104,7 @@ def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> 
 def ratio_noise(left: ArrayLike) -> FloatArray:
     """Return the error of ln(U/W), ``left`` s before rest, that the tolerance of both speeds causes for c = 1."""
     speed = 2.0 / math.pi * theory.DECELERATION * np.asarray(left)
-    return np.asarray(2.0 * theory.TOLERANCE / speed)
+    return np.asarray(2.0 * TOLERANCE / speed)
 
 
 @STUDY.claim(
@@ -115,7 +116,7 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
     "measurement.",
     basis="reference",
 )
-def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def approach(engine: Engine, throws: Throws = RINGS) -> Measured:
 
     def constants(tolerance: float) -> FloatArray:
         found = []
@@ -126,7 +127,7 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
             found.append((theory.rest_of(trajectory) - times) * theory.nearness(np.log(sliding / rim)))
         return np.array(found)
 
-    found = refined(constants, theory.TOLERANCE)
+    found = refined(constants, TOLERANCE)
     there = np.isfinite(found.error)  # samples without an error estimate must not affect the others
     largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
     predicted = np.array([theory.expected_approach(throw) for throw in throws])
@@ -148,10 +149,10 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
     )
 
 
-def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
+def _drawn(engine: Engine, throws: Throws) -> dict[str, ArrayLike]:
     rows = []
     for throw in throws:
-        trajectory = theory.thrown(engine, throw, theory.TOLERANCE)
+        trajectory = theory.thrown(engine, throw, TOLERANCE)
         times = theory.uniform_times(engine, throw)
         approach = theory.expected_approach(throw) / (theory.rest_of(trajectory) - times)
         rows.append((*theory.speeds_at(trajectory, times), approach))
@@ -162,28 +163,28 @@ def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLik
     "For mR²/2 < J < 2mR², the ratio ends at the balance of both decelerations, whatever the start",
     equation="(19), (20)",
     resolution=1e-2,
-    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in theory.REMAINING[:3])} of the time to rest, "
+    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in REMAINING[:3])} of the time to rest, "
     "extrapolated to zero as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: "
     "the change at twice the remaining time, and at a smaller tolerance.",
     basis="reference",
     swept=("polar_inertia",),
 )
-def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
+def other_ratios(engine: Engine, throws: Throws = OTHERS) -> Measured:
 
     def ratios(tolerance: float) -> FloatArray:
         found = []
         for throw in throws:
-            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[:4])
+            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, REMAINING[:4])
             found.append([_limit(*(sliding / rim)[:3]), _limit(*(sliding / rim)[1:])])
         return np.array(found)
 
-    found = refined(ratios, theory.TOLERANCE)
+    found = refined(ratios, TOLERANCE)
     return of_throws(
         throws,
         predicted=[math.exp(Slowing(throw.inertia).terminal) for throw in throws],
         value=found.value[:, 0],
         error=found.largest + np.abs(found.value[:, 1] - found.value[:, 0]),
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
         data={"inertia": [throw.inertia for throw in throws], "ratio": found.value[:, 0]},
     )
 
@@ -201,17 +202,17 @@ def _limit(last: float, middle: float, first: float) -> float:
     f"{theory.ENDING[0]:g} of the time to rest, with the next term, whose size is the model error.",
     swept=("polar_inertia",),
 )
-def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> Measured:
+def powers(engine: Engine, throws: Throws = theory.LOPSIDED) -> Measured:
     predicted, found = [], []
     for throw in throws:
         slow = throw.inertia < 0.5
         power = 0.5 / throw.inertia - 1.0 if slow else 0.5 * throw.inertia - 1.0
 
-        def shares(tolerance: float, throw: theory.Throw = throw, slow: bool = slow) -> FloatArray:
+        def shares(tolerance: float, throw: Throw = throw, slow: bool = slow) -> FloatArray:
             sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.ENDING)
             return rim / sliding if slow else sliding / rim
 
-        share = refined(shares, theory.TOLERANCE)
+        share = refined(shares, TOLERANCE)
         predicted.append(power)
         found.append(
             observed_exponent(theory.ENDING, share.value, next_term=2.0 * power, noise=share.largest)
@@ -223,7 +224,7 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
         value=exponents,
         error=errors,
         model=max(models),
-        source=theory.SOURCE + "; limits as Goyal et al. 1991",
+        source=SOURCE + "; limits as Goyal et al. 1991",
     )
 
 
@@ -239,13 +240,13 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     basis="reference",
     swept=("polar_inertia",),
 )
-def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
+def stops(engine: Engine, throws: Throws = theory.INTEGRATED) -> Measured:
 
     def stops_at(tolerance: float) -> list[tuple[float, ...]]:
         runs = [theory.thrown(engine, throw, tolerance) for throw in throws]
         return [(theory.rest_of(run), *run.at_end[:3]) for run in runs]
 
-    found = refined(stops_at, theory.TOLERANCE)
+    found = refined(stops_at, TOLERANCE)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
     )
@@ -258,7 +259,7 @@ def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) ->
     )
 
 
-def _integrated(throw: theory.Throw, near: float) -> list[float]:
+def _integrated(throw: Throw, near: float) -> list[float]:
     rest = Slowing(throw.inertia).stop(throw.sliding, abs(throw.rim), near)
     place = cmath.rect(rest.slid / theory.DECELERATION, theory.HEADING)
     turned = math.copysign(rest.turned, throw.rim) / theory.DECELERATION / theory.TABLE.contact_radius
@@ -274,7 +275,7 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
     "the quadrature of μN·P(U, W) without every second sample.",
     basis="reference",
 )
-def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def heat(engine: Engine, throws: Throws = RINGS) -> Measured:
 
     def imbalance(tolerance: float) -> FloatArray:
         found = []
@@ -291,9 +292,9 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
             found.append(row)
         return np.array(found)
 
-    found = refined(imbalance, theory.TOLERANCE)
+    found = refined(imbalance, TOLERANCE)
     halved = np.abs(found.value[:, 1] - found.value[:, 0])
-    error = found.largest + 2.0 * theory.TOLERANCE / theory.SPEED + halved
+    error = found.largest + 2.0 * TOLERANCE / theory.SPEED + halved
     return of_throws(throws, predicted=np.zeros(len(throws)), value=found.value[:, 0], error=error)
 
 
