@@ -30,10 +30,8 @@ TOLERANCE = 10.0 * WORKING  # sufficient for the kind of final motion
 MARGIN = 0.05
 """Relative distance of μN from the onset within which deviations neither grow nor decay in this time."""
 
-EVERY = 5  # stride of the discs for eigenvalues of whirls
-
-GROWN = 15.0
-"""Re λ times the duration that lets motions leave an unstable whirl; deviations grow by exp(15)."""
+EVERY, GROWN = 5, 15.0
+"""Stride of the discs for eigenvalues of whirls, and growth exponent that lets motions leave an unstable whirl."""
 
 UNDECIDED_IS_OPEN = 2.0
 """Error of an undecided motion, larger than the margins ±1 of the answers."""
@@ -53,13 +51,8 @@ def on_plane(quantity: Callable[[DiscOnDisc], float], stride: slice = slice(None
 def simulated() -> Ends:
     """Return the ``EndState`` of each disc, shape (SIDE, SIDE)."""
     beta, b = np.meshgrid(DAMPING, SHAFT_DAMPING)
-    found = simulate_ensemble(
-        FIG11,
-        START,
-        duration=UNTIL,
-        tolerance=TOLERANCE,
-        parameters={"damping": beta.ravel(), "shaft_damping": b.ravel()},
-    )
+    parameters = {"damping": beta.ravel(), "shaft_damping": b.ravel()}
+    found = simulate_ensemble(FIG11, START, duration=UNTIL, tolerance=TOLERANCE, parameters=parameters)
     return found.end.reshape(SIDE, SIDE)
 
 
@@ -70,11 +63,11 @@ def growth(disc: DiscOnDisc) -> float:
 
 
 def curves() -> Data:
-    return {
-        f"{kind}/{i}": boundary.parameters
-        for kind in KINDS
-        for i, boundary in enumerate(curves_in("dampers", kind, "ring"))
-    } | {"ends": simulated().astype(float)}
+    found = {"ends": simulated().astype(float)}
+    for kind in KINDS:
+        for i, boundary in enumerate(curves_in("dampers", kind, "ring")):
+            found[f"{kind}/{i}"] = boundary.parameters
+    return found
 
 
 STUDY = Study.beside(
@@ -169,21 +162,14 @@ def draw(data: ByEngine) -> Figures:
             colour, dashes = CURVES[name.split("/")[0]]
             plane.plot(*points.T, color=colour, linestyle=dashes, linewidth=1.6)
     plane.plot(FIG11.damping, FIG11.shaft_damping, "+", color="white", markersize=10.0, markeredgewidth=1.8)
-    plane.set(
-        xlabel=axis(r"\beta", "N s/m"),
-        ylabel=axis("b", "N m s/rad"),
-        xlim=_edges(DAMPING),
-        ylim=_edges(SHAFT_DAMPING),
-    )
+    plane.set(xlabel=axis(r"\beta", "N s/m"), xlim=_edges(DAMPING))
+    plane.set(ylabel=axis("b", "N m s/rad"), ylim=_edges(SHAFT_DAMPING))
     shown = [
         Patch(facecolor=colour, edgecolor=GREY, label=words)
         for name, (words, colour) in LOOKS.items()
         if np.any(found["ends"] == EndState[name])
     ]
-    lines = [
-        Line2D([], [], color=colour, linestyle=dashes, label=kind)
-        for kind, (colour, dashes) in CURVES.items()
-    ]
+    lines = [Line2D([], [], color=one, linestyle=dash, label=kind) for kind, (one, dash) in CURVES.items()]
     plane.legend(handles=[*shown, *lines], loc="center left", bbox_to_anchor=(1.01, 0.5))
     return {"simulated-map": figure}
 

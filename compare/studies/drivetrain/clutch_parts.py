@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -32,11 +33,8 @@ ONSET = DAMPING / (RADIUS**2 * LOAD)
 GRADIENTS = ONSET * np.array([-1.0, 0.0, 0.5, 0.9, 1.1, 2.0, 4.0])
 """Negative slopes in s/m."""
 
-EPSILON = 1e-4
-"""ε in m/s, without effect because the disc does not stick."""
-
-PERTURBED = 0.1
-"""Initial speed of the disc in rad/s."""
+EPSILON, PERTURBED = 1e-4, 0.1
+"""ε in m/s, without effect because the disc does not stick, and the disc's initial speed in rad/s."""
 
 PERIODS = 10
 TIMES = np.linspace(0.0, PERIODS * 2.0 * math.pi * math.sqrt(INERTIA / STIFFNESS), 41)
@@ -56,14 +54,11 @@ COLD_COEFFICIENT, FADE = 0.33, 2e-3
 CAPACITY, CONDUCTANCE, SURROUNDINGS = 60.0, 20.0, 20.0
 """Heat capacity of the linings in J/K, heat loss in W/K and ambient temperature in °C."""
 
-CREEP = 1e-2
-"""ε in m/s; 0.1 rad/s at this radius."""
+CREEP, NEARLY_HOLDS = 1e-2, 1.0
+"""ε in m/s, 0.1 rad/s at this radius, and the slip in rad/s that ends the slipping time."""
 
 ENGAGED, UNTIL = (np.arange(1.0, 18.0) * 0.02).round(2), 0.6
 """Times in s during slip, and a time after lock-up."""
-
-NEARLY_HOLDS = 1.0
-"""Slip in rad/s that ends the slipping time; ten times the slip at ε."""
 
 SLOW_SLIP, HEAVY, HELD = 20.0, 1e12, np.arange(1.0, 21.0) * 2.0
 """Sustained slip: slip in rad/s, inertias in kg m² and times in s."""
@@ -73,18 +68,15 @@ REDUCED = INERTIAS[0] * INERTIAS[1] / (INERTIAS[0] + INERTIAS[1])
 HEAT = 0.5 * REDUCED * SLIP**2
 """Moment of cold friction in N m, effective inertia in kg m², and energy of the slip in J."""
 
-BOTH = (1e-10, 1e-10 / COARSENING)
-"""Tolerances of explicit steps."""
-
-LEFT_OUT = 2e-13
-"""Fraction of a run's span that ``solve_dynamic`` skips at each break."""
+BOTH, LEFT_OUT = (1e-10, 1e-10 / COARSENING), 2e-13
+"""Tolerances of explicit steps, and fraction of a run's span that ``solve_dynamic`` skips at each break."""
 
 
 def slipping_time(end: float) -> float:
     """Return the time (s) until the slip of the engaging clutch has fallen to ``end`` (rad/s).
 
     If no heat is lost, C·(T − T₀) is the energy that ½·J·S² has lost. So J·dS/dt = −M·(b + c·S²) with c = k·J/(2C)
-    and b = 1 − c·S₀², and the solution is a tangent.
+    and b = 1 − c·S₀²; the solution is a tangent.
     """
     c = FADE * REDUCED / (2.0 * CAPACITY)
     b = 1.0 - c * SLIP**2
@@ -124,29 +116,25 @@ def juddering(gradient: float) -> Rotors:
 
 
 def heating(
-    inertias: tuple[float, float],
-    start: float,
-    conductance: float,
-    tolerance: float,
-    times: FloatArray,
+    inertias: tuple[float, float], start: float, conductance: float, tolerance: float, times: FloatArray
 ) -> FloatArray:
     """Return time (s), speeds of both rotors, temperature (°C) and lost heat (J) after each step, shape (n, 5).
 
-    The initial slip is ``start`` (rad/s). The steps hit all ``times``.
+    The initial slip is ``start`` (rad/s); the steps hit all ``times``.
     """
     from exudyn_models import add_ring_friction, add_thermal_node
 
+    def fading(temperature: Any) -> Any:
+        return COLD_COEFFICIENT * (1.0 - FADE * (temperature - SURROUNDINGS))
+
     rotors = Rotors(inertias, (start, 0.0))
-    lining = add_thermal_node(
-        rotors.mbs, heat_capacity=CAPACITY, conductance=conductance, surroundings=SURROUNDINGS
-    )
+    losses = {"conductance": conductance, "surroundings": SURROUNDINGS}
+    lining = add_thermal_node(rotors.mbs, heat_capacity=CAPACITY, **losses)
     add_ring_friction(
         rotors.mbs,
         *rotors.nodes,
         contact_radius=RING,
-        friction_coefficient=lambda temperature: (
-            COLD_COEFFICIENT * (1.0 - FADE * (temperature - SURROUNDINGS))
-        ),
+        friction_coefficient=fading,
         normal_load=PRESSED,
         regularisation=CREEP,
         thermal_node=lining,
@@ -168,13 +156,8 @@ def curves() -> Data:
     }
 
 
-STUDY = Study.beside(
-    __file__,
-    "clutch-parts",
-    source="two rotors with a clutch (assumption)",
-    only=("exudyn",),
-    seconds=4.0,
-)
+SOURCE = "two rotors with a clutch (assumption)"
+STUDY = Study.beside(__file__, "clutch-parts", source=SOURCE, only=("exudyn",), seconds=4.0)
 
 
 @STUDY.claim(
@@ -202,10 +185,8 @@ def _growth(gradient: float, tolerance: float) -> float:
 
     Speeds of a linear vibration at equal intervals Δ satisfy v₂ = 2·e^(σΔ)·cos(ωΔ)·v₁ − e^(2σΔ)·v₀.
     """
-    until = float(TIMES[-1])
-    run = juddering(gradient).run(
-        until, round(until / 1e-3), tolerance=tolerance, breaks=TIMES[1:-1].tolist()
-    )
+    until, breaks = float(TIMES[-1]), TIMES[1:-1].tolist()
+    run = juddering(gradient).run(until, round(until / 1e-3), tolerance=tolerance, breaks=breaks)
     v = run[np.searchsorted(run[:, 0], TIMES - 1e-12), 2]
     (_, last), *_ = np.linalg.lstsq(np.column_stack((v[1:-1], v[:-2])), v[2:], rcond=None)
     return math.log(-last) / (2.0 * float(TIMES[1] - TIMES[0]))
@@ -271,22 +252,14 @@ def settles(engine: Engine) -> Measured:
 def balance(engine: Engine) -> Measured:
     start = 0.5 * INERTIAS[0] * SLIP**2
     runs = [heating(INERTIAS, SLIP, CONDUCTANCE, tolerance, np.array([UNTIL])) for tolerance in BOTH]
-    found, finer = (
-        np.max(
-            np.abs(
-                0.5 * run[:, 1:3] ** 2 @ np.array(INERTIAS)
-                + CAPACITY * (run[:, 3] - SURROUNDINGS)
-                + run[:, 4]
-                - start
-            ),
-            keepdims=True,
-        )
+    sums = (
+        0.5 * run[:, 1:3] ** 2 @ np.array(INERTIAS) + CAPACITY * (run[:, 3] - SURROUNDINGS) + run[:, 4]
         for run in runs
     )
+    found, finer = (np.max(np.abs(each - start), keepdims=True) for each in sums)
     rounding = 8.0 * np.finfo(float).eps * start * math.sqrt(len(runs[1]))
-    return Measured(
-        predicted=0.0, value=found[0], error=change_as_error(found, finer)[0] + rounding, size=start
-    )
+    error = change_as_error(found, finer)[0] + rounding
+    return Measured(predicted=0.0, value=found[0], error=error, size=start)
 
 
 def draw(data: ByEngine) -> Figures:
@@ -295,9 +268,8 @@ def draw(data: ByEngine) -> Figures:
     judder, (growth,) = new_figure(width=5.5, height=3.6)
     growth.axhline(0.0, color=GREY, linewidth=0.6)
     _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
-    growth.set(
-        xlabel="negative slope of μ over slip speed, relative to the onset", ylabel="growth rate in 1/s"
-    )
+    growth.set(xlabel="negative slope of μ over slip speed, relative to the onset")
+    growth.set(ylabel="growth rate in 1/s")
     growth.legend(loc="upper left")
 
     heat, (slips, temperatures) = new_figure(ncols=2, width=10.0, height=3.6)

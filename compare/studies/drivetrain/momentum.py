@@ -1,7 +1,7 @@
 """Angular momentum of an isolated drivetrain on every kind of node.
 
-Friction, an elastic shaft attached off-centre, and a torsional spring connect engine, clutch disc and vehicle. The
-claims fail if a part lacks the moment of its force about a body, or acts on two bodies along different axes.
+Friction, an elastic shaft attached off-centre, and a torsional spring connect the bodies. The claims fail if a part
+lacks the moment of its force about a body, or acts on two bodies along different axes.
 """
 
 from __future__ import annotations
@@ -78,10 +78,7 @@ class Solver(NamedTuple):
     resolution: float
 
 
-SOLVERS = {
-    "explicit": Solver("RK67", 200, 6, 1e-11),
-    "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8),
-}
+SOLVERS = {"explicit": Solver("RK67", 200, 6, 1e-11), "implicit": Solver("GeneralizedAlpha", 600, 2, 1e-8)}
 
 STUDY = Study.beside(
     __file__,
@@ -118,6 +115,11 @@ def momentum(
         if kinds == DRAWN:
             data |= {"t": times, "each": each[..., 2]}
     largest = np.array([np.abs(drift).max() for drift in drifts])
+    data |= {
+        f"{name}: t": times,
+        f"{name}: drift": np.array([np.abs(drift).max(axis=1) for drift in drifts]),
+        f"{name}: resolution": np.array(solver.resolution),
+    }
     return Measured(
         predicted=np.zeros(len(largest)),
         value=largest,
@@ -127,12 +129,7 @@ def momentum(
         parameters=FRICTION | {"eccentricity": ECCENTRICITY, "solver": solver.name, "steps": solver.steps},
         note="Numerical error: the change with half the steps, if the order is too low by at most a half, plus "
         "rounding in every step, because rotation vectors lose digits near whole turns.",
-        data=data
-        | {
-            f"{name}: t": times,
-            f"{name}: drift": np.array([np.abs(drift).max(axis=1) for drift in drifts]),
-            f"{name}: resolution": np.array(solver.resolution),
-        },
+        data=data,
     )
 
 
@@ -156,10 +153,8 @@ def angular_momenta(kinds: Sequence[str], solver: Solver, steps: int) -> tuple[F
         bodies = zip(kinds, BODIES.values(), nodes, strict=True)
         return [float(value) for value in np.ravel([_angular_momentum(mbs, *body) for body in bodies])]
 
-    items: Any = exudyn.itemInterface
-    sensor = mbs.AddSensor(
-        items.SensorUserFunction(sensorUserFunction=momenta, storeInternal=True, writeToFile=False)
-    )
+    item: Any = exudyn.itemInterface.SensorUserFunction
+    sensor = mbs.AddSensor(item(sensorUserFunction=momenta, storeInternal=True, writeToFile=False))
     mbs.Assemble()
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
@@ -201,18 +196,12 @@ def _add_body(mbs: Any, kind: str, data: Body) -> tuple[Any, Any]:
         node = mbs.AddNode(rotor)
         return node, mbs.AddObject(items.ObjectRotationalMass1D(nodeNumber=node, inertia=data.inertia[2]))
     if kind == PLANAR:
-        node = mbs.AddNode(
-            items.NodeRigidBody2D(initialCoordinates=[x, y, angle], initialVelocities=[vx, vy, spin])
-        )
+        flat = items.NodeRigidBody2D(initialCoordinates=[x, y, angle], initialVelocities=[vx, vy, spin])
+        node = mbs.AddNode(flat)
         body = items.ObjectRigidBody2D(nodeNumber=node, mass=data.mass, inertia=data.inertia[2])
         return node, mbs.AddObject(body)
-    node = mbs.AddNode(
-        getattr(items, SPATIAL[kind])(
-            referenceCoordinates=[0.0] * 6,
-            initialCoordinates=list(data.position),
-            initialVelocities=list(data.velocity),
-        )
-    )
+    start = {"initialCoordinates": list(data.position), "initialVelocities": list(data.velocity)}
+    node = mbs.AddNode(getattr(items, SPATIAL[kind])(referenceCoordinates=[0.0] * 6, **start))
     body = items.ObjectRigidBody(nodeNumber=node, mass=data.mass, inertia=[*data.inertia, 0.0, 0.0, 0.0])
     return node, mbs.AddObject(body)
 
@@ -248,18 +237,10 @@ def draw(data: ByEngine) -> Figures:
         times, drifts, resolution = (found[f"{name}: {key}"] for key in ("t", "drift", "resolution"))
         drift.semilogy(times[1:], np.maximum(drifts[:, 1:].T, 1e-17), color=colour, linewidth=0.8)
         drift.axhline(float(resolution), color=colour, linestyle="--", linewidth=1.0)
-        drift.annotate(
-            f"{name} solver",
-            (0.0, float(resolution)),
-            xytext=(0, above),
-            textcoords="offset points",
-            color=colour,
-        )
-    drift.set(
-        xlabel=axis("t", "s"),
-        ylabel="drift relative to the largest\nmomentum of one body",
-        ylim=(1e-17, 1e-6),
-    )
+        place = (0.0, float(resolution)), (0, above)
+        drift.annotate(f"{name} solver", *place, textcoords="offset points", color=colour)
+    drift.set(xlabel=axis("t", "s"), ylim=(1e-17, 1e-6))
+    drift.set(ylabel="drift relative to the largest\nmomentum of one body")
     return {"drivetrain-momentum": figure}
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,34 +11,30 @@ from typing import Any
 
 import numpy as np
 
-from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Study, answers_of, refined
+from compare.claims import WORKING, ByEngine, Data, Figures, Measured, Measurement, Study, answers_of, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, real_and_imaginary
 from compare.engines import Engine
 from compare.output.figures import GREY, Axes, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import Rates, measured_rates, settled
-from reference_model.formulas.pin import (
-    equilibrium_position,
-    largest_load_with_equilibrium,
-    semicircle_residual,
-    sticking_radius,
-)
+from compare.studies.toolkit.measuring import compared, residual_of_4
+from reference_model.formulas import pin as formulas
+from reference_model.formulas.pin import equilibrium_position
 from reference_model.steady.stability import equilibrium_eigenvalues, sliding_jacobian
 from reference_model.systems import FloatArray, PinOnDisc
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.05, disc_speed=0.8, offset=0.1)
 SOURCE = "assumption: the paper prints no parameters for Fig. 3; support as in Fig. 4, ω below k"
 
-LIMIT = largest_load_with_equilibrium(PIN)  # (5), in N
+LIMIT = formulas.largest_load_with_equilibrium(PIN)  # (5), in N
 START = (0.1, 0.05, 0.0, 0.0)  # position in m, displaced from every equilibrium
 LOADS = (0.0, 0.04, 0.08, 0.095, 0.098)  # μN in N, within (5)
-DURATION = 520.0  # duration in s; the slowest transient, exp(−βt/2m), falls to 5e-12
-DELAY = 60.0  # final part of a run in s, for the remaining transient
+DURATION, DELAY, TOLERANCE = 520.0, 60.0, 0.03 * WORKING
+"""Runs to rest: duration in s until the slowest transient, exp(−βt/2m), has fallen to 5e-12, its final part for the
+remaining transient, and tolerance for a resolution of 1e-9 of X0.
+"""
 
-TOLERANCE = 0.03 * WORKING
-"""For positions of rest, whose resolution is 1e-9 of X0."""
-
-SHARES = (0.98, 0.999, 1.05, 1.2)  # μN as a multiple of the limit (5)
-SETTLING = 300.0  # duration in s from the axis to the equilibrium
+SHARES, SETTLING = (0.98, 0.999, 1.05, 1.2), 300.0
+"""μN as a multiple of the limit (5), and duration in s from the axis to the equilibrium."""
 
 REVOLUTION = 2.0 * np.pi / PIN.disc_speed
 """Period of the disc in s. Above the limit the pin sticks at once, so two periods suffice."""
@@ -86,14 +83,13 @@ def vanishing_load(loads: Sequence[float], places: FloatArray, error: FloatArray
     According to (3), ρ² is linear in (μN)².
     """
     first, last = (load**2 for load in loads[-2:])
-    first_radius, last_radius = np.hypot(*places[-2:].T)
-    rho_first, rho_last = first_radius**2, last_radius**2
+    radius = np.hypot(*places[-2:].T)
+    rho_first, rho_last = radius**2
     fall = rho_first - rho_last
     squared = last + rho_last * (last - first) / fall
-    by_first = 2.0 * first_radius * error[-2] * rho_last * (last - first) / fall**2
-    by_last = 2.0 * last_radius * error[-1] * rho_first * (last - first) / fall**2
+    moved = 2.0 * radius * error[-2:] * (rho_last, rho_first) * (last - first) / fall**2
     limit = math.sqrt(squared) if squared > 0.0 else math.nan
-    return limit, float(abs(by_first) + abs(by_last)) / (2.0 * limit)
+    return limit, float(np.sum(np.abs(moved))) / (2.0 * limit)
 
 
 STUDY = Study.beside(__file__, "fig03", source=SOURCE, system=PIN, seconds=2.0)
@@ -112,20 +108,19 @@ DECAYS = "The position of rest is stable at every friction force within (5)"
     swept=("friction_force",),
 )
 def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    places, error = resting_places(engine, loads)
-    return Measured(
-        predicted=positions(loads),
-        value=places,
-        error=np.repeat(error[:, np.newaxis], 2, axis=1),
+    found = resting_places(engine, loads)
+    return compared(
+        positions(loads),
+        found,
         at={"μN in N": loads},
         components=("x", "y"),
-        data={"load": loads, "position": places, "position_error": error},
+        data={"load": loads, "position": found.value, "position_error": found.error[:, 0]},
     )
 
 
 @functools.lru_cache(maxsize=2)
-def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, FloatArray]:
-    """Return the final positions (m), shape (n, 2), and their errors as distances."""
+def resting_places(engine: Engine, loads: Sequence[float]) -> Measurement:
+    """Return the final positions (m), shape (n, 2), with their errors as distances."""
 
     def track(load: float, times: list[float], tolerance: float) -> FloatArray:
         return engine.simulate(with_load(load), START, times, tolerance=tolerance).states[1:, :2]
@@ -142,8 +137,8 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
         )
         places.append(end.value)
         # At rest, two runs may agree better than the tolerance.
-        errors.append(np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset)
-    return np.array(places), np.array(errors)
+        errors.append([np.max(end.error) + np.hypot(*end.left) + TOLERANCE * PIN.offset] * 2)
+    return Measurement(np.array(places), np.array(errors))
 
 
 @STUDY.claim(
@@ -157,14 +152,7 @@ def resting_places(engine: Engine, loads: Sequence[float]) -> tuple[FloatArray, 
 )
 def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     places, error = resting_places(engine, loads)
-    x, y = places.T
-    # ∂(4)/∂(x, y) is twice the vector from the circle's centre, so its length on the circle is X0.
-    return Measured(
-        predicted=np.zeros(len(loads)),
-        value=semicircle_residual(PIN, x, y),
-        error=2.0 * np.hypot(x - PIN.offset / 2.0, y) * error + error**2,
-        at={"μN in N": loads},
-    )
+    return residual_of_4(PIN, places, error[:, 0], {"μN in N": loads})
 
 
 @STUDY.claim(
@@ -177,7 +165,8 @@ def semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    limit, error = vanishing_load(loads, *resting_places(engine, loads))
+    places, distance = resting_places(engine, loads)
+    limit, error = vanishing_load(loads, places, distance[:, 0])
     return Measured(predicted=LIMIT, value=limit, error=error)
 
 
@@ -190,7 +179,7 @@ def vanishes(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def rest_or_turn(engine: Engine, shares: Sequence[float] = SHARES) -> Measured:
-    x = min(sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
+    x = min(formulas.sticking_radius(with_load(LIMIT * share)) for share in shares if share > 1.0) / 2.0
     speeds, errors = [], []
     for share in shares:
         end = SETTLING if share < 1.0 else 2.0 * REVOLUTION
@@ -222,12 +211,8 @@ def _turning(engine: Engine, load: float, x: float, end: float, tolerance: float
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, loads: Sequence[float]) -> Rates:
     pins = [with_load(load) for load in loads]
-    return measured_rates(
-        engine,
-        [(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins],
-        [equilibrium_eigenvalues(pin) for pin in pins],
-        duration=FLOW_DURATION,
-    )
+    motions = [(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins]
+    return measured_rates(engine, motions, map(equilibrium_eigenvalues, pins), duration=FLOW_DURATION)
 
 
 @STUDY.claim(
@@ -267,9 +252,7 @@ def stable(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 def stable_on_a_grid() -> Measured:
     pins = [
         replace(PIN, friction_force=share * LIMIT, disc_speed=speed, damping=damping)
-        for share in GRID_SHARES
-        for speed in GRID_SPEEDS
-        for damping in GRID_DAMPINGS
+        for share, speed, damping in itertools.product(GRID_SHARES, GRID_SPEEDS, GRID_DAMPINGS)
     ]
     values, rounding = eigenvalues_with_rounding(
         [sliding_jacobian(pin, (*equilibrium_position(pin), 0.0, 0.0)) for pin in pins]
@@ -283,10 +266,8 @@ def stable_on_a_grid() -> Measured:
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {"fig03-semicircle": draw_semicircle(data)}
-    if "theory" in data:
-        figures["fig03-eigenvalues"] = draw_eigenvalues(data)
-    return figures
+    eigenvalues = {"fig03-eigenvalues": draw_eigenvalues(data)} if "theory" in data else {}
+    return {"fig03-semicircle": draw_semicircle(data)} | eigenvalues
 
 
 def draw_semicircle(data: ByEngine) -> Figure:
@@ -305,9 +286,8 @@ def draw_semicircle(data: ByEngine) -> Figure:
     if data:
         plane.legend(loc="center", bbox_to_anchor=(0.5, 0.42))
     distance.axhline(1e-9 * PIN.offset, color=GREY, linewidth=0.9, linestyle=":", label=r"$10^{-9}\,X_0$")
-    distance.set(
-        xlabel=axis(r"\mu N", "N"), ylabel="distance in m", ylim=(1e-16, 1e-8), title="Distance from (3)"
-    )
+    distance.set(xlabel=axis(r"\mu N", "N"), title="Distance from (3)")
+    distance.set(ylabel="distance in m", ylim=(1e-16, 1e-8))
     distance.legend(loc="upper left", ncols=2, fontsize=9.0)
     return figure
 
@@ -321,22 +301,12 @@ def _label(plane: Axes) -> None:
     for load in LOADS:
         x, y = equilibrium_position(with_load(load))
         outwards = np.array([x - X0 / 2.0, y]) / (X0 / 2.0)
-        plane.annotate(
-            f"{load:g}",
-            (x, y),
-            tuple(9.0 * outwards),
-            ha="left" if outwards[0] > 0.3 else "right" if outwards[0] < -0.3 else "center",
-            va="bottom" if outwards[1] > 0.3 else "center",
-            **small,
-        )
-    plane.set(
-        xlabel=axis("x", "m"),
-        ylabel=axis("y", "m"),
-        xlim=(-0.018, 0.121),
-        ylim=(-0.012, 0.066),
-        aspect="equal",
-        title=r"Positions of rest, labelled with $\mu N$ in N",
-    )
+        small["ha"] = "left" if outwards[0] > 0.3 else "right" if outwards[0] < -0.3 else "center"
+        small["va"] = "bottom" if outwards[1] > 0.3 else "center"
+        plane.annotate(f"{load:g}", (x, y), tuple(9.0 * outwards), **small)
+    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
+    plane.set(xlim=(-0.018, 0.121), ylim=(-0.012, 0.066))
+    plane.set(title=r"Positions of rest, labelled with $\mu N$ in N")
 
 
 def draw_eigenvalues(data: ByEngine) -> Figure:

@@ -55,7 +55,7 @@ def curves() -> Data:
 def error_of_eq18(pin: PinOnDisc) -> float:
     """Return a bound of the error of (18) in m: the second harmonic, and all orders of X0 except the first.
 
-    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k), the angle of the slip due to the offset.
+    Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k).
     """
     turn = pin.offset / whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
     higher = abs(third_order_of_whirl_shift(pin)) / (1.0 - turn**2)
@@ -238,13 +238,13 @@ def _draw_shift(panel: Axes, data: ByEngine) -> None:
         for i, symbol in enumerate(("x_s", "y_s")):
             style = curve("theory", f"${symbol}$, eq. (18)", linestyle="-" if i == 0 else (0.0, (5.0, 2.0)))
             panel.plot(theory["speeds"], theory["eq18"][:, i], **style)
-        exact = curve("theory", "exact first order", color=GREY, linestyle=DOTTED, linewidth=1.4)
+        exact = curve("theory", color=GREY, linestyle=DOTTED, linewidth=1.4)
+        exact["label"] = ["exact first order", "_"]
         panel.plot(theory["speeds"], theory["first order"], **exact)
     for engine in engines_in(data):
-        panel.plot(data[engine]["speeds"], data[engine]["means"], **points(engine))
-    handles, labels = panel.get_legend_handles_labels()
-    unique = dict(zip(labels, handles, strict=True))
-    panel.legend(unique.values(), unique.keys())
+        style = points(engine) | {"label": [engine, "_"]}
+        panel.plot(data[engine]["speeds"], data[engine]["means"], **style)
+    panel.legend()
     panel.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("x_s,\\ y_s", "m"), ylim=(0.0, None))
 
 
@@ -255,10 +255,8 @@ def _draw_gaps(panel: Axes, data: ByEngine) -> None:
                 continue
             means = data[engine][f"means at {speed:g}"]
             for formula, line in FORMULAS:
-                gap = [
-                    np.hypot(*(mean - formula(pin_at(speed, offset))))
-                    for mean, offset in zip(means, OFFSETS, strict=True)
-                ]
+                expected = [formula(pin_at(speed, offset)) for offset in OFFSETS]
+                gap = np.hypot(*(means - expected).T)
                 size = 7.0 if engine == "reference" else 3.5
                 style = points(engine, "", marker=marker, markersize=size, linestyle=line, linewidth=0.8)
                 panel.loglog(OFFSETS, gap, **style)

@@ -13,41 +13,32 @@ from scipy.optimize import brentq
 
 from compare.claims.error_estimates import TRUTH, WORKING, known, refined
 from compare.claims.measured import Measured, answers_of, asked
-from compare.claims.parameters import FIG4
+from compare.claims.parameters import FIG4, components_of
 from compare.claims.study import ByEngine, Data, Figures, Study
 from compare.engines import Engine
 from compare.output.figures import GREEN, GREY, ORANGE, Axes, axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.pins import extent, whirl_of
-from reference_model import Orbit, PinOnDisc, last_whirl, simulate, sticking_radius, whirl_branch, whirl_orbit
-from reference_model.formulas.pin import (
-    equilibrium_position,
-    equilibrium_radius,
-    largest_load_with_equilibrium,
-)
-from reference_model.systems import FloatArray
+from compare.studies.toolkit.measuring import compared
+from compare.studies.toolkit.pins import SIZES, exact_whirl, extent, resting, sizes_of, stuck, whirl_of
+from reference_model import Orbit, PinOnDisc, last_whirl, simulate, whirl_branch, whirl_orbit
+from reference_model.formulas import pin as formulas
 
 FIG6 = replace(FIG4, disc_speed=1.2)
 
 SOURCE = "Fig. 6: Fig. 4 with ω = 1.2 rad/s; the friction forces are our choice, the paper prints no range"
 
-LIMIT = largest_load_with_equilibrium(FIG6)
+LIMIT = formulas.largest_load_with_equilibrium(FIG6)
 
 WHIRL_LOADS = (0.08, 0.09, 0.1, 0.12, 0.14, 0.16, 0.18, 0.2)
 EQUILIBRIUM_LOADS = (0.02, 0.04, 0.06, 0.08, 0.095)
 """μN in N; the paper omits the range, and up to 2·C·X0 shows all motions."""
 
-CYCLE_LOAD = 0.102  # μN in N, between C·X0 and the end of the stick–slip cycle
+CYCLE_LOAD, CYCLE_DEVIATION, CYCLE_TURNS = 0.102, 0.01, 5
+"""μN in N between C·X0 and the end of the stick–slip cycle, relative distance from the cycle, and number of turns."""
 
-CYCLE_DEVIATION, CYCLE_TURNS = 0.01, 5
-"""Relative distance of the starts from the cycle, and number of turns."""
-
-TOLERANCE = 10.0 * WORKING
-"""For all claims except the end of the whirl, which is measured to 1e-8 N."""
+TOLERANCE, ON_THE_WAY = 10.0 * WORKING, 1e-8
+"""For claims except the end of the whirl, and for the branch, whose friction forces have errors below 1e-10 N."""
 
 INNERMOST = 0.012  # crossing of the x axis in m that ends the branch
-
-ON_THE_WAY = 1e-8
-"""For the branch in the figure; its friction forces have errors below 1e-10 N."""
 
 
 def with_load(load: float) -> PinOnDisc:
@@ -55,10 +46,7 @@ def with_load(load: float) -> PinOnDisc:
 
 
 def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
-    """Return the branch of whirls through its folds, and (3) and (9) against the friction force.
-
-    The branch ends at the crossing ``innermost`` (m), with relative steps ``step``.
-    """
+    """Return (3), (9) and the branch of whirls, down to the crossing ``innermost`` (m), against μN."""
     outermost = whirl_orbit(with_load(WHIRL_LOADS[-1]), tolerance=ON_THE_WAY)
     branch = list(whirl_branch(outermost, innermost, step=step))
     loads = LIMIT * np.sin(np.linspace(0.0, 0.5 * np.pi, 101))[:-1]  # closer where (3) is steep
@@ -68,9 +56,9 @@ def curves(innermost: float = INNERMOST, step: float = 0.14) -> Data:
         "branch extent": np.array([extent(orbit) for orbit in branch]),
         "branch sticks": np.array([float(len(orbit.trajectory.stick_phases) > 0) for orbit in branch]),
         "equilibrium load": loads,
-        "equilibrium radius": np.array([equilibrium_radius(with_load(load)) for load in loads]),
+        "equilibrium radius": np.array([formulas.equilibrium_radius(with_load(load)) for load in loads]),
         "sticking load": sticking,
-        "sticking radius": np.array([sticking_radius(with_load(load)) for load in sticking]),
+        "sticking radius": np.array([formulas.sticking_radius(with_load(load)) for load in sticking]),
     }
 
 
@@ -118,25 +106,9 @@ STUDY = Study.beside(
 )
 def rests(engine: Engine, loads: Sequence[float] = EQUILIBRIUM_LOADS) -> Measured:
     times = np.linspace(590.0, 600.0, 11)
-    found = refined(lambda tolerance: [_rest(engine, load, times, tolerance) for load in loads], TOLERANCE)
-    positions = np.array([equilibrium_position(with_load(load)) for load in loads])
-    # The slowest deviation is initially 5 mm and decays like exp(−βt/2m).
-    left = 0.005 * np.exp(-FIG6.damping / (2.0 * FIG6.mass) * times[0])
-    return Measured(
-        predicted=np.repeat(positions[:, np.newaxis], len(times), axis=1),
-        value=found.value,
-        error=found.largest + left,
-        at={"μN in N": loads, "t in s": times},
-        components=("x", "y"),
-        data={"equilibrium loads": loads, "equilibrium radius": np.hypot(*found.value[:, -1].T)},
-    )
-
-
-def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> FloatArray:
-    pin = with_load(load)
-    x, y = equilibrium_position(pin)
-    motion = engine.simulate(pin, (x + 0.005, y, 0.0, 0.0), (0.0, *times), tolerance=tolerance)
-    return motion.states[1:, :2]
+    found = resting(engine, [with_load(load) for load in loads], times, TOLERANCE, {"μN in N": loads})
+    radius = np.hypot(*np.asarray(found.value)[:, -1].T)
+    return replace(found, data={"equilibrium loads": loads, "equilibrium radius": radius})
 
 
 @STUDY.claim(
@@ -150,32 +122,21 @@ def _rest(engine: Engine, load: float, times: FloatArray, tolerance: float) -> F
 )
 def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
     first = [whirl_of(engine, with_load(load), TOLERANCE) for load in loads]
-
-    def period_and_extent(tolerance: float) -> FloatArray:
-        orbits = [
-            whirl_of(engine, with_load(load), tolerance, guess)
-            for load, guess in zip(loads, first, strict=True)
-        ]
-        return np.array([[orbit.period, *extent(orbit)] for orbit in orbits])
-
-    found = refined(period_and_extent, TOLERANCE)
-    others = [_reference_whirl(load) for load in loads]
+    found = refined(
+        lambda tolerance: [sizes_of(whirl_of(engine, one.system, tolerance, one)) for one in first], TOLERANCE
+    )
+    others = [exact_whirl(with_load(load)) for load in loads]
     miss = max(orbit.residual for orbit in (*first, *others))
     # Near the fold, a residual shifts the orbit more, by the factor 1/(1 − slowest multiplier).
     sharpness = max(1.0 / (1.0 - abs(orbit.multipliers[1])) for orbit in others)
-    return Measured(
-        predicted=[[orbit.period, *extent(orbit)] for orbit in others],
-        value=found.value,
+    return compared(
+        [sizes_of(orbit) for orbit in others],
+        found,
         error=found.largest + miss * sharpness,
         at={"μN in N": loads},
-        components=("period in s", "smallest radius in m", "largest radius in m"),
+        components=SIZES,
         data={"whirl loads": loads, "whirl extents": [extent(orbit) for orbit in first]},
     )
-
-
-@functools.cache
-def _reference_whirl(load: float) -> Orbit:
-    return whirl_of(Engine("reference", simulate), with_load(load), 3e-13)
 
 
 @STUDY.claim(
@@ -195,24 +156,11 @@ def whirl_ends(engine: Engine) -> Measured:
 
     def least_load(tolerance: float) -> float:
         # The load is stationary there, so it changes with the tolerance like its smallest value.
-        orbit = whirl_orbit(
-            FIG6,
-            simulate=engine.simulate,
-            guess=fold,
-            at_crossing=float(fold.state[0]),
-            tolerance=tolerance,
-            samples=2,
-            precision=engine.precision,
-        )
-        return orbit.system.friction_force
+        x = float(fold.state[0])
+        return whirl_of(engine, FIG6, tolerance, fold, at_crossing=x, samples=2).system.friction_force
 
-    found = refined(least_load, WORKING)
-    return Measured(
-        predicted=load_of_unit_multiplier(),
-        value=found.value,
-        error=found.error + UNIT_MULTIPLIER_ERROR**2,
-        parameters={"friction_force": float(found.value)},
-    )
+    found = refined(least_load, WORKING).plus(UNIT_MULTIPLIER_ERROR**2)
+    return compared(load_of_unit_multiplier(), found, parameters={"friction_force": float(found.value)})
 
 
 @STUDY.claim(
@@ -222,17 +170,13 @@ def whirl_ends(engine: Engine) -> Measured:
     "whirl slide for the whole 100 s?",
 )
 def coexist(engine: Engine) -> Measured:
-    stuck = 0.5 * sticking_radius(FIG6)
-    orbit = whirl_orbit(FIG6)
-    starts = ((stuck, 0.0, 0.0, stuck * FIG6.disc_speed), (*orbit.state[:3], 0.9 * orbit.state[3]))
+    held = stuck(FIG6, 0.5 * formulas.sticking_radius(FIG6), 0.0)
+    slower = whirl_orbit(FIG6).state * (1.0, 1.0, 1.0, 0.9)
     # A pin without a whirl would stick after about 30 s.
-    lengths = (10.0, 100.0)
+    motions = [(FIG6, held, [0.0, 10.0]), (FIG6, slower, [0.0, 100.0])]
 
     def sticks_and_slides(tolerance: float) -> list[bool]:
-        stays, whirls = (
-            engine.simulate(FIG6, start, [0.0, length], tolerance=tolerance)
-            for start, length in zip(starts, lengths, strict=True)
-        )
+        stays, whirls = engine.simulate_many(motions, tolerance=tolerance)
         return [len(stays.phases) == 1 and bool(stays.stick_phases), not whirls.stick_phases]
 
     return answers_of(*asked(sticks_and_slides, TOLERANCE))
@@ -248,19 +192,15 @@ def coexist(engine: Engine) -> Measured:
 )
 def cycle_exists(engine: Engine) -> Measured:
     orbit = cycle()
-    times = np.linspace(0.0, orbit.period, 65)
-
-    def states(tolerance: float) -> FloatArray:
-        return engine.simulate(orbit.system, orbit.state, times, tolerance=tolerance).states
-
-    found = refined(states, TOLERANCE)
+    motion = orbit.system, orbit.state, np.linspace(0.0, orbit.period, 65)
+    found = refined(lambda tolerance: engine.simulate(*motion, tolerance=tolerance).states, TOLERANCE)
     radius = np.hypot(found.value[:, 0], found.value[:, 1])
-    return Measured(
-        predicted=simulate(orbit.system, orbit.state, times, tolerance=TRUTH).states,
-        value=found.value,
+    return compared(
+        simulate(*motion, tolerance=TRUTH).states,
+        found,
         error=found.largest + orbit.residual,
-        at={"t in s": times},
-        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
+        at={"t in s": motion[-1]},
+        components=components_of(orbit.system),
         system=orbit.system,
         data={"cycle load": orbit.system.friction_force, "cycle extent": [np.min(radius), np.max(radius)]},
     )
@@ -281,12 +221,7 @@ def cycle_attracts(engine: Engine) -> Measured:
     # For central differences, the error is a third of the change at twice the deviation.
     wide = _decay_in_a_turn(engine, orbit, TOLERANCE, 2.0 * CYCLE_DEVIATION)
     error = float(found.error) + abs(float(found.value) - wide) + UNIT_MULTIPLIER_ERROR
-    return Measured(
-        predicted=abs(orbit.multipliers[1]),
-        value=found.value,
-        error=known(found.value, error),
-        system=orbit.system,
-    )
+    return compared(abs(orbit.multipliers[1]), found, error=known(found.value, error), system=orbit.system)
 
 
 def _decay_in_a_turn(engine: Engine, orbit: Orbit, tolerance: float, deviation: float) -> float:
@@ -318,23 +253,15 @@ def draw(data: ByEngine) -> Figures:
         panel.set(xlabel=axis(r"\mu N", "N"))
     whole.set(ylabel=axis(r"\rho", "m"), xlim=(0.0, WHIRL_LOADS[-1]), ylim=(0.0, None))
     near.set(xlim=(0.07, 0.115), ylim=(0.0, 0.4))
-    handles, labels = whole.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    figure.legend(*whole.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return {"fig06-branches": figure}
 
 
 def _draw_theory(panel: Axes, found: Data) -> None:
-    panel.plot(
-        found["equilibrium load"], found["equilibrium radius"], **curve("theory", "equilibrium, eq. (3)")
-    )
-    panel.fill_between(
-        found["sticking load"],
-        found["sticking radius"],
-        color=GREY,
-        alpha=0.4,
-        linewidth=0.0,
-        label="permanent stick, (9)",
-    )
+    style = curve("theory", "equilibrium, eq. (3)")
+    panel.plot(found["equilibrium load"], found["equilibrium radius"], **style)
+    sticking = found["sticking load"], found["sticking radius"]
+    panel.fill_between(*sticking, color=GREY, alpha=0.4, linewidth=0.0, label="permanent stick, (9)")
     # A multiplier passes 1 in each fold. From the outermost whirl on, orbits are therefore stable where the load
     # falls, and unstable where it rises.
     number = np.arange(len(found["branch load"]))
@@ -350,8 +277,7 @@ def _draw_theory(panel: Axes, found: Data) -> None:
     )
     for label, mask, colour, dashes in kinds:
         shown = np.where(mask[:, np.newaxis], extent, np.nan)
-        panel.plot(load, shown[:, 0], color=colour, linestyle=dashes, linewidth=1.6, label=label)
-        panel.plot(load, shown[:, 1], color=colour, linestyle=dashes, linewidth=1.6)
+        panel.plot(load, shown, color=colour, linestyle=dashes, linewidth=1.6, label=(label, "_"))
 
 
 STUDY.provides(figures=draw, curves=curves)

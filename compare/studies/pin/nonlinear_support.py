@@ -11,15 +11,16 @@ import numpy as np
 
 from compare.claims.error_estimates import TRUTH, WORKING, known, observed_exponent, refined
 from compare.claims.measured import Measured
-from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG9
+from compare.claims.parameters import CENTRED, FIG4, FIG5, FIG5_STARTS, FIG9, components_of
 from compare.claims.study import ByEngine, Data, Figures, Study
-from compare.engines import Engine
+from compare.engines import Engine, reference
 from compare.output.figures import axis, curve, engines_in, new_figure, points
-from compare.studies.toolkit.pins import extent, whirl_of
+from compare.studies.toolkit.measuring import compared, followed
+from compare.studies.toolkit.pins import BESIDE, SIZES, exact_whirl, resting, sizes_of, whirl_of
 from compare.studies.toolkit.steady_motion import CONVERGED, sharpness, steady_motion
 from reference_model import Orbit, simulate, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
-from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
+from reference_model.formulas.pin import whirl_frequency, whirl_radius
 from reference_model.systems import PinOnDisc
 
 HARDENING = replace(CENTRED, hardening=0.5)
@@ -46,8 +47,6 @@ OFFSETS = (0.004, 0.005, 0.0063, 0.008, 0.01)
 RESTING = {"offset": 0.8, "friction_force": 0.9}
 """X0 in m and μN in N, with the equilibrium in the nonlinear range of either law."""
 
-BESIDE = 0.005  # distance in m of the starts from the equilibrium
-
 SLIDING_START = (0.3, 0.0, 0.0, 0.2)
 SLIDING_TIMES = np.linspace(0.0, 50.0, 51)
 
@@ -59,13 +58,10 @@ TOLERANCE = 10 * WORKING
 
 DISC = replace(FIG9, damping=0.1, friction_force=0.12, offset=0.0, hardening=HARDENING.hardening)
 
-GROWING_LOADS = (0.12, 0.06, 0.03)
-"""μN in N without damping; its effect on the final radius falls with it."""
-
-GROWING_FROM = 0.3
-"""Initial radius in m; closer to the axis, the largest of these friction forces holds a pin on the disc."""
-
-GROWN = 1e-6  # for growing motions, whose ends suffice
+GROWING_LOADS, GROWING_FROM, GROWN = (0.12, 0.06, 0.03), 0.3, 1e-6
+"""Growth without damping: μN in N, initial radius in m, and tolerance. Closer to the axis, the largest of these
+friction forces holds a pin on the disc.
+"""
 
 
 def curves() -> Data:
@@ -78,11 +74,6 @@ def curves() -> Data:
     speed = GROWING_LOADS[-1] / (2.0 * CENTRED.mass * CENTRED.natural_frequency)
     times = np.linspace(0.0, 1.4 * max(ends.values()) / speed, 2)
     return data | ends | {"linear growth": np.column_stack((times, GROWING_FROM + speed * times))}
-
-
-@functools.cache
-def exact_whirl(pin: PinOnDisc) -> Orbit:
-    return whirl_of(Engine("reference", simulate), pin, 3.0 * TRUTH)
 
 
 def radius_and_frequency(orbit: Orbit) -> tuple[float, float]:
@@ -143,9 +134,9 @@ def circle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
     found = refined(circles, TOLERANCE)
     radii = {f"{name} radius": found.value[i, :, 0] for i, name in enumerate(PINS)}
-    return Measured(
-        predicted=[[(whirl_radius(pin), whirl_frequency(pin)) for pin in row] for row in pins],
-        value=found.value,
+    return compared(
+        [[(whirl_radius(pin), whirl_frequency(pin)) for pin in row] for row in pins],
+        found,
         error=found.largest + miss,
         at=SUPPORTS | {"μN in N": loads},
         components=("radius in m", "frequency in rad/s"),
@@ -163,18 +154,15 @@ def circle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 )
 def orbit(engine: Engine) -> Measured:
     exact = [exact_whirl(pin) for pin in SHIFTED]
-
-    def period_and_extent(tolerance: float) -> list[list[float]]:
-        orbits = [whirl_of(engine, pin, tolerance, exact_whirl(pin)) for pin in SHIFTED]
-        return [[one.period, *extent(one)] for one in orbits]
-
-    found = refined(period_and_extent, TOLERANCE)
-    return Measured(
-        predicted=[[one.period, *extent(one)] for one in exact],
-        value=found.value,
+    found = refined(
+        lambda tolerance: [sizes_of(whirl_of(engine, one.system, tolerance, one)) for one in exact], TOLERANCE
+    )
+    return compared(
+        [sizes_of(one) for one in exact],
+        found,
         error=found.largest + max(one.residual for one in exact),
         at=SUPPORTS,
-        components=("period in s", "smallest radius in m", "largest radius in m"),
+        components=SIZES,
         parameters={"offset": FIG4.offset},
     )
 
@@ -199,13 +187,11 @@ def harmonic_balance(engine: Engine) -> Measured:
         ],
         WORKING / 10,
     )
-    misses = np.abs(found.value - balanced).T
-    exponents, numerical, model = np.transpose(
-        [
-            observed_exponent(np.array(OFFSETS), miss, next_term=2.0, noise=noise)
-            for miss, noise in zip(misses, found.error.T, strict=True)
-        ]
-    )
+    orders = [
+        observed_exponent(np.array(OFFSETS), miss, next_term=2.0, noise=noise)
+        for miss, noise in zip(np.abs(found.value - balanced).T, found.error.T, strict=True)
+    ]
+    exponents, numerical, model = np.transpose(orders)
     return Measured(
         predicted=[2.0, 2.0],
         value=exponents,
@@ -225,16 +211,13 @@ def harmonic_balance(engine: Engine) -> Measured:
 )
 def slides(engine: Engine) -> Measured:
     motions = [(pin, SLIDING_START, SLIDING_TIMES) for pin in SHIFTED]
-    found = refined(
-        lambda tolerance: [run.states for run in engine.simulate_many(motions, tolerance=tolerance)],
-        TOLERANCE,
-    )
-    return Measured(
-        predicted=[simulate(*motion, tolerance=TRUTH).states for motion in motions],
-        value=found.value,
+    found = followed(engine, motions, TOLERANCE)
+    return compared(
+        [simulate(*motion, tolerance=TRUTH).states for motion in motions],
+        found,
         error=found.largest,
         at=SUPPORTS | {"t in s": SLIDING_TIMES},
-        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
+        components=components_of(CENTRED),
         parameters={"offset": FIG4.offset},
     )
 
@@ -254,9 +237,9 @@ def sticks(engine: Engine) -> Measured:
         return (phases[0].start, phases[0].end) if phases else (math.nan, math.nan)
 
     found = refined(lambda tolerance: first_stick(engine, tolerance), TOLERANCE)
-    return Measured(
-        predicted=first_stick(Engine("reference", simulate), TRUTH),
-        value=found.value,
+    return compared(
+        first_stick(reference, TRUTH),
+        found,
         error=known(found.value, found.largest),
         components=("stick", "release"),
         system=STICKING,
@@ -274,25 +257,8 @@ def sticks(engine: Engine) -> Measured:
 )
 def rests(engine: Engine) -> Measured:
     pins = [replace(pin, **RESTING) for pin in PINS.values()]
-    places = [equilibrium_position(pin) for pin in pins]
     times = np.linspace(270.0, 280.0, 11)
-    motions = [
-        (pin, (x + BESIDE, y, 0.0, 0.0), [0.0, *times]) for pin, (x, y) in zip(pins, places, strict=True)
-    ]
-    found = refined(
-        lambda tolerance: [run.states[1:, :2] for run in engine.simulate_many(motions, tolerance=tolerance)],
-        TOLERANCE,
-    )
-    # As in fig06, the slowest deviation decays like exp(−βt/2m).
-    left = BESIDE * math.exp(-CENTRED.damping / (2.0 * CENTRED.mass) * times[0])
-    return Measured(
-        predicted=np.repeat(np.array(places)[:, np.newaxis], len(times), axis=1),
-        value=found.value,
-        error=found.largest + left,
-        at=SUPPORTS | {"t in s": times},
-        components=("x", "y"),
-        parameters=RESTING,
-    )
+    return resting(engine, pins, times, TOLERANCE, SUPPORTS, parameters=RESTING)
 
 
 @STUDY.claim(
@@ -352,9 +318,9 @@ def disc_whirl(engine: Engine) -> Measured:
         return [float(np.hypot(*motion.state[:2])), motion.frequency, motion.spin]
 
     found = refined(coming_back, TOLERANCE)
-    return Measured(
-        predicted=[whirl.radius, whirl.frequency, whirl.spin],
-        value=found.value,
+    return compared(
+        [whirl.radius, whirl.frequency, whirl.spin],
+        found,
         error=known(found.value, found.largest) + sharpness(DISC, whirl) * CONVERGED,
         components=("radius in m", "frequency in rad/s", "spin in rad/s"),
         system=DISC,
@@ -370,7 +336,7 @@ def draw(data: ByEngine) -> Figures:
     if "theory" in data:
         found = data["theory"]
         for name, (label, dashes) in LABEL_AND_DASHES.items():
-            style = curve("theory", label) | {"linestyle": dashes}
+            style = curve("theory", label, linestyle=dashes)
             whirl.plot(found["load"], found[f"{name} radius"], **style)
             if name in PINS:
                 growing.axhline(float(found[f"{name} end"]), **style)
@@ -386,8 +352,7 @@ def draw(data: ByEngine) -> Figures:
     growing.set(xlabel=axis("t", "s"), ylabel=axis(r"\rho", "m"), xlim=(0.0, 150.0), ylim=(0.0, 2.0))
     whirl.set_title("Whirl without offset")
     growing.set_title("Without damping")
-    handles, labels = whirl.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.legend(*whirl.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return {"nonlinear-support": figure}
 
 

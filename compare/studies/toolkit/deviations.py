@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,9 +19,9 @@ PARTS = ("real part", "imaginary part")
 def remaining_transient(earlier: ArrayLike, end: ArrayLike, rate: float, delay: float) -> FloatArray:
     """Return the distance of ``end``, shape (...), from the steady state.
 
-    A final deviation a has changed by a·(exp(r·delay) − 1) during the last ``delay`` s, where r is the decay ``rate``
-    (1/s) of the slowest mode. The largest change since ``earlier``, shape (n, ...), determines a; the earlier samples
-    cover one oscillation.
+    A final deviation a has changed by a·(exp(r·delay) − 1) in the last ``delay`` s, with the decay ``rate`` r (1/s)
+    of the slowest mode. The largest change since ``earlier``, shape (n, ...), which covers one oscillation,
+    determines a.
     """
     change = np.max(np.abs(np.asarray(earlier) - np.asarray(end)), axis=0)
     return np.asarray(change / np.expm1(rate * delay))
@@ -44,10 +44,9 @@ def settled(
     rate: float,
     tolerance: float,
 ) -> Settled:
-    """Return the final value of a quantity in a simulation of ``duration`` s.
+    """Return the final value of ``track(times, tolerance)``, shape (n, ...), in a simulation of ``duration`` s.
 
-    ``track(times, tolerance)`` returns the quantity, shape (n, ...), at ``times`` after the first, 0. ``period`` (s)
-    is that of the transient; ``remaining_transient`` explains ``delay`` and ``rate``.
+    ``period`` (s) is that of the transient; ``remaining_transient`` explains ``delay`` and ``rate``.
     """
     times = [0.0, *np.linspace(duration - delay - period, duration - delay, 13), duration]
     found = refined(lambda asked: track(times, asked), tolerance)
@@ -56,10 +55,7 @@ def settled(
 
 
 class Rates(NamedTuple):
-    """Eigenvalues (1/s), shape (n, m), of small deviations from n steady motions.
-
-    ``error``, shape (n,), is that of the ``measured`` eigenvalues; the ``predicted`` ones have their order.
-    """
+    """Eigenvalues (1/s), shape (n, m), of small deviations from n steady motions; the error has the shape (n,)."""
 
     measured: ComplexArray
     predicted: ComplexArray
@@ -86,20 +82,16 @@ class Rates(NamedTuple):
 def measured_rates(
     engine: Engine,
     motions: Sequence[tuple[System, ArrayLike]],
-    predicted: Sequence[ArrayLike],
+    predicted: Iterable[ArrayLike],
     *,
     duration: float,
     frame_speed: float = 0.0,
 ) -> Rates:
-    """Return the eigenvalues from simulations of ``duration`` s and the ``predicted`` ones, shape (m,) each.
-
-    ``motions`` are systems with states of steady motions; ``measured_eigenvalues`` explains the other parameters.
-    """
+    """Return the rates of ``motions``, systems with states of steady motions; see ``measured_eigenvalues``."""
     found = [
         measured_eigenvalues(engine, system, state, duration=duration, frame_speed=frame_speed)
         for system, state in motions
     ]
     fitting = [matched(values, to=own) for values, (own, _) in zip(predicted, found, strict=True)]
-    return Rates(
-        np.array([own for own, _ in found]), np.array(fitting), np.array([error for _, error in found])
-    )
+    measured, errors = zip(*found, strict=True)
+    return Rates(np.array(measured), np.array(fitting), np.array(errors))

@@ -1,8 +1,7 @@
 """Clutch of a passenger car on a bench, and the equivalent disc of the reference.
 
 The bench holds the flywheel's speed, and a brake b·(Ω_v − Ω) the vehicle's. In steady motion the torque of the
-torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake. The drivetrain with five
-coordinates and the disc with three then agree to rounding error.
+torsional spring is constant, so the clutch disc obeys (19) with b and Ω of the brake.
 """
 
 from __future__ import annotations
@@ -16,14 +15,8 @@ import numpy as np
 
 from compare.claims import Measured, change_as_error
 from compare.claims.linearised_flow import ComplexArray
-from reference_model import (
-    Annulus,
-    DiscOnDisc,
-    SpinningEquilibrium,
-    SpinningWhirl,
-    self_centred_equilibria,
-    whirls,
-)
+from reference_model import Annulus, DiscOnDisc, self_centred_equilibria, whirls
+from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -34,11 +27,8 @@ SOURCE = "passenger car of exudyn_models.drivetrain.parameters; torque and slip 
 
 RPM = math.pi / 30.0
 
-BRAKE = 100.0
-"""b of the brake in N m s/rad; the slip settles with a time constant J/b = 0.008 s."""
-
-HELD = 1e18
-"""Inertia in kg m² of a flywheel with constant speed: 100 N m reduce it by 1e-16 rad/s in 1 s."""
+BRAKE, HELD = 100.0, 1e18
+"""b of the brake in N m s/rad; inertia in kg m² of a flywheel that 100 N m slow by only 1e-16 rad/s in 1 s."""
 
 EPSILON = 1e-3
 """ε in m/s; the facings slip a thousand times faster, so friction is Coulomb's."""
@@ -52,7 +42,7 @@ def passenger_car() -> Drivetrain:
 
 
 def centred_car() -> Drivetrain:
-    """Return the car without unbalance and offset, so an undisturbed disc stays on the engine's axis."""
+    """Return the car without unbalance and offset."""
     return replace(passenger_car(), offset=0.0, unbalance=0.0)
 
 
@@ -68,10 +58,10 @@ def facings(car: Drivetrain, rings: int = 16) -> Annulus:
 
 
 def rotating_damping(car: Drivetrain, slip: float, torque: float) -> float:
-    """Return the damping D (N s/m) that friction of a slipping clutch exerts on small motions of the disc's centre.
+    """Return the damping D (N s/m) that friction exerts on small motions of the disc's centre.
 
-    D = μN·∂F/∂U at U = 0, with μN such that the clutch transmits ``torque`` (N m) at ``slip`` (rad/s). It is the
-    paper's μN/(2W), averaged over the facings.
+    D = μN·∂F/∂U at U = 0, with the μN that transmits ``torque`` (N m) at ``slip`` (rad/s): the paper's μN/(2W),
+    averaged over the facings.
     """
     return torque / car.friction_radius * facings(car).slopes(0.0, slip).resistance_by_slip
 

@@ -14,10 +14,7 @@ from reference_model.contact.contact_law import IsotropicContact, Ring, ThreeTer
 from reference_model.steady.bifurcation_curves import Boundary, Kind, ParameterPlane, boundaries
 from reference_model.systems import DiscOnDisc, FloatArray
 
-RING = FIG11
-
-SIX = replace(FIG11, contact_points=6)
-
+RING, SIX = FIG11, replace(FIG11, contact_points=6)
 DISCS = {"the continuous ring": RING, "six points": SIX}
 
 START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
@@ -35,27 +32,17 @@ def rates(disc: DiscOnDisc, state: FloatArray) -> list[float]:
 def integrated(
     disc: DiscOnDisc, start: tuple[float, ...], until: float, samples: int, tolerance: float
 ) -> FloatArray:
-    """Integrate (19) without ``simulate`` for a disc that always slides.
-
-    Return the states at equidistant times up to ``until`` (s), shape (samples, 6).
-    """
-    friction = plain.by_law(disc.friction_force, contact_of(disc))
+    """Return the states of a disc that always slides, by (19) without ``simulate``, shape (samples, 6)."""
+    friction, times = plain.by_law(disc.friction_force, contact_of(disc)), np.linspace(0.0, until, samples)
+    accuracy = {"method": "DOP853", "rtol": tolerance, "atol": tolerance}
     run = solve_ivp(
-        lambda _, state: plain.rates(disc, friction, state),
-        (0.0, until),
-        start,
-        method="DOP853",
-        t_eval=np.linspace(0.0, until, samples),
-        rtol=tolerance,
-        atol=tolerance,
+        lambda _, state: plain.rates(disc, friction, state), (0.0, until), start, t_eval=times, **accuracy
     )
     return np.asarray(run.y.T)
 
 
-LAWS: dict[str, IsotropicContact] = {
-    "ring": Ring(FIG11.contact_radius),
-    "(23)": ThreeTermRing(FIG11.contact_radius),
-}
+R = FIG11.contact_radius
+LAWS: dict[str, IsotropicContact] = {"ring": Ring(R), "(23)": ThreeTermRing(R)}
 
 PLANES = {
     "load": ParameterPlane(FIG11, ("disc_speed", "friction_force"), (1.005, 5e-4), (3.0, 0.08)),

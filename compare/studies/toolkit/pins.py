@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from compare.engines import Engine
+from compare.claims import TRUTH, Measured
+from compare.engines import Engine, reference
+from compare.studies.toolkit.measuring import compared, followed
 from reference_model import Orbit, whirl_orbit
-from reference_model.systems import FloatArray, PinOnDisc
+from reference_model.formulas.pin import equilibrium_position
+from reference_model.systems import FloatArray, PinOnDisc, System
 from reference_model.trajectory import Trajectory
 
 
@@ -41,18 +47,59 @@ SAMPLES = 64
 """States per revolution."""
 
 
-def whirl_of(engine: Engine, pin: PinOnDisc, tolerance: float, guess: Orbit | None = None) -> Orbit:
-    return whirl_orbit(
-        pin,
-        simulate=engine.simulate,
-        tolerance=tolerance,
-        guess=guess,
-        samples=SAMPLES,
-        precision=engine.precision,
-    )
+def whirl_of(
+    engine: Engine, system: System, tolerance: float, guess: Orbit | None = None, **more: Any
+) -> Orbit:
+    """Return a whirl by shooting with ``engine``; ``more`` are arguments of ``whirl_orbit``."""
+    own: dict[str, Any] = {"simulate": engine.simulate, "precision": engine.precision, "samples": SAMPLES}
+    return whirl_orbit(system, tolerance=tolerance, guess=guess, **(own | more))
+
+
+@functools.cache
+def exact_whirl(pin: PinOnDisc) -> Orbit:
+    """Return a pin's whirl by shooting with the reference at a tolerance of 3e-13."""
+    return whirl_of(reference, pin, 3.0 * TRUTH)
 
 
 def extent(orbit: Orbit) -> FloatArray:
     """Return the smallest and largest distance from the axis (m)."""
     radius = orbit.trajectory.radius
     return np.array([np.min(radius), np.max(radius)])
+
+
+SIZES = ("period in s", "smallest radius in m", "largest radius in m")
+
+
+def sizes_of(orbit: Orbit) -> list[float]:
+    """Return the numbers named in ``SIZES``."""
+    return [orbit.period, *extent(orbit)]
+
+
+BESIDE = 0.005
+"""Distance in m of pins from their equilibrium at the start of ``resting``."""
+
+
+def resting(
+    engine: Engine,
+    pins: Sequence[PinOnDisc],
+    times: FloatArray,
+    tolerance: float,
+    at: Mapping[str, Sequence[Any]],
+    **more: Any,
+) -> Measured:
+    """Compare pins that start at rest near their equilibrium with it at ``times`` (s); ``at`` names the pins."""
+    places = np.array([equilibrium_position(pin) for pin in pins])
+    motions = [
+        (pin, (x + BESIDE, y, 0.0, 0.0), [0.0, *times]) for pin, (x, y) in zip(pins, places, strict=True)
+    ]
+    found = followed(engine, motions, tolerance, np.s_[1:, :2])
+    # The slowest deviation decays like exp(−βt/2m).
+    left = BESIDE * math.exp(-pins[0].damping / (2.0 * pins[0].mass) * times[0])
+    return compared(
+        np.repeat(places[:, np.newaxis], len(times), axis=1),
+        found,
+        error=found.largest + left,
+        at={**at, "t in s": times},
+        components=("x", "y"),
+        **more,
+    )

@@ -23,7 +23,7 @@ def sign(random: Generator) -> float:
 
 
 def vector(random: Generator, size: float) -> complex:
-    """Draw a vector of any direction, with a length from a third of ``size`` to three times ``size``."""
+    """Draw a vector of any direction, with a length between a third and three times ``size``."""
     return cmath.rect(size * between(random, 1 / 3, 3.0), random.uniform(-math.pi, math.pi))
 
 

@@ -49,8 +49,8 @@ class Rotors:
     ) -> FloatArray:
         """Continue the motion; return times (s) and the sensor values after each step, one column each.
 
-        The run stops and continues at the ``breaks``, so the times contain them. All ``steps`` have equal size;
-        DOPRI5 subdivides them for a local error of ``tolerance``.
+        The times contain the ``breaks``. All ``steps`` have equal size; DOPRI5 subdivides them for a local error of
+        ``tolerance``.
         """
         import exudyn as exu
 

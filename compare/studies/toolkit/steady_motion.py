@@ -1,8 +1,7 @@
 """Steady motions of a disc as fixed points of an engine's flow over a fraction of a revolution.
 
-The centre of the disc rests or, without offset, moves on a circle around the axis. In axes that rotate with it, a
-disc on a continuous ring is in equilibrium. Contact points add a ripple that repeats when the disc has turned by 2π/n
-in these axes.
+The centre rests or, without offset, moves on a circle around the axis. In axes that rotate with it, a disc on a
+continuous ring is in equilibrium, and n points add a ripple with a period of 2π/n of the disc's turn.
 """
 
 from __future__ import annotations
@@ -28,11 +27,8 @@ from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 CONVERGED = 1e-9
 """Largest relative residual of a fixed point."""
 
-SAMPLES = 12
-"""Samples for the means of a motion."""
-
-SYMMETRY = 6
-"""Divisor of the revolution for a continuous ring, which allows any value."""
+SAMPLES, SYMMETRY = 12, 6
+"""Samples for the means of a motion, and divisor of the revolution for a continuous ring, which allows any value."""
 
 Y = 1
 """Index of y in the state and of θ in the unknowns, which replaces y."""
@@ -45,8 +41,8 @@ TURNING = np.kron(np.eye(2), [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
 class SteadyMotion:
     """A motion that repeats after a rotation, with its period in s.
 
-    ``states``, shape (SAMPLES + 1, 6), are equidistant in axes that rotate with the centre. The centre's
-    ``frequency`` about the axis (zero if it rests) and the ``spin`` are means in rad/s.
+    ``states``, shape (SAMPLES + 1, 6), are equidistant in axes that rotate with the centre. Its ``frequency`` about
+    the axis (zero if it rests) and the ``spin`` are means in rad/s.
     """
 
     states: FloatArray
@@ -56,7 +52,7 @@ class SteadyMotion:
 
     @property
     def mean(self) -> FloatArray:
-        """Mean of x and y (m) in axes that rotate with the centre; the sum over a period is exact to rounding."""
+        """Mean of x and y (m) in axes that rotate with the centre."""
         return np.asarray(self.states[:-1, :2].mean(axis=0))
 
     @property
@@ -71,7 +67,7 @@ def steady_motion(
     """Return the steady motion near the state ``guess``, shape (6,); None if the search fails.
 
     The unknowns are the state and the period T; all but the disc's angle repeats after T. Without offset, the centre
-    moves around the axis by an angle θ during T. Then θ replaces the unknown y, and y of the ``guess`` must be 0.
+    moves by an angle θ during T, which replaces the unknown y, and y of the ``guess`` must be 0.
     """
     guess = np.asarray(guess, dtype=float)
     circles = disc.offset == 0.0
@@ -111,10 +107,7 @@ def steady_motion(
 
 
 def sharpness(disc: DiscOnDisc, motion: SelfCentredEquilibrium | Whirl) -> float:
-    """Return the amplification of an error of the flow in :func:`steady_motion`.
-
-    It is the largest 1/|1 − exp(λT)| over the eigenvalues λ, where T is the period.
-    """
+    """Return the amplification of an error of the flow in :func:`steady_motion`: the largest 1/|1 − exp(λT)|."""
     frequency, eigenvalues = 0.0, motion.eigenvalues
     if isinstance(motion, Whirl):
         frequency, eigenvalues = motion.frequency, motion.eigenvalues[1:]
@@ -136,8 +129,8 @@ def mode_growth(
 ) -> complex:
     """Return growth rate and frequency (1/s) of the slowest mode of small deviations from a steady motion on a ring.
 
-    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), so even powers cancel in their
-    difference. The left eigenvector selects the slowest mode other than a free phase.
+    Two simulations of ``duration`` s start at ± ``displacement``, shape (6,), so even powers cancel. The left
+    eigenvector selects the slowest mode other than a free phase.
     """
     frequency, eigenvalue = 0.0, motion.eigenvalues[0]
     if isinstance(motion, Whirl):
@@ -177,8 +170,8 @@ def equilibrium_of(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 def last_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> float:
     """Return the μN (N) where the self-centred equilibrium ends: (5) for a disc.
 
-    Above it friction can supply both the force C·|X0|, which holds the disc on the axis, and the moment b|ω − Ω| of
-    the shaft. The limit surface is convex and contains both if C·|X0| + b|ω − Ω|/R <= μN.
+    Above it friction can supply both the force C·|X0| that holds the disc on the axis and the moment b|ω − Ω| of the
+    shaft. The limit surface is convex and contains both if C·|X0| + b|ω − Ω|/R <= μN.
     """
     springs, moment = disc.stiffness * abs(disc.offset), shaft_torque(disc) / disc.contact_radius
 

@@ -1,8 +1,7 @@
 """Exact motion of rotors in a row, coupled by clutches with Coulomb friction.
 
-Torques and capacities are piecewise harmonic, so the motion between events has a closed form. An event is the end of
-a clutch's slip, or a torque beyond its capacity. Then a search over all combinations of modes finds the consistent
-one.
+Torques and capacities are piecewise harmonic, so the motion between events has a closed form. After the end of a
+slip, or a torque beyond a clutch's capacity, a search over all combinations of modes finds the consistent one.
 """
 
 from __future__ import annotations
@@ -59,8 +58,7 @@ Pieces = Sequence[tuple[float, Harmonic]]
 class Chain:
     """Rotors in a row with inertias (kg m²) and external torques, and the clutches between them.
 
-    A slipping clutch transmits its capacity, and a stuck one holds up to ``static_ratio`` times as much. An amplitude
-    of 0 opens it.
+    A slipping clutch transmits its capacity, and a stuck one up to ``static_ratio`` times as much; 0 opens it.
     """
 
     inertias: Sequence[float]

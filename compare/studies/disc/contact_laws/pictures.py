@@ -2,28 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import compare.output.figures as plots
 from compare.claims import ByEngine, Figures
-from compare.output.figures import (
-    BLACK,
-    GREEN,
-    GREY,
-    PURPLE,
-    SKY,
-    Figure,
-    axis,
-    curve,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Figure, axis, curve, engines_in, new_figure, points
 
 RATIO = axis("U/W")
 
 LOOKS = {
-    "expansion": ("(23)", PURPLE),
-    "points6": ("6 points", GREEN),
-    "points12": ("12 points", SKY),
-    "points24": ("24 points", BLACK),
+    "expansion": ("(23)", plots.PURPLE),
+    "points6": ("6 points", plots.GREEN),
+    "points12": ("12 points", plots.SKY),
+    "points24": ("24 points", plots.BLACK),
 }
 """Labels and colours of the laws."""
 
@@ -41,23 +32,15 @@ def laws(data: ByEngine) -> Figure:
             theory = data["theory"]
             ratio = theory["ratio"]
             low, high = theory["points6"]
-            panel.fill_between(
-                ratio,
-                low[:, i],
-                high[:, i],
-                color=GREEN,
-                alpha=0.3,
-                linewidth=0.0,
-                label="6 points, all angles",
-            )
-            panel.plot(ratio, theory["annulus"][:, i], color=GREY, linestyle="--", label="annulus")
-            panel.plot(ratio, theory["expansion"][:, i], color=PURPLE, label="(23)")
+            style: Any = {"color": plots.GREEN, "alpha": 0.3, "linewidth": 0.0}
+            panel.fill_between(ratio, low[:, i], high[:, i], label="6 points, all angles", **style)
+            panel.plot(ratio, theory["annulus"][:, i], color=plots.GREY, linestyle="--", label="annulus")
+            panel.plot(ratio, theory["expansion"][:, i], color=plots.PURPLE, label="(23)")
             panel.plot(ratio, theory["ring"][:, i], **curve("theory", "ring", linewidth=1.2))
         for engine in engines_in(data):
             if "ring" in data[engine]:
-                panel.plot(
-                    data[engine]["ratio"], data[engine]["ring"][:, i], **points(engine, f"ring, {engine}")
-                )
+                style = points(engine, f"ring, {engine}")
+                panel.plot(data[engine]["ratio"], data[engine]["ring"][:, i], **style)
         panel.set(xscale="log", xlabel=RATIO)
     force, moment = panels
     force.set(ylabel=axis(r"F/\mu N"), title="Force against the slip")

@@ -25,13 +25,10 @@ SOURCE_OF_LAWS = "R of Fig. 11; slip and spin are our choice"
 RATIOS = (0.05, 0.3, 0.6, 0.8, 1.25, 1.7, 3.0, 20.0)
 """U/W, not too close to 1, where friction is not differentiable."""
 
-SPEED = 0.3  # √(U² + W²) in m/s, ν̄_r of (22)
-
-CENTRE, DIRECTION, ANGLE = 0.05 - 0.02j, 0.4, 0.3
-"""Position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
+SPEED, CENTRE, DIRECTION, ANGLE = 0.3, 0.05 - 0.02j, 0.4, 0.3
+"""√(U² + W²) in m/s, position of the disc's centre (x + iy, m), direction of its slip and angle of the disc (rad)."""
 
 STEP = 2e-3  # time step in s
-
 DIFFERENCES = (
     (-25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -1.0 / 4.0),
     (-11.0 / 6.0, 3.0, -3.0 / 2.0, 1.0 / 3.0, 0.0),
@@ -41,11 +38,8 @@ DIFFERENCES = (
 COMPARED = (*np.geomspace(1e-3, 1e3, 19).tolist(), 1.0 - 1e-3, 1.0 + 1e-3, 1.0 - 1e-6, 1.0 + 1e-6)
 """U/W of the comparison."""
 
-RESTING = (INNER, 0.75 * R, R)
-"""Radii (m) of a point at rest on the annulus."""
-
-RINGS = (8, 9, 10, 11, 12)
-"""Numbers of rings on either side of that radius, few enough for errors above rounding."""
+RESTING, RINGS = (INNER, 0.75 * R, R), (8, 9, 10, 11, 12)
+"""Radii (m) of a resting point, and numbers of rings on either side of it, few enough for errors above rounding."""
 
 WIDTHS = (0.16, 0.12, 0.08, 0.06, 0.04, 0.03)  # widths of thin annuli as shares of their mean radius
 
@@ -92,13 +86,19 @@ def motions(ratios: Sequence[float]) -> list[tuple[complex, float]]:
     ]
 
 
+PARTS_OF_FRICTION = ("F_x", "F_y", "M")
+
+
+def at_ratios(ratios: Sequence[float]) -> dict[str, list[str]]:
+    return {"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]}
+
+
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
     """Compare F_x, F_y (over μN) and M (over μN·R) with ``predicted``, shape (2n, 3).
 
-    According to (19), friction is the initial acceleration times inertia plus the forces of springs and dampers.
-    ``name`` is the law's key in the figures' data.
+    Friction is the initial acceleration times inertia plus the forces of springs and dampers, see (19).
     """
     inertia = np.array((disc.mass, disc.mass, disc.polar_inertia))
 
@@ -123,8 +123,8 @@ def friction_on(
         value=found[:, 0],
         error=np.max(error[:, 0], axis=0) + truncation,
         size=1.0,
-        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in ratios]},
-        components=("F_x", "F_y", "M"),
+        at=at_ratios(ratios),
+        components=PARTS_OF_FRICTION,
         system=disc,
         parameters={"x": CENTRE.real, "y": CENTRE.imag, "angle": ANGLE},
         data={"ratio": ratios, name: np.column_stack((along, found[:, 0, 2]))[: len(ratios)]},
@@ -156,7 +156,7 @@ def closed_form() -> Measured:
     rows = []
     for sign in (1.0, -1.0):
         for i, ratio in enumerate(COMPARED):
-            slip = ratio * complex(math.cos(i), math.sin(i))
+            slip = cmath.rect(ratio, i)
             integral, error = theory.ring_by_quadrature(slip, sign)
             rows.append((integral, theory.friction(RING, slip, sign), [error + ROUNDING] * 3))
     predicted, measured, errors = zip(*rows, strict=True)
@@ -164,8 +164,8 @@ def closed_form() -> Measured:
         predicted=predicted,
         value=measured,
         error=errors,
-        at={"U/W": [f"{ratio:g}, ω {sign} φ̇" for sign in "><" for ratio in COMPARED]},
-        components=("F_x", "F_y", "M"),
+        at=at_ratios(COMPARED),
+        components=PARTS_OF_FRICTION,
     )
 
 
@@ -200,12 +200,8 @@ def error_of_expansion() -> Measured:
 )
 def place_of_expansion_error() -> Measured:
     integrals, formulas = theory.greatest_errors_of_expansion()
-    return of_laws(
-        predicted=integrals[:, 0],
-        value=formulas[:, 0],
-        error=integrals[:, 2] + formulas[:, 2],
-        components=PARTS,
-    )
+    error = integrals[:, 2] + formulas[:, 2]
+    return of_laws(predicted=integrals[:, 0], value=formulas[:, 0], error=error, components=PARTS)
 
 
 @STUDY.claim(
@@ -284,13 +280,8 @@ def order_in_rings(function: Callable[[Annulus, float, float], Sequence[float]],
 
 def of_orders(observed: Sequence[tuple[float, float, float]], order: float, **more: Any) -> Measured:
     exponents, numerical, model = np.array(observed).T
-    return of_laws(
-        predicted=np.full(len(exponents), float(order)),
-        value=exponents,
-        error=numerical,
-        model=float(np.max(model)),
-        **more,
-    )
+    predicted, largest = np.full(len(exponents), float(order)), float(np.max(model))
+    return of_laws(predicted=predicted, value=exponents, error=numerical, model=largest, **more)
 
 
 @STUDY.claim(

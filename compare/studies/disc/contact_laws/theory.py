@@ -86,7 +86,7 @@ def friction(law: Contact, slip: complex, rim: float, angle: float = 0.0) -> Flo
 
 @functools.cache
 def greatest_errors_of_expansion() -> tuple[FloatArray, FloatArray]:
-    """Return the largest errors of (23) by integrals (20), with and without (22), and by closed forms.
+    """Return the largest errors of (23) by integrals (20), and by closed forms.
 
     Each array contains U/W, size and the error of U/W, for force and moment, shape (2, 3).
     """
@@ -114,12 +114,8 @@ def top(error: Callable[[float], float], noise: float) -> tuple[float, float, fl
     from scipy.optimize import minimize_scalar
 
     coarse = max(np.geomspace(1e-2, 1e2, 201).tolist(), key=error)
-    found = minimize_scalar(
-        lambda ratio: -error(ratio),
-        bounds=(0.95 * coarse, 1.05 * coarse),
-        method="bounded",
-        options={"xatol": 1e-6},
-    )
+    around, options = (0.95 * coarse, 1.05 * coarse), {"xatol": 1e-6}
+    found = minimize_scalar(lambda ratio: -error(ratio), bounds=around, method="bounded", options=options)
     place, h = float(found.x), 0.01 * coarse
     curvature = abs(error(place - h) - 2.0 * error(place) + error(place + h)) / h**2
     return place, -float(found.fun), math.sqrt(2.0 * noise / curvature) + 1e-6
@@ -134,7 +130,7 @@ def greatest_errors_of_points(numbers: Sequence[int]) -> FloatArray:
 def worst(number: int, part: slice) -> tuple[float, float, float, float]:
     """Return the U/W of the largest error of ``number`` points, its size, and the errors of size and U/W.
 
-    ``part`` selects force or moment. The search uses no slopes, because the maximum is next to a jump.
+    The search uses no slopes, because the maximum is next to a jump.
     """
     law = PointsOnRing(R, number)
     centre, spans, history = np.zeros(2), np.array((math.log(20.0), math.pi / number)), []
@@ -169,9 +165,7 @@ def curves() -> Data:
         found = np.array([[friction(points, ratio, 1.0, angle) for angle in angles] for ratio in ratios])
         exact = data["ring"][:, np.newaxis]
         data[f"points{number}"] = np.stack((found.min(axis=1), found.max(axis=1)))[:, :, [0, 2]] * (-1.0, 1.0)
-        off = (
-            np.hypot(found[:, :, 0] + exact[:, :, 0], found[:, :, 1]),
-            np.abs(found[:, :, 2] - exact[:, :, 1]),
-        )
-        data[f"points{number}_error"] = np.stack([distance.max(axis=1) for distance in off], axis=1)
+        force = np.hypot(found[:, :, 0] + exact[:, :, 0], found[:, :, 1])
+        moment = np.abs(found[:, :, 2] - exact[:, :, 1])
+        data[f"points{number}_error"] = np.stack((force.max(axis=1), moment.max(axis=1)), axis=1)
     return data

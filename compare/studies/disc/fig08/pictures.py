@@ -46,10 +46,8 @@ def curves(count: int = 121) -> Data:
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {"fig08-spin": draw_spin(data)} if data else {}
-    if "theory" in data:
-        figures["fig08-offset"] = draw_offsets(data["theory"])
-    return figures
+    offsets = {"fig08-offset": draw_offsets(data["theory"])} if "theory" in data else {}
+    return {"fig08-spin": draw_spin(data)} | offsets if data else {}
 
 
 def draw_spin(data: ByEngine) -> Figure:
@@ -71,27 +69,14 @@ def draw_spin(data: ByEngine) -> Figure:
     for speed, name in ((RING.disc_speed, r"master disc, $\omega$"), (RING.shaft_speed, r"shaft, $\Omega$")):
         spin.axhline(speed, color=GREY, linewidth=0.8, linestyle=":")
         spin.annotate(name, (0.001, speed), (0, -11), textcoords="offset points", fontsize=9.5)
+    load, speeds = axis(r"\mu N", "N"), (RING.shaft_speed - 0.02, RING.disc_speed + 0.02)
     spin.set(
-        xlabel=axis(r"\mu N", "N"),
-        ylabel=axis(r"\dot\varphi", "rad/s"),
-        title=rf"Fig. 8, $X_0 = {own}$ m",
-        ylim=(RING.shaft_speed - 0.02, RING.disc_speed + 0.02),
+        xlabel=load, ylabel=axis(r"\dot\varphi", "rad/s"), ylim=speeds, title=rf"Fig. 8, $X_0 = {own}$ m"
     )
-    distance.set(
-        xlabel=axis(r"\mu N", "N"),
-        ylabel="difference in rad/s",
-        yscale="log",
-        ylim=(1e-16, 1.0),
-        title="Spin minus spin on the continuous ring",
-    )
-    plane.set(
-        xlabel=axis("x", "m"),
-        ylabel=axis("y", "m"),
-        aspect="equal",
-        xlim=(-0.005, 0.105),
-        ylim=(-0.005, 0.066),
-        title="Positions of rest",
-    )
+    distance.set(xlabel=load, ylabel="difference in rad/s", yscale="log", ylim=(1e-16, 1.0))
+    distance.set(title="Spin minus spin on the continuous ring")
+    plane.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal", title="Positions of rest")
+    plane.set(xlim=(-0.005, 0.105), ylim=(-0.005, 0.066))
     spin.legend(loc="upper left", bbox_to_anchor=(0.0, 0.89), fontsize=9.0)
     distance.axhline(RESOLUTION, color=GREY, linewidth=0.9, linestyle="--", label="resolution of ring")
     distance.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), fontsize=9.0, ncols=2)
@@ -101,21 +86,14 @@ def draw_spin(data: ByEngine) -> Figure:
 
 def _draw_theory(spin: Axes, distance: Axes, plane: Axes, found: Data) -> None:
     own = f"{RING.offset:g}"
-    spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
-    spin.plot(
-        found[f"corrected load {own}"],
-        found[f"corrected {own}"][:, 2],
-        **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
-    )
+    corrected = curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2)
     printed: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "label": "(26), as printed"}
+    spin.plot(found[f"ring load {own}"], found[f"ring {own}"][:, 2], **curve("theory", "continuous ring"))
+    spin.plot(found[f"corrected load {own}"], found[f"corrected {own}"][:, 2], **corrected)
     spin.plot(found["printed load"], found["printed"][:, 2], **printed)
-    loads = found["distance load"]
-    distance.plot(
-        loads[1:],
-        found["distance corrected"][1:, 2],
-        **curve("theory", "(26), corrected", linestyle=(0.0, (5.0, 2.0)), linewidth=1.2),
-    )
-    distance.plot(loads[1:], found["distance printed"][1:, 2], **printed)
+    loads = found["distance load"][1:]
+    distance.plot(loads, found["distance corrected"][1:, 2], **corrected)
+    distance.plot(loads, found["distance printed"][1:, 2], **printed)
     plane.plot(*found[f"ring {own}"][:, :2].T, **curve("theory", "semicircle (4)"))
 
 
@@ -138,10 +116,7 @@ def draw_offsets(theory: Data) -> Figure:
     end.loglog(offsets, theory["end"], **curve("theory", "disc"))
     end.loglog(offsets, RING.stiffness * offsets, color=GREY, linewidth=1.0, label=r"pin (5), $C X_0$")
     end.axhline(moment, color=GREY, linewidth=1.0, linestyle=":", label=r"$b(\omega-\Omega)/R$")
-    end.set(
-        xlabel=axis("X_0", "m"),
-        ylabel=axis(r"\mu N", "N"),
-        title="Largest friction force with an equilibrium",
-    )
+    end.set(xlabel=axis("X_0", "m"), ylabel=axis(r"\mu N", "N"))
+    end.set(title="Largest friction force with an equilibrium")
     end.legend(loc="upper left")
     return figure

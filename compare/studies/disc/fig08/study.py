@@ -16,18 +16,13 @@ from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG8
 from compare.claims.study import Study
-from compare.engines import Engine
+from compare.engines import Engine, reference
+from compare.studies.toolkit.deviations import PARTS
+from compare.studies.toolkit.measuring import compared, residual_of_4
 from compare.studies.toolkit.steady_motion import equilibrium_of, last_load, steady_motion, with_load
-from reference_model import simulate
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
-from reference_model.formulas.disc import (
-    positions_by_26,
-    reduced_parameters,
-    semicircle_residual,
-    shaft_torque,
-    speed_difference_at,
-    squared_distance,
-)
+from reference_model.formulas import disc as formulas
+from reference_model.formulas.disc import pin_of, positions_by_26
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
@@ -50,10 +45,8 @@ DECAYS = ((0.05, (700.0, 1000.0)), (0.095, (250.0, 400.0)))
 END_LOADS = (0.1015, 0.1025, 0.1035, 0.1044, 0.1049, 0.1052)
 """μN in N near the end of the equilibrium, where its distance from the axis falls linearly."""
 
-STICKING_RATIOS = (0.98, 1.02, 1.05)  # μN as a multiple of the largest μN with an equilibrium
-
-STICKING_TIME = 80.0
-"""Time (s) within which friction accelerates a disc from 95 % to the speed of the master disc."""
+STICKING_RATIOS, STICKING_TIME = (0.98, 1.02, 1.05), 80.0
+"""μN as a multiple of the largest μN with an equilibrium, and time (s) until a disc gains the last 5 % of ω."""
 
 OFFSETS = (0.02, 0.05, 0.1, 0.2)
 """X0 in m, which the paper omits; 0.1 m is that of Figs. 4 to 6."""
@@ -63,8 +56,11 @@ BALANCED = 1e-9  # largest residual force due to rounding, as a share of μN; (2
 RESOLUTION = 1e-9  # positions in m, spins in rad/s
 
 
+PLACE_AND_SPIN = ("x in m", "y in m", "spin in rad/s")
+
+
 def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> FloatArray:
-    """Return x, y (m) and spin (rad/s) of the self-centred equilibrium."""
+    """Return the numbers named in ``PLACE_AND_SPIN`` for the self-centred equilibrium."""
     equilibrium = equilibrium_of(disc, contact)
     return np.array([equilibrium.x, equilibrium.y, equilibrium.spin])
 
@@ -94,15 +90,15 @@ def unbalanced(disc: DiscOnDisc, as_printed: bool) -> float:
 
 def last_load_by_26(disc: DiscOnDisc) -> float:
     """Return the friction force (N) where A of (26) becomes zero."""
-    difference = reduced_parameters(disc).speed_difference
+    difference = formulas.reduced_parameters(disc).speed_difference
 
     def miss(unknowns: FloatArray) -> FloatArray:
         load, alpha = unknowns
         loaded = with_load(disc, load)
-        squared, first_line = squared_distance(loaded, alpha), speed_difference_at(loaded, 0.0, alpha)
-        return np.array([squared / disc.offset**2, first_line - difference])
+        squared = formulas.squared_distance(loaded, alpha) / disc.offset**2
+        return np.array([squared, formulas.speed_difference_at(loaded, 0.0, alpha) - difference])
 
-    start = disc.stiffness * disc.offset + shaft_torque(disc) / disc.contact_radius
+    start = disc.stiffness * disc.offset + formulas.shaft_torque(disc) / disc.contact_radius
     return float(root(miss, [start, math.pi / 4.0], options={"xtol": ROUNDING}).x[0])
 
 
@@ -139,12 +135,11 @@ def _means(engine: Engine, disc: DiscOnDisc, tolerance: float) -> FloatArray:
 )
 def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     found = means_of(engine, RING, loads)
-    return Measured(
-        predicted=[place_and_spin(with_load(RING, load)) for load in loads],
-        value=found.value,
-        error=found.error,
+    return compared(
+        [place_and_spin(with_load(RING, load)) for load in loads],
+        found,
         at={"μN in N": loads},
-        components=("x in m", "y in m", "spin in rad/s"),
+        components=PLACE_AND_SPIN,
         data={"load": loads, "ring": found.value},
     )
 
@@ -159,16 +154,8 @@ def rests(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     swept=("friction_force",),
 )
 def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
-    found = means_of(engine, RING, loads)
-    x, y, _ = found.value.T
-    # The gradient of (4) is twice the vector from the circle's centre, of length X0 on the circle.
-    error = 2.0 * np.hypot(x - RING.offset / 2.0, y) * found.error + found.error**2
-    return Measured(
-        predicted=np.zeros(len(loads)),
-        value=semicircle_residual(RING, x, y),
-        error=error,
-        at={"μN in N": loads},
-    )
+    places, error = means_of(engine, RING, loads)
+    return residual_of_4(pin_of(RING), places[:, :2], error, {"μN in N": loads})
 
 
 @STUDY.claim(
@@ -185,22 +172,19 @@ def on_semicircle(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 )
 def decays(engine: Engine, spans: Sequence[tuple[float, tuple[float, float]]] = DECAYS) -> Measured:
     """``spans`` contains μN (N) and times (s)."""
+    discs = [with_load(RING, load) for load, _ in spans]
     measured, errors = [], []
-    for load, span in spans:
-        (earlier, later), error = refined(
-            functools.partial(_decay, engine, with_load(RING, load), span), WORKING
-        )
+    for disc, (_, span) in zip(discs, spans, strict=True):
+        (earlier, later), error = refined(functools.partial(_decay, engine, disc, span), WORKING)
         measured.append(later)
         # Nonlinear terms fall with the deviation, so the change exceeds them in the later half.
-        errors.append(np.max(error) + np.hypot(*(later - earlier)))
+        errors.append([np.max(error) + np.hypot(*(later - earlier))] * 2)
     return Measured(
-        predicted=real_and_imaginary(
-            [equilibrium_of(with_load(RING, load)).eigenvalues[0] for load, _ in spans]
-        ),
+        predicted=real_and_imaginary([equilibrium_of(disc).eigenvalues[0] for disc in discs]),
         value=measured,
-        error=np.repeat(np.array(errors)[:, np.newaxis], 2, axis=1),
+        error=errors,
         at={"μN in N": [load for load, _ in spans]},
-        components=("real part", "imaginary part"),
+        components=PARTS,
     )
 
 
@@ -237,7 +221,7 @@ def ends(engine: Engine) -> Measured:
     found = refined(
         lambda tolerance: [_means(engine, with_load(RING, load), tolerance) for load in END_LOADS], TOLERANCE
     )
-    distance = np.hypot(found.value[:, 0], found.value[:, 1])
+    distance = np.hypot(*found.value[:, :2].T)
     on_axis = _extrapolated(distance, END_LOADS)
     moved = [_extrapolated(distance + found.largest * one, END_LOADS) for one in np.eye(len(distance))]
     without_farthest = _extrapolated(distance[1:], END_LOADS[1:])
@@ -292,12 +276,11 @@ def sticks(engine: Engine, ratios: Sequence[float] = STICKING_RATIOS) -> Measure
 def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
     found = means_of(engine, SIX, loads)
     beside_ring = np.abs(found.value - [place_and_spin(with_load(RING, load)) for load in loads])[:, 2]
-    return Measured(
-        predicted=[_six_points_of_reference(load) for load in loads],
-        value=found.value,
-        error=found.error,
+    return compared(
+        [_six_points_of_reference(load) for load in loads],
+        found,
         at={"μN in N": loads},
-        components=("x in m", "y in m", "spin in rad/s"),
+        components=PLACE_AND_SPIN,
         system=SIX,
         note=f"The spin differs from that on the continuous ring by {np.min(beside_ring):.1g} to "
         f"{np.max(beside_ring):.1g} rad/s.",
@@ -307,7 +290,7 @@ def six_points(engine: Engine, loads: Sequence[float] = LOADS) -> Measured:
 
 @functools.cache
 def _six_points_of_reference(load: float) -> tuple[float, ...]:
-    return tuple(_means(Engine("reference", simulate, ("points",)), with_load(SIX, load), TIGHTEST))
+    return tuple(_means(reference, with_load(SIX, load), TIGHTEST))
 
 
 @STUDY.claim(
@@ -327,7 +310,7 @@ def corrected_26() -> Measured:
         value=places,
         error=np.abs(moved - places) + ROUNDING * RING.offset,
         at={"X0, μN": [f"{disc.offset:g} m, {disc.friction_force:.4g} N" for disc in discs]},
-        components=("x in m", "y in m", "spin in rad/s"),
+        components=PLACE_AND_SPIN,
         source=SOURCE_OF_GRID,
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,23 +11,26 @@ from dataclasses import replace
 import numpy as np
 
 import compare.studies.disc.fig09.theory as theory
-from compare.claims.error_estimates import (
+from compare.claims import (
     COARSENING,
     ROUNDING,
     TIGHTEST,
+    Measured,
     Measurement,
+    answers_of,
+    asked,
     extrapolated_order,
     refined,
 )
 from compare.claims.linearised_flow import real_and_imaginary, rotated
-from compare.claims.measured import Measured, answers_of, asked
-from compare.engines import Engine
+from compare.engines import Engine, reference
 from compare.studies.disc.fig09.steady_motions import means, steady_motions
 from compare.studies.disc.fig09.theory import STUDY, last_stable_load, weak_damping_load
+from compare.studies.toolkit.deviations import PARTS
+from compare.studies.toolkit.measuring import compared
 from compare.studies.toolkit.pins import first_release
 from compare.studies.toolkit.steady_motion import mode_growth, with_load
-from reference_model import Trajectory, simulate, smallest_load_with_whirl
-from reference_model.contact.contact_law import IsotropicContact
+from reference_model import Trajectory, smallest_load_with_whirl
 from reference_model.formulas.disc import whirl_at
 from reference_model.steady.steady_states import SpinningEquilibrium, SpinningWhirl
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -53,16 +57,14 @@ FOLLOWED = (
 )
 def deviations_grow(engine: Engine) -> Measured:
     aside = theory.DISPLACED * theory.RING.offset * np.eye(6)[0]
-    rests = [(theory.rest_of(load), load, duration) for load, duration in theory.GROWTHS]
-    found = _growth(
-        engine, [(with_load(theory.RING, load), rest, aside, duration) for rest, load, duration in rests]
-    )
-    return Measured(
-        predicted=real_and_imaginary([rest.eigenvalues[0] for rest, *_ in rests]),
-        value=found.value,
-        error=found.error,
-        at={"μN in N": [load for load, _ in theory.GROWTHS]},
-        components=("real part", "imaginary part"),
+    loads, durations = zip(*theory.GROWTHS, strict=True)
+    rests, discs = map(theory.rest_of, loads), [with_load(theory.RING, load) for load in loads]
+    motions = [*zip(discs, rests, [aside] * len(discs), durations, strict=True)]
+    return compared(
+        real_and_imaginary([rest.eigenvalues[0] for _, rest, *_ in motions]),
+        _growth(engine, motions),
+        at={"μN in N": loads},
+        components=PARTS,
     )
 
 
@@ -79,13 +81,11 @@ def whirl_attracts(engine: Engine) -> Measured:
     load, duration = theory.DECAY
     circle = theory.circle_of(load, 0)
     larger = theory.DISPLACED * np.array([1.0, 0.0, 0.0, 0.0, 1.0, 0.0]) * circle.state
-    found = _growth(engine, [(with_load(theory.CENTRED, load), circle, larger, duration)])
-    return Measured(
-        predicted=real_and_imaginary([circle.eigenvalues[1]]),  # the first belongs to rotation about the axis
-        value=found.value,
-        error=found.error,
+    return compared(
+        real_and_imaginary([circle.eigenvalues[1]]),  # the first belongs to rotation about the axis
+        _growth(engine, [(with_load(theory.CENTRED, load), circle, larger, duration)]),
         at={"μN in N": [load]},
-        components=("real part", "imaginary part"),
+        components=PARTS,
         system=theory.CENTRED,
     )
 
@@ -100,12 +100,11 @@ def _growth(
     """
 
     def rates(tolerance: float, scale: float = 1.0) -> FloatArray:
-        return real_and_imaginary(
-            [
-                mode_growth(engine, disc, motion, scale * displacement, duration, tolerance)
-                for disc, motion, displacement, duration in motions
-            ]
-        )
+        found = [
+            mode_growth(engine, disc, motion, scale * displacement, duration, tolerance)
+            for disc, motion, displacement, duration in motions
+        ]
+        return real_and_imaginary(found)
 
     found = refined(rates, theory.ORBIT_TOLERANCE)
     # Flows that agree to within the tolerance may hide such an error.
@@ -177,21 +176,22 @@ def sticks(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measu
     swept=("friction_force",),
 )
 def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    cases = [(load, share) for load in loads for share in theory.OUTSIDE]
-    starts = [
-        (with_load(theory.RING, load), *theory.stuck_at(with_load(theory.RING, load), share))
-        for load, share in cases
-    ]
+    predicted, motions = [], []
+    for load, share in itertools.product(loads, theory.OUTSIDE):
+        disc = with_load(theory.RING, load)
+        start, release = theory.stuck_at(disc, share)
+        predicted.append(disc.disc_speed * release)
+        motions.append((disc, start, [0.0, theory.LATEST * release]))
 
     def turns(tolerance: float) -> list[float]:
-        motions = [(disc, start, [0.0, theory.LATEST * release]) for disc, start, release in starts]
         runs = engine.simulate_many(motions, tolerance=tolerance)
         return [run.system.disc_speed * first_release(run) for run in runs]
 
     found = refined(turns, theory.TOLERANCE)
-    return Measured(
-        predicted=[disc.disc_speed * release for disc, _, release in starts],
-        value=found.value,
+    cases = itertools.product(loads, theory.OUTSIDE)
+    return compared(
+        predicted,
+        found,
         error=found.largest + ROUNDING,
         components=[f"μN = {load:g} N, {share:g} of the radius" for load, share in cases],
     )
@@ -205,16 +205,15 @@ def releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Mea
 )
 def coexist(engine: Engine) -> Measured:
     load = theory.STICK_LOADS[-1]
-    start, _ = theory.stuck_at(with_load(theory.RING, load), 0.5)
-    orbit = theory.orbit_of_reference(load, 0)
+    disc, orbit = with_load(theory.RING, load), theory.orbit_of_reference(load, 0)
+    motions = [
+        (disc, theory.stuck_at(disc, 0.5)[0], [0.0, REVOLUTION]),
+        (orbit.system, orbit.state, [0.0, 10.0 * orbit.period]),
+    ]
 
     def sticks_and_slides(tolerance: float) -> list[bool]:
-        stays = engine.simulate(with_load(theory.RING, load), start, [0.0, REVOLUTION], tolerance=tolerance)
-        whirl = engine.simulate(orbit.system, orbit.state, [0.0, 10.0 * orbit.period], tolerance=tolerance)
-        return [
-            all(phase.kind == kind for phase in run.phases)
-            for run, kind in ((stays, "stick"), (whirl, "slip"))
-        ]
+        runs = zip(engine.simulate_many(motions, tolerance=tolerance), ("stick", "slip"), strict=True)
+        return [all(phase.kind == kind for phase in run.phases) for run, kind in runs]
 
     return answers_of(*asked(sticks_and_slides, theory.TOLERANCE), system=orbit.system)
 
@@ -222,8 +221,6 @@ def coexist(engine: Engine) -> Measured:
 # --- The disc on six points, as in the paper's simulations
 
 SIX = replace(theory.RING, contact_points=6)
-
-REFERENCE = Engine("reference", simulate, ("points",))
 
 BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 
@@ -239,14 +236,12 @@ BY_REFERENCE = f"Predicted by the reference at tolerance {TIGHTEST:g}."
 def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.CIRCLES) -> Measured:
     found = steady_motions(engine, circles, 6)
     predicted = np.array([_of_reference(*one) for one in circles])
-    beside = np.abs(
-        predicted[:, 0] - [theory.circle_of(*one).radius / theory.radius_of_pin(one[0]) for one in circles]
-    )
+    on_ring = [theory.circle_of(*one).radius / theory.radius_of_pin(one[0]) for one in circles]
+    beside = np.abs(predicted[:, 0] - on_ring)
     loads = [load for load, _ in circles]
-    return Measured(
-        predicted=predicted,
-        value=found.value,
-        error=found.error,
+    return compared(
+        predicted,
+        found,
         at={"μN in N": loads},
         components=("radius", "frequency", "spin"),
         system=replace(theory.CENTRED, contact_points=6),
@@ -259,7 +254,7 @@ def six_circles(engine: Engine, circles: tuple[tuple[float, int], ...] = theory.
 
 @functools.cache
 def _of_reference(load: float, which: int | None) -> tuple[float, ...]:
-    return tuple(means(REFERENCE, load, which, 6, TIGHTEST))
+    return tuple(means(reference, load, which, 6, TIGHTEST))
 
 
 @STUDY.claim(
@@ -272,10 +267,9 @@ def _of_reference(load: float, which: int | None) -> tuple[float, ...]:
 )
 def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
     found = steady_motions(engine, tuple((load, None) for load in loads), 6)
-    return Measured(
-        predicted=[_of_reference(load, None) for load in loads],
-        value=found.value,
-        error=found.error,
+    return compared(
+        [_of_reference(load, None) for load in loads],
+        found,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
         system=SIX,
@@ -294,14 +288,11 @@ def six_rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Mea
     swept=("friction_force",),
 )
 def six_releases(engine: Engine, loads: Sequence[float] = theory.STICK_LOADS) -> Measured:
-    def slipped(tolerance: float) -> list[FloatArray]:
-        return [_slipped(engine, load, tolerance) for load in loads]
-
-    found = refined(slipped, theory.TOLERANCE)
+    found = refined(lambda tolerance: [_slipped(engine, load, tolerance) for load in loads], theory.TOLERANCE)
     predicted = [_slipped_in_reference(load) for load in loads]
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    return compared(
+        predicted,
+        found,
         error=found.rows,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
@@ -322,7 +313,7 @@ def _slipped(engine: Engine, load: float, tolerance: float) -> FloatArray:
 
 @functools.cache
 def _slipped_in_reference(load: float) -> tuple[float, ...]:
-    return tuple(_slipped(REFERENCE, load, TIGHTEST))
+    return tuple(_slipped(reference, load, TIGHTEST))
 
 
 # --- Ends of whirl and equilibrium without an engine
@@ -337,7 +328,7 @@ def _slipped_in_reference(load: float) -> tuple[float, ...]:
     swept=("friction_force",),
 )
 def fold() -> Measured:
-    laws: Sequence[IsotropicContact | None] = (None, theory.PAPER_LAW)
+    laws = (None, theory.PAPER_LAW)
     measured = [whirl_at(theory.CENTRED, theory.marginal_ratio(law), law).load for law in laws]
     return Measured(
         predicted=[smallest_load_with_whirl(theory.CENTRED, law) for law in laws],

@@ -6,27 +6,20 @@ from typing import Any
 
 import numpy as np
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import (
-    BLACK,
-    GREEN,
-    GREY,
-    PURPLE,
-    Axes,
-    Figure,
-    axis,
-    beside,
-    curve,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Axes, Figure, axis, beside, curve, engines_in, new_figure, points
 from compare.studies.disc.fig09.theory import LARGEST_LOAD, RING, radius_of_pin, spin_of_large_whirl
 
 LEAST_LOAD = 2e-4
-UNSTABLE: dict[str, Any] = {"color": GREY, "linestyle": (0.0, (3.0, 1.5)), "linewidth": 1.4, "zorder": 2.5}
-WHIRL: dict[str, Any] = {"color": GREEN, "linewidth": 1.6, "zorder": 2.5}
-CENTRED_WHIRL: dict[str, Any] = {"color": PURPLE, "linewidth": 1.2, "zorder": 2.4}
+UNSTABLE: dict[str, Any] = {
+    "color": plots.GREY,
+    "linestyle": (0.0, (3.0, 1.5)),
+    "linewidth": 1.4,
+    "zorder": 2.5,
+}
+WHIRL: dict[str, Any] = {"color": plots.GREEN, "linewidth": 1.6, "zorder": 2.5}
+CENTRED_WHIRL: dict[str, Any] = {"color": plots.PURPLE, "linewidth": 1.2, "zorder": 2.4}
 SIX: dict[str, dict[str, Any]] = {
     "reference": {"marker": "h", "markersize": 7.5},
     "exudyn": {"marker": "+", "markersize": 6.5},
@@ -38,10 +31,8 @@ PAPER: dict[str, Any] = {"linestyle": (0.0, (1.0, 1.5)), "linewidth": 1.4}
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)}
-    if "theory" in data:
-        figures["fig09-offset"] = draw_ends(data["theory"])
-    return figures
+    ends = {"fig09-offset": draw_ends(data["theory"])} if "theory" in data else {}
+    return {"fig09-radius": draw_radius(data), "fig10-spin": draw_spin(data)} | ends
 
 
 def draw_radius(data: ByEngine) -> Figure:
@@ -77,13 +68,13 @@ def _whirls(panel: Axes, found: Data) -> None:
     load, radius, _ = found["circles, ring"].T
     fold = int(np.argmin(load))
     panel.plot(load[: fold + 1], radius[: fold + 1], label="whirl, $X_0=0$, ring", **CENTRED_WHIRL)
-    panel.plot(load[fold:], radius[fold:], **UNSTABLE | {"color": PURPLE})
+    panel.plot(load[fold:], radius[fold:], **UNSTABLE | {"color": plots.PURPLE})
     load, radius, _ = found["circles, (23)"].T
     panel.plot(load, radius, **curve("theory", "whirl, $X_0=0$, eq. (23)", **PAPER))
     load, least, greatest, _ = found["orbits"].T
     fold = int(np.argmin(load))
-    for bound, label in ((least, "whirl, $X_0=0.1$ m, smallest and largest"), (greatest, "")):
-        panel.plot(load[: fold + 1], bound[: fold + 1], label=label, **WHIRL)
+    outer, label = np.column_stack((least, greatest))[: fold + 1], "whirl, $X_0=0.1$ m, smallest and largest"
+    panel.plot(load[: fold + 1], outer, label=(label, ""), **WHIRL)
 
 
 def _near_axis(panel: Axes, found: Data) -> None:
@@ -96,14 +87,12 @@ def _near_axis(panel: Axes, found: Data) -> None:
     panel.plot(load[held], radius[held], **curve("theory", "self-centred equilibrium", linewidth=1.4))
     panel.plot(load[~held], radius[~held], **UNSTABLE)
     load, radius = found["sticking"].T
-    panel.fill_between(load, radius, color=GREY, alpha=0.4, linewidth=0.0, label="sticks, (9)")
+    panel.fill_between(load, radius, color=plots.GREY, alpha=0.4, linewidth=0.0, label="sticks, (9)")
 
 
 def _marks(engine: str, found: Data) -> list[tuple[str, dict[str, Any]]]:
-    both = (
-        ("", points(engine)),
-        ("six ", points(engine, f"{engine}, six points", **SIX.get(engine, {"markersize": 3.5}))),
-    )
+    six = points(engine, f"{engine}, six points", **SIX.get(engine, {"markersize": 3.5}))
+    both = (("", points(engine)), ("six ", six))
     return [(prefix, style) for prefix, style in both if f"{prefix}circle" in found]
 
 
@@ -120,22 +109,17 @@ def draw_spin(data: ByEngine) -> Figure:
             place = SIX_BESIDE if prefix else 0.0
             whole.plot(loads, spin, transform=beside(whole, place), **style)
             distance.plot(loads, spin - limit, transform=beside(distance, place), **style)
-            whole.plot(
-                found["rest load"],
-                RING.disc_speed * found[f"{prefix}rest"][:, 2],
-                transform=beside(whole, place),
-                **style | {"label": ""},
-            )
+            at_rest = RING.disc_speed * found[f"{prefix}rest"][:, 2]
+            style |= {"label": "", "transform": beside(whole, place)}
+            whole.plot(found["rest load"], at_rest, **style)
         if "orbit" in found:
             distance.plot(found["orbit load"], found["orbit"][:, -1] - limit, **points(engine, ""))
             whole.plot(found["stick load"], found["stuck"][:, 1], **points(engine, ""))
-    whole.set(
-        xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\dot\varphi", "rad/s"), xlim=(0.0, 1.05 * LARGEST_LOAD)
-    )
+    for panel in (whole, distance):
+        panel.set(xlabel=axis(r"\mu N", "N"))
+    whole.set(ylabel=axis(r"\dot\varphi", "rad/s"), xlim=(0.0, 1.05 * LARGEST_LOAD))
     distance.set(xscale="log", yscale="log", xlim=(LEAST_LOAD, 1.3 * LARGEST_LOAD), ylim=(5e-11, 1e-2))
-    distance.set(
-        xlabel=axis(r"\mu N", "N"), ylabel=rf"$\dot\varphi$ of the whirl minus its limit {limit:.5f} in rad/s"
-    )
+    distance.set(ylabel=rf"$\dot\varphi$ of the whirl minus its limit {limit:.5f} in rad/s")
     _legend_below(figure, whole)
     return figure
 
@@ -150,7 +134,7 @@ def _spin_by_theory(whole: Axes, distance: Axes, found: Data, limit: float) -> N
         style = style | {"label": label}
         whole.plot(load[:fold], spin[:fold], **style)
         distance.plot(load[:fold], spin[:fold] - limit, **style)
-        unstable = style if name == "(23)" else UNSTABLE | {"color": PURPLE}
+        unstable = style if name == "(23)" else UNSTABLE | {"color": plots.PURPLE}
         distance.plot(load[fold:], spin[fold:] - limit, **unstable)
     load, _, _, spin = found["orbits"].T
     fold = int(np.argmin(load))
@@ -162,28 +146,28 @@ def _spin_by_theory(whole: Axes, distance: Axes, found: Data, limit: float) -> N
     whole.plot(load[held], spin[held], **curve("theory", "self-centred equilibrium", linewidth=1.4))
     whole.plot(load[~held], spin[~held], label="unstable", **UNSTABLE)
     load, _ = found["sticking"].T
-    whole.plot(load, np.full(len(load), RING.disc_speed), color=BLACK, linestyle="--", label="sticking")
+    whole.plot(load, np.full(len(load), RING.disc_speed), color=plots.BLACK, linestyle="--", label="sticking")
 
 
 def draw_ends(found: Data) -> Figure:
     figure, (panel,) = new_figure(width=7.0, height=4.4)
     offset, last, stable = found["offset"], found["last load"], found["last stable"]
-    panel.fill_between(offset, last, 1.0, color=GREY, alpha=0.4, linewidth=0.0)
+    panel.fill_between(offset, last, 1.0, color=plots.GREY, alpha=0.4, linewidth=0.0)
     panel.plot(offset, last, **curve("theory", linewidth=1.3))
-    panel.plot(offset, stable, color=GREY, linewidth=1.6)
+    panel.plot(offset, stable, color=plots.GREY, linewidth=1.6)
     x, load = found["folds"].T
-    panel.plot(x[1:], load[1:], color=GREEN, marker="o", markersize=4.0)
-    panel.plot(offset[0], load[0], color=PURPLE, marker="<", clip_on=False)
-    panel.axvline(RING.offset, color=BLACK, linewidth=0.7, linestyle=":")
+    panel.plot(x[1:], load[1:], color=plots.GREEN, marker="o", markersize=4.0)
+    panel.plot(offset[0], load[0], color=plots.PURPLE, marker="<", clip_on=False)
+    panel.axvline(RING.offset, color=plots.BLACK, linewidth=0.7, linestyle=":")
     words: dict[str, Any] = {"ha": "center", "va": "center"}
     panel.text(0.012, 0.11, "no equilibrium, stick", **words)
     panel.text(0.012, 0.004, "equilibrium unstable", **words)
     panel.text(0.16, 0.01, "equilibrium\nand whirl", **words)
     panel.text(0.15, 0.0008, "equilibrium,\nno whirl", **words)
     panel.text(0.0044, 0.0185, r"friction holds $C X_0$ and $b(\omega-\Omega)$", va="top")
-    panel.text(0.085, 0.0075, "loses its stability", color=GREY, rotation=51.0, ha="right", va="center")
-    panel.text(0.042, 0.00058, "fold of the whirl", color=GREEN, va="top")
-    panel.text(0.0043, 0.97 * load[0], r"fold for $X_0=0$", color=PURPLE, va="top")
+    panel.text(0.085, 0.0075, "loses its stability", color=plots.GREY, rotation=51.0, ha="right", va="center")
+    panel.text(0.042, 0.00058, "fold of the whirl", color=plots.GREEN, va="top")
+    panel.text(0.0043, 0.97 * load[0], r"fold for $X_0=0$", color=plots.PURPLE, va="top")
     panel.set(xscale="log", yscale="log", xlim=(offset[0], offset[-1]), ylim=(1.5e-4, 0.35))
     panel.set(xlabel=axis("X_0", "m"), ylabel=axis(r"\mu N", "N"))
     return figure

@@ -6,6 +6,7 @@ import functools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,11 +15,12 @@ import compare.studies.disc.fig09.theory as theory
 from compare.claims import TIGHTEST, Measured, Measurement, known, refined
 from compare.engines import Engine
 from compare.studies.disc.fig09.theory import STUDY
-from compare.studies.toolkit.pins import extent
+from compare.studies.toolkit.measuring import compared
+from compare.studies.toolkit.pins import SIZES, sizes_of, whirl_of
 from compare.studies.toolkit.steady_motion import sharpness, steady_motion, with_load
-from reference_model import Orbit, whirl_orbit
+from reference_model import Orbit
 from reference_model.steady.steady_states import whirls
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import FloatArray
 
 # --- Steady motions of an engine, and orders of small gaps
 
@@ -40,8 +42,7 @@ def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> M
 def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
     """Return the means over a steady motion, NaN if none is found.
 
-    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin of the equilibrium over X0
-    and ω.
+    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin at rest over X0 and ω.
     """
     disc = theory.disc_of(load, which, points)
     motion = steady_motion(engine, disc, theory.exact_motion(load, which).state, tolerance)
@@ -57,7 +58,7 @@ def means(engine: Engine, load: float, which: int | None, points: int | None, to
 def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
     """Return motions found by shooting, shape (n, m), with one error for all numbers of a motion.
 
-    The tolerance times ``amplified`` is added, because two flows may agree to within it.
+    It includes the tolerance times ``amplified``, because two flows may agree to within it.
     """
     return Measurement(
         found.value, found.rows + theory.ORBIT_TOLERANCE * np.asarray(amplified)[:, np.newaxis]
@@ -67,7 +68,7 @@ def with_tolerance(found: Measurement, amplified: ArrayLike) -> Measurement:
 def extrapolated(gaps: FloatArray, error: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """Return the order of ``gaps``, shape (3, m), at a variable halved twice, its numerical and its model error.
 
-    The order converges like the square of the variable. ``error``, shape (3, 1), is that of the gaps.
+    The order converges like the square of the variable.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         orders = np.log2(gaps[:-1] / gaps[1:])
@@ -103,17 +104,13 @@ OBSERVED = (
 def circles(engine: Engine) -> Measured:
     found = steady_motions(engine, theory.CIRCLES)
     exact = [(load, theory.circle_of(load, which)) for load, which in theory.CIRCLES]
-    return Measured(
-        predicted=[
-            (
-                one.radius / theory.radius_of_pin(load),
-                one.frequency / theory.RING.natural_frequency,
-                one.spin / theory.RING.disc_speed,
-            )
+    k, omega = theory.RING.natural_frequency, theory.RING.disc_speed
+    return compared(
+        [
+            (one.radius / theory.radius_of_pin(load), one.frequency / k, one.spin / omega)
             for load, one in exact
         ],
-        value=found.value,
-        error=found.error,
+        found,
         at={"μN in N": LOADS},
         components=("radius", "frequency", "spin"),
         system=theory.CENTRED,
@@ -132,14 +129,11 @@ def circles(engine: Engine) -> Measured:
     swept=("friction_force",),
 )
 def error_of_23(engine: Engine) -> Measured:
-    by_23 = [
-        (load, whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]) for load in LOADS[theory.ORDERS]
-    ]
-    return _orders_of_loads(
-        engine,
-        [(one.radius / theory.radius_of_pin(load), one.spin / theory.RING.disc_speed) for load, one in by_23],
-        (-4.0, -2.0),
-    )
+    by_23 = []
+    for load in LOADS[theory.ORDERS]:
+        one = whirls(with_load(theory.CENTRED, load), theory.PAPER_LAW)[0]
+        by_23.append((one.radius / theory.radius_of_pin(load), one.spin / theory.RING.disc_speed))
+    return _orders_of_loads(engine, by_23, (-4.0, -2.0))
 
 
 @STUDY.claim(
@@ -157,32 +151,18 @@ def limit_of_large_loads(engine: Engine) -> Measured:
 
 
 def _orders_of_loads(
-    engine: Engine, others: list[tuple[float, float]], orders: tuple[float, float]
+    engine: Engine, others: Sequence[tuple[float, float]], orders: Sequence[float]
 ) -> Measured:
     found = steady_motions(engine, theory.CIRCLES)
     gaps: FloatArray = np.abs(found.value[theory.ORDERS][:, [0, 2]] - others)
-    noise = found.error[theory.ORDERS][:, :1]
-    return replace(
-        _orders(gaps, noise, orders, ("radius", "spin"), theory.CENTRED), source=theory.SOURCE_CENTRED
-    )
+    of_both = {"components": ("radius", "spin"), "source": theory.SOURCE_CENTRED}
+    return _orders(gaps, found.error[theory.ORDERS][:, :1], orders, system=theory.CENTRED, **of_both)
 
 
-def _orders(
-    gaps: FloatArray,
-    noise: FloatArray,
-    orders: Sequence[float],
-    components: Sequence[str],
-    system: DiscOnDisc,
-) -> Measured:
+def _orders(gaps: FloatArray, noise: FloatArray, orders: Sequence[float], **more: Any) -> Measured:
     observed, numerical, model = extrapolated(gaps, noise)
-    return Measured(
-        predicted=orders,
-        value=np.sign(orders) * observed,
-        error=numerical,
-        model=model,
-        components=components,
-        system=system,
-    )
+    value = np.sign(orders) * observed
+    return Measured(predicted=orders, value=value, error=numerical, model=model, **more)
 
 
 # --- Whirls with an offset
@@ -206,28 +186,20 @@ EXTRAPOLATED = (
 def orbits(engine: Engine, whirls: Sequence[tuple[float, int]] = theory.ORBITS) -> Measured:
     """``whirls`` contains μN (N) and the number of each whirl."""
     exact = [theory.orbit_of_reference(*one) for one in whirls]
-    predicted = np.array([sizes_of(orbit) for orbit in exact])
+    predicted = np.array([sizes_and_spins(orbit) for orbit in exact])
     found = refined(
-        lambda tolerance: [sizes_of(orbit_of(engine, *one, tolerance)) for one in whirls],
+        lambda tolerance: [sizes_and_spins(orbit_of(engine, *one, tolerance)) for one in whirls],
         theory.ORBIT_TOLERANCE,
     )
     # The multiplier of a shift in time is 1; the next closest shows the amplification of errors of the flow.
     distances = [sorted(abs(1.0 - value) for value in orbit.multipliers) for orbit in exact]
     found = with_tolerance(found, predicted[:, 2] / np.array(distances)[:, 1])
     loads = [load for load, _ in whirls]
-    return Measured(
-        predicted=predicted,
-        value=found.value,
-        error=found.error,
+    return compared(
+        predicted,
+        found,
         at={"μN in N": loads},
-        components=(
-            "period in s",
-            "smallest radius in m",
-            "largest radius in m",
-            "smallest spin in rad/s",
-            "largest spin in rad/s",
-            "mean spin in rad/s",
-        ),
+        components=(*SIZES, "smallest spin in rad/s", "largest spin in rad/s", "mean spin in rad/s"),
         data={"orbit load": loads, "orbit": found.value},
     )
 
@@ -236,20 +208,13 @@ def orbit_of(
     engine: Engine, load: float, which: int, tolerance: float, offset: float = theory.RING.offset
 ) -> Orbit:
     guess = theory.orbit_of_reference(load, which, offset)
-    return whirl_orbit(
-        guess.system,
-        simulate=engine.simulate,
-        guess=guess,
-        tolerance=tolerance,
-        samples=64,
-        precision=engine.precision,
-    )
+    return whirl_of(engine, guess.system, tolerance, guess)
 
 
-def sizes_of(orbit: Orbit) -> FloatArray:
-    """Return period (s), smallest and largest radius (m), smallest, largest and mean spin (rad/s)."""
+def sizes_and_spins(orbit: Orbit) -> FloatArray:
+    """Return the numbers of ``SIZES``, and the smallest, largest and mean spin (rad/s)."""
     spin = orbit.trajectory.states[:-1, -1]
-    return np.array([orbit.period, *extent(orbit), np.min(spin), np.max(spin), np.mean(spin)])
+    return np.array([*sizes_of(orbit), np.min(spin), np.max(spin), np.mean(spin)])
 
 
 @functools.lru_cache(maxsize=4)
@@ -283,7 +248,7 @@ def offset_shifts(engine: Engine) -> Measured:
     response = [theory.first_order_shift(replace(disc, offset=offset)) for offset in theory.HALVED_OFFSETS]
     gaps = np.abs(found.value[:, 0] + 1j * found.value[:, 1] - response)[:, np.newaxis]
     noise = np.hypot(found.error[:, 0], found.error[:, 1])[:, np.newaxis]
-    return _orders(gaps, noise, (3.0,), ("shift",), disc)
+    return _orders(gaps, noise, (3.0,), components=("shift",), system=disc)
 
 
 @STUDY.claim(
@@ -298,9 +263,12 @@ def offset_changes_size(engine: Engine) -> Measured:
     found, circle = parts(engine), theory.circle_of(theory.OFFSET_LOAD, 0)
     _, _, radius, spin = found.value[1]
     gaps = np.abs(found.value[:, 2:] - [circle.radius, circle.spin])
-    disc = with_load(theory.RING, theory.OFFSET_LOAD)
-    return replace(
-        _orders(gaps, found.error[:, 2:], (2.0, 2.0), ("radius", "spin"), disc),
+    return _orders(
+        gaps,
+        found.error[:, 2:],
+        (2.0, 2.0),
+        components=("radius", "spin"),
+        system=with_load(theory.RING, theory.OFFSET_LOAD),
         note=f"At X0 = {theory.HALVED_OFFSETS[1]:g} m, the radius changes by {radius / circle.radius - 1.0:.2g} of "
         f"itself and the spin by {spin - circle.spin:.2g} rad/s.",
     )
@@ -316,14 +284,13 @@ def offset_changes_size(engine: Engine) -> Measured:
 )
 def rests(engine: Engine, loads: Sequence[float] = theory.REST_LOADS) -> Measured:
     found = steady_motions(engine, tuple((load, None) for load in loads))
-    exact = [theory.rest_of(load) for load in loads]
-    return Measured(
-        predicted=[
-            (one.x / theory.RING.offset, one.y / theory.RING.offset, one.spin / theory.RING.disc_speed)
-            for one in exact
-        ],
-        value=found.value,
-        error=found.error,
+    exact, scales = (
+        map(theory.rest_of, loads),
+        (theory.RING.offset, theory.RING.offset, theory.RING.disc_speed),
+    )
+    return compared(
+        [np.divide((one.x, one.y, one.spin), scales) for one in exact],
+        found,
         at={"μN in N": loads},
         components=("x", "y", "spin"),
         data={"rest load": loads, "rest": found.value},

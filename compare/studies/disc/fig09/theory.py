@@ -45,43 +45,29 @@ REST_LOADS = (0.01, 0.05, 0.09)
 ORBITS = ((0.0015, 0), (0.0015, 1), (0.02, 0), (0.2, 0))
 """μN in N of equilibria; whirls with the offset: μN in N, and 0 for the outer or 1 for the inner one."""
 
-HALVED_OFFSETS = (0.2, 0.1, 0.05)
-OFFSET_LOAD = 0.02
+HALVED_OFFSETS, OFFSET_LOAD = (0.2, 0.1, 0.05), 0.02
 """X0 in m and μN in N of whirls that show the effect of X0."""
 
-STICK_LOADS = (0.12, 0.2)
-INSIDE = 0.98
-OUTSIDE = (1.02, 1.5)
-"""Sticking discs: μN in N, and initial radii as multiples of (9)."""
-LATEST = 1.1  # duration for a disc outside (9), as a multiple of its release time (7)
+STICK_LOADS, INSIDE, OUTSIDE, LATEST = (0.12, 0.2), 0.98, (1.02, 1.5), 1.1
+"""Sticking discs: μN in N, initial radii as multiples of (9), and duration outside (9) as a multiple of (7)."""
 
-DECAY = (0.02, 60.0)
-GROWTHS = ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
-"""μN in N and duration in s of deviations from the whirl, and from equilibria."""
+DECAY, GROWTHS = (0.02, 60.0), ((0.01, 100.0), (0.05, 100.0), (0.09, 60.0))
+DISPLACED = 1e-4
+"""μN in N and duration in s of deviations from the whirl and from equilibria; share of the distance from the axis."""
 
-DISPLACED = 1e-4  # initial deviation as a share of the distance from the axis
-
-ORBIT_TOLERANCE = WORKING / 10
-"""For periodic motions of engines; the reference has a hundredth of it."""
-
-TOLERANCE = 3e-8
-"""For sticking motions; moderate, because regularised laws close to Coulomb's are expensive."""
+ORBIT_TOLERANCE, TOLERANCE = WORKING / 10, 3e-8
+"""For periodic motions of engines, and for sticking ones, where regularised laws close to Coulomb's are expensive."""
 
 LARGEST_LOAD = 0.2
 """End of the axis in N, which the paper omits; sticking begins at about half of it, C·X0."""
 
-BRANCH_START = 0.1
-BRANCH_END = 1.0
-BRANCH_STEP = 0.24
-"""First μN of the branch in C·X0, its last crossing of the x axis in X0, and the relative decrease of crossings.
-"""
+BRANCH_START, BRANCH_END, BRANCH_STEP = 0.1, 1.0, 0.24
+"""First μN of the branch in C·X0, its last crossing of the x axis in X0, and the relative decrease of crossings."""
 
 OUTER_LOADS = (0.2, 0.1, 0.05, 0.02)  # μN in N of whirls before the branch
 
-FOLD_START, LEAST_FOLD_START = 0.016, 4.5e-4
-"""μN/(C·X0) slightly above the fold, and the smallest μN in N."""
-
-FOLD_STEP = 0.12  # relative step of the branch to the fold
+FOLD_START, LEAST_FOLD_START, FOLD_STEP = 0.016, 4.5e-4, 0.12
+"""μN/(C·X0) slightly above the fold, the smallest μN in N, and the relative step of the branch to the fold."""
 
 FOLD_OFFSETS = (0.008, 0.012, 0.016, 0.02, 0.024, 0.03, 0.04, 0.06, 0.1, 0.15, 0.25)
 OFFSETS = np.geomspace(0.004, 0.25, 40)
@@ -143,9 +129,9 @@ def spin_of_large_whirl(disc: DiscOnDisc) -> float:
 def first_order_shift(disc: DiscOnDisc) -> complex:
     """Return the time mean of x + iy (m) of a disc's whirl, to first order in X0.
 
-    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation from the
-    circle is Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x
-    + i·a_y)/2, is fixed in space.
+    In axes that turn with the circle, the acceleration k²X0 due to the offset turns backwards. The deviation is
+    Re(a·exp(−iκt)) with (−iκ − A)a = k²X0·(0, 0, 1, −i, 0) and the Jacobian A. Its backward component, (a_x +
+    i·a_y)/2, is fixed in space.
     """
     circle = whirls(replace(disc, offset=0.0))[0]
     jacobian = turning_frame_jacobian(replace(disc, offset=0.0), circle.state)
@@ -183,25 +169,23 @@ def last_stable_load(disc: DiscOnDisc) -> float:
 
 def smallest_load(disc: DiscOnDisc) -> float:
     """Return μN (N) at the whirl's fold, the vertex of a parabola through the orbits next to it."""
-    sizes: list[float] = []
-    loads: list[float] = []
+    found: list[tuple[float, float]] = []
     start = max(FOLD_START * disc.stiffness * disc.offset, LEAST_FOLD_START)
     for orbit in to_inner_orbits(with_load(disc, start), FOLD_STEP):
-        sizes.append(math.log(orbit.state[0]))
-        loads.append(orbit.system.friction_force)
-        if loads[-1] > min(loads):
+        found.append((math.log(orbit.state[0]), orbit.system.friction_force))
+        if len(found) > 1 and found[-1][1] > found[-2][1]:
             break
-    square, linear, constant = np.polyfit(sizes[-3:], loads[-3:], 2)
+    sizes, loads = np.transpose(found[-3:])
+    square, linear, constant = np.polyfit(sizes, loads, 2)
     return float(constant - linear**2 / (4.0 * square))
 
 
 def weak_damping_load(disc: DiscOnDisc) -> float:
     """Return the friction force (N) where the equilibrium loses its stability, to first order in β.
 
-    Small loads leave the centre at X0, with the slip U = ωX0 and S = ω − Ω. Friction resists a small additional slip
-    u = ż − iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s +
-    μN·F/U)(s + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ. A pin has F' = 0,
-    so σ = 0.
+    Small loads leave the centre at X0, with U = ωX0 and S = ω − Ω. Friction resists a small additional slip u = ż −
+    iωz by μN·F/U across U and by μN·F' along it, F' = ∂F/∂U. A motion ~ exp((ik + δ)t) then satisfies (s + μN·F/U)(s
+    + μN·F') = (μN)²·(F/U)·F'·ω²/k² with s = 2mδ + β. So s = μN·σ, and δ = 0 at μN = β/σ.
     """
     slip = disc.disc_speed * disc.offset
     law = contact_of(disc)
@@ -209,13 +193,9 @@ def weak_damping_load(disc: DiscOnDisc) -> float:
     spin = disc.disc_speed - disc.shaft_speed
     across = law.shares(slip, spin).resistance / slip
     along = law.slopes(slip, spin).resistance_by_slip
-    beyond = (disc.disc_speed / disc.natural_frequency) ** 2 - 1.0
+    product = across * along * ((disc.disc_speed / disc.natural_frequency) ** 2 - 1.0)
     total = across + along
-    return (
-        disc.damping
-        * (total + math.sqrt(total**2 + 4.0 * across * along * beyond))
-        / (2.0 * across * along * beyond)
-    )
+    return disc.damping * (total + math.sqrt(total**2 + 4.0 * product)) / (2.0 * product)
 
 
 def marginal_ratio(law: IsotropicContact | None) -> float:
@@ -237,11 +217,11 @@ def curves(offsets: ArrayLike = OFFSETS, fold_offsets: Sequence[float] = FOLD_OF
 
 def circles() -> Data:
     angles = np.arctan(np.geomspace(8e-4, 1e4, 400))
-    data: Data = {}
-    laws: dict[str, IsotropicContact | None] = {"ring": None, "(23)": PAPER_LAW}
-    for name, law in laws.items():
-        data[f"circles, {name}"] = np.array([whirl_at(CENTRED, alpha, law) for alpha in angles])
-    return data
+    laws = {"ring": None, "(23)": PAPER_LAW}
+    return {
+        f"circles, {name}": np.array([whirl_at(CENTRED, alpha, law) for alpha in angles])
+        for name, law in laws.items()
+    }
 
 
 @functools.cache
@@ -256,42 +236,27 @@ def orbits() -> tuple[Orbit, ...]:
 def smooth(found: Sequence[Orbit]) -> Data:
     """Return μN, smallest and largest radius, and mean spin of the ``found`` orbits and of orbits between them.
 
-    Positions are interpolated, because the smallest radius has a kink where the orbit passes the axis. Beyond the
-    last orbit, its shape shrinks onto the equilibrium, with the square of its size linear in the load.
+    Beyond the last orbit, its shape shrinks onto the equilibrium, with the square of its size linear in the load.
     """
-    limit = spin_of_large_whirl(RING)
+    limit, per_load = spin_of_large_whirl(RING), 1.0 / (RING.damping * RING.natural_frequency)
     load = np.array([orbit.system.friction_force for orbit in found])
     spin = np.array([np.mean(orbit.trajectory.states[:-1, -1]) for orbit in found])
     places = np.array([orbit.trajectory.states[:, 0] + 1j * orbit.trajectory.states[:, 1] for orbit in found])
-    scale = load / (RING.damping * RING.natural_frequency)
-    shapes = places / scale[:, np.newaxis]
+    shapes = places / (load * per_load)[:, np.newaxis]
     rows = np.column_stack((np.log(load), np.log(spin - limit), shapes.real, shapes.imag))
     fine = PchipInterpolator(np.arange(len(found)), rows)(np.linspace(0.0, len(found) - 1.0, 20 * len(found)))
     fine_load = np.exp(fine[:, 0])
-    n = places.shape[1]
-    radius = (
-        np.hypot(fine[:, 2 : n + 2], fine[:, n + 2 :])
-        * (fine_load / (RING.damping * RING.natural_frequency))[:, np.newaxis]
-    )
+    radius = np.hypot(*np.split(fine[:, 2:], 2, axis=1)) * (fine_load * per_load)[:, np.newaxis]
 
     end = last_stable_load(RING)
     rest = equilibrium_of(with_load(RING, end))
     size = np.linspace(1.0, 0.0, 20)[:, np.newaxis]
-    centre = np.mean(places[-1, :-1])
-    shrinking = np.abs(
-        size**2 * centre + (1.0 - size**2) * complex(rest.x, rest.y) + size * (places[-1] - centre)
-    )
-    weight = size[:, 0] ** 2
-    return {
-        "orbits": np.column_stack(
-            (
-                np.append(fine_load, weight * load[-1] + (1.0 - weight) * end),
-                np.append(np.min(radius, axis=1), np.min(shrinking, axis=1)),
-                np.append(np.max(radius, axis=1), np.max(shrinking, axis=1)),
-                np.append(limit + np.exp(fine[:, 1]), weight * spin[-1] + (1.0 - weight) * rest.spin),
-            )
-        )
-    }
+    weight, centre = size**2, np.mean(places[-1, :-1])
+    shrinking = weight * centre + (1.0 - weight) * complex(rest.x, rest.y) + size * (places[-1] - centre)
+    radii, share = np.vstack((radius, np.abs(shrinking))), weight[:, 0]
+    loads = np.append(fine_load, share * load[-1] + (1.0 - share) * end)
+    spins = np.append(limit + np.exp(fine[:, 1]), share * spin[-1] + (1.0 - share) * rest.spin)
+    return {"orbits": np.column_stack((loads, radii.min(axis=1), radii.max(axis=1), spins))}
 
 
 def rests_and_sticking() -> Data:
@@ -299,11 +264,9 @@ def rests_and_sticking() -> Data:
     end = last_load(RING)
     sticking = np.geomspace(end, LARGEST_LOAD, 100)[1:]
     loads = end * np.sin(np.geomspace(1e-3, 0.5 * np.pi, 200))[:-1]  # closer where the radius is steep
-    found = [equilibrium_of(with_load(RING, load)) for load in loads]
+    found = [(load, rest_of(load)) for load in loads]
     return {
-        "rests": np.array(
-            [(load, math.hypot(one.x, one.y), one.spin) for load, one in zip(loads, found, strict=True)]
-        ),
+        "rests": np.array([(load, math.hypot(one.x, one.y), one.spin) for load, one in found]),
         "last stable load": np.array([last_stable_load(RING)]),
         "sticking": np.array([(load, sticking_radius(held_pin(with_load(RING, load)))) for load in sticking]),
     }
@@ -311,11 +274,12 @@ def rests_and_sticking() -> Data:
 
 def ends(offsets: ArrayLike, fold_offsets: Sequence[float]) -> Data:
     """Return the μN where the equilibrium ends, where it becomes unstable and where the whirl folds, against X0."""
-    discs = [replace(RING, offset=offset) for offset in np.asarray(offsets, dtype=float).tolist()]
+    offsets = np.asarray(offsets, dtype=float)
+    discs = [replace(RING, offset=offset) for offset in offsets.tolist()]
     folds = [(0.0, smallest_load_with_whirl(CENTRED))]
     folds += [(offset, smallest_load(replace(RING, offset=offset))) for offset in fold_offsets]
     return {
-        "offset": np.asarray(offsets, dtype=float),
+        "offset": offsets,
         "last load": np.array([last_load(disc) for disc in discs]),
         "last stable": np.array([last_stable_load(disc) for disc in discs]),
         "folds": np.array(folds),

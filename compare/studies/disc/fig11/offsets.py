@@ -11,10 +11,11 @@ import numpy as np
 import compare.studies.disc.fig11.theory as theory
 from compare.claims import WORKING, Measured, Measurement, answers_of, asked, known, refined
 from compare.claims.parameters import FIG8, at_each
-from compare.engines import Engine, StatesOnly, UnsupportedSystemError
+from compare.engines import Engine, StatesOnly, UnsupportedSystemError, reference
 from compare.studies.disc.fig11.theory import STUDY
 from compare.studies.disc.fig11.whirl import GROWTH_NOTE, growth
 from compare.studies.toolkit.fig11 import RING, SIX, SOURCE, START, rates
+from compare.studies.toolkit.measuring import compared
 from reference_model import Orbit, Trajectory, simulate, whirl_orbit
 from reference_model.orbits import modulated_cycle
 from reference_model.systems import ANGLE, FloatArray
@@ -25,14 +26,11 @@ OF_RESTS = 200 * WORKING  # for motions on six points, where single points rest
 OFFSETS = (0.0, 0.004, 0.007, 0.009, 0.018, 0.022, FIG8.offset)
 """X0 in m of the long simulations; the last is that of the other figures."""
 
-ENDS_UNTIL = 720.0  # duration in s
-LOOKED_AT = 240.0  # evaluated end in s, a period of the modulation
-ENDS_TOLERANCE = 1e-4  # for the long simulations
+ENDS_UNTIL, LOOKED_AT, ENDS_TOLERANCE = 720.0, 240.0, 1e-4
+"""Duration in s, its evaluated end in s, a period of the modulation, and tolerance."""
 
-SWING = 0.005
-"""Smallest swing (rad/s) of a modulated motion's spin, averaged over a turn; a tenth of that at X0 = 0."""
-
-ORBITS_EXTENT = 1e-4  # smallest swing (m) of a whirl's radius
+SWING, ORBITS_EXTENT = 0.005, 1e-4
+"""Smallest swings of a modulated motion's spin (rad/s, mean over a turn) and of a whirl's radius (m)."""
 
 MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
 """Near the modulated motion at ``theory.BOTH_STABLE``, found by raising X0 in small steps."""
@@ -58,8 +56,7 @@ KINDS = ("rest", "whirl", "modulated")
     swept=("offset",),
 )
 def critical(engine: Engine) -> Measured:
-    predicted, found = critical_of(engine)
-    return Measured(predicted=predicted, value=found.value, error=found.error, source=SOURCE)
+    return compared(*critical_of(engine), source=SOURCE)
 
 
 @functools.lru_cache(maxsize=4)
@@ -117,15 +114,12 @@ def end_of(
     engine: Engine, offset: float, start: tuple[float, ...] = START, tolerance: float = ENDS_TOLERANCE
 ) -> tuple[list[float], str]:
     """Return smallest and largest final radius (m) and spin (rad/s), and the kind, one of ``KINDS``."""
-    step = 2.0 * math.pi / RING.natural_frequency / theory.SAMPLES_A_TURN
-    run = engine.simulate(
-        theory.disc_at(offset), start, np.arange(0.0, ENDS_UNTIL, step), tolerance=tolerance
-    )
-    found = theory.extents(run, round(LOOKED_AT / step))
-    averaged = np.convolve(
-        run.states[:, 5], np.full(theory.SAMPLES_A_TURN, 1.0 / theory.SAMPLES_A_TURN), "valid"
-    )
-    swing = np.ptp(averaged[-round(LOOKED_AT / step) :])
+    turn = theory.SAMPLES_A_TURN
+    step = 2.0 * math.pi / RING.natural_frequency / turn
+    times, last = np.arange(0.0, ENDS_UNTIL, step), round(LOOKED_AT / step)
+    run = engine.simulate(theory.disc_at(offset), start, times, tolerance=tolerance)
+    found = theory.extents(run, last)
+    swing = np.ptp(np.convolve(run.states[:, 5], np.full(turn, 1.0 / turn), "valid")[-last:])
     kind = "modulated" if swing > SWING else "whirl" if found[1] - found[0] > ORBITS_EXTENT else "rest"
     return found, kind
 
@@ -154,13 +148,12 @@ def points_rest(engine: Engine) -> Measured:
 
     found = refined(rests, OF_RESTS)
     longer = engine.simulate(SIX, START, theory.TIMES, tolerance=OF_RESTS)
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    numbers = range(1, len(predicted) // 2 + 1)
+    return compared(
+        predicted,
+        found,
         error=float(np.max(known(found.value, found.error))),
-        components=[
-            f"{what} {1 + i}" for i in range(len(predicted) // 2) for what in ("start of rest", "end of rest")
-        ],
+        components=[f"{what} of rest {i}" for i in numbers for what in ("start", "end")],
         system=SIX,
         data={"six points": longer.states, "six points: rests": rests_of_points(longer)},
     )
@@ -176,13 +169,8 @@ def points_rest(engine: Engine) -> Measured:
 )
 def extremes_on_six_points(engine: Engine) -> Measured:
     found = refined(lambda tolerance: theory.extremes_of(_run(engine, tolerance)), OF_RESTS, alike=False)
-    return Measured(
-        predicted=theory.extremes_of(_reference()),
-        value=found.value,
-        error=found.largest,
-        components=theory.EXTREMES,
-        system=SIX,
-    )
+    exact, error = theory.extremes_of(_reference()), found.largest
+    return compared(exact, found, error=error, components=theory.EXTREMES, system=SIX)
 
 
 def rests_of_points(trajectory: Trajectory) -> FloatArray:
@@ -220,14 +208,9 @@ def shooting() -> Measured:
         orbit = modulated_cycle(RING, guess, tolerance=tolerance, samples=len(ROUND))
         return np.array([orbit.period, orbit.turn, *theory.extremes_of(orbit.trajectory)])
 
-    found = refined(cycle, 100 * WORKING, alike=False)
-    return Measured(
-        predicted=predicted,
-        value=found.value,
-        error=found.error + error,
-        components=("period in s", "turn in rad", *theory.EXTREMES),
-        source=theory.CENTRED,
-    )
+    found = refined(cycle, 100 * WORKING, alike=False).plus(error)
+    components = ("period in s", "turn in rad", *theory.EXTREMES)
+    return compared(predicted, found, components=components, source=theory.CENTRED)
 
 
 @STUDY.claim(
@@ -257,12 +240,10 @@ def unstable() -> Measured:
 )
 def dies_out_by_23() -> Measured:
     exact = theory.steady_whirl(RING, theory.EXPANSION).eigenvalue
-    reference = Engine("reference by (23)", functools.partial(simulate, contact=theory.EXPANSION), ("ring",))
-    found = growth(reference, RING, theory.EXPANSION)
-    return Measured(
-        predicted=(exact.real, exact.imag),
-        value=found.value,
-        error=found.error,
+    by_23 = Engine("reference by (23)", functools.partial(simulate, contact=theory.EXPANSION), ("ring",))
+    return compared(
+        (exact.real, exact.imag),
+        growth(by_23, RING, theory.EXPANSION),
         resolution=5e-3 * abs(exact),
         components=("rate", "frequency"),
         parameters={"contact_points": "continuous ring by (23)"},
@@ -279,16 +260,14 @@ def dies_out_by_23() -> Measured:
 )
 def both_stable() -> Measured:
     orbit = whirl_orbit(theory.disc_at(theory.BOTH_STABLE), tolerance=WORKING)
-    reference = Engine("reference", simulate, ("ring",))
 
     def modulated(tolerance: float) -> bool:
-        _, kind = end_of(reference, theory.BOTH_STABLE, MODULATED_THERE, tolerance)
-        return kind == "modulated"
+        return end_of(reference, theory.BOTH_STABLE, MODULATED_THERE, tolerance)[1] == "modulated"
 
     margin, error = asked(modulated, ENDS_TOLERANCE)
     return answers_of(
         (1.0 - theory.pair_modulus(orbit.multipliers), float(margin)),
         (error_of_monodromy(orbit), float(error)),
-        system=theory.disc_at(theory.BOTH_STABLE),
+        system=orbit.system,
         source=f"{SOURCE}; start {MODULATED_THERE}",
     )

@@ -3,27 +3,16 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
+import compare.output.figures as plots
 import compare.studies.disc.fig11.theory as theory
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import (
-    BLACK,
-    GREEN,
-    GREY,
-    PURPLE,
-    Axes,
-    Figure,
-    axis,
-    curve,
-    engine_style,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Axes, Figure, axis, curve, engine_style, engines_in, new_figure, points
 from compare.studies.disc.fig11.theory import TIMES, disc_at, extents
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
 from reference_model import Orbit, self_centred_equilibria, simulate, whirl_orbit
@@ -33,7 +22,6 @@ BRANCH = np.array(
     [*np.linspace(0.0, 0.015, 11), 0.016, 0.0166, 0.0175, 0.0185, 0.0192, 0.0196, 0.0198, 0.0199, 0.01993]
 )
 """X0 in m of the whirls, up to the fold at 0.019930 m, where the equilibrium is stable."""
-
 
 K = RING.natural_frequency
 
@@ -102,15 +90,14 @@ def draw_histories(data: ByEngine) -> Figure:
         for rank, (name, states) in enumerate(histories(data, words).items()):
             who = "reference" if name == "theory" else name
             if rank == 0:
-                both.plot(TIMES, ENLARGED * states[:, 0], color=GREEN, linewidth=0.7, label=r"$20\,x$ in m")
-                both.plot(TIMES, states[:, 5], color=BLACK, linewidth=2.6, label=r"$\dot\varphi$ in rad/s")
-                alone.plot(TIMES, states[:, 5], color=BLACK, linewidth=1.6, label=who)
-                spans = data[name].get(f"{words}: rests", np.zeros(0)).reshape(-1, 2)
-                for i, time in enumerate(spans.mean(axis=1)):
-                    label = "a point rests" if i == 0 else "_"
-                    alone.plot(
-                        time, np.interp(time, TIMES, states[:, 5]), "o", color=PURPLE, zorder=5.0, label=label
-                    )
+                x, spin = ENLARGED * states[:, 0], states[:, 5]
+                both.plot(TIMES, x, color=plots.GREEN, linewidth=0.7, label=r"$20\,x$ in m")
+                both.plot(TIMES, spin, color=plots.BLACK, linewidth=2.6, label=r"$\dot\varphi$ in rad/s")
+                alone.plot(TIMES, spin, color=plots.BLACK, linewidth=1.6, label=who)
+                times = data[name].get(f"{words}: rests", np.zeros(0)).reshape(-1, 2).mean(axis=1)
+                if times.size:
+                    rests = times, np.interp(times, TIMES, states[:, 5])
+                    alone.plot(*rests, "o", color=plots.PURPLE, zorder=5.0, label="a point rests")
             else:
                 sparse = slice(40 * (rank - 1), None, 80)
                 alone.plot(TIMES[sparse], states[sparse, 5], **points(who))
@@ -129,33 +116,22 @@ def draw_section(data: ByEngine) -> Figure:
     figure, (lines, sections) = new_figure(ncols=2, width=13.0, height=4.2)
     draw_spectrum(lines, data)
     if "theory" in data:
-        cycle = data["theory"]["cycle"][TIMES > SETTLED]
-        sections.plot(
-            np.hypot(cycle[:, 0], cycle[:, 1]), cycle[:, 5], **curve("theory", "whole cycle on the ring")
-        )
-        for (radius, spin), colour, label in zip(
-            data["theory"]["whirls"][[0, 2]],
-            (BLACK, PURPLE),
-            ("unstable whirl", "stable whirl by (23)"),
-            strict=True,
-        ):
-            sections.plot(radius, spin, "+", color=colour, markersize=9.0, markeredgewidth=1.8, label=label)
+        x, y, _, _, _, spin = data["theory"]["cycle"][TIMES > SETTLED].T
+        sections.plot(np.hypot(x, y), spin, **curve("theory", "whole cycle on the ring"))
+        cross: Any = {"linestyle": "none", "marker": "+", "markersize": 9.0, "markeredgewidth": 1.8}
+        on_ring, _, by_23 = data["theory"]["whirls"]
+        sections.plot(*on_ring, color=plots.BLACK, label="unstable whirl", **cross)
+        sections.plot(*by_23, color=plots.PURPLE, label="stable whirl by (23)", **cross)
     for name, states in histories(data, "the continuous ring").items():
         sections.plot(*section(states), **points(name, f"{name}, ring", markersize=4.0))
-    for name, states in histories(data, "six points").items():
-        sections.plot(
-            *section(states), ".", color=GREY, markersize=3.0, label=f"{name}, six points", zorder=1.0
-        )
-        break
+    for name, states in [*histories(data, "six points").items()][:1]:
+        small: Any = {"color": plots.GREY, "markersize": 3.0, "zorder": 1.0}
+        sections.plot(*section(states), ".", label=f"{name}, six points", **small)
     if "theory" in data:
-        sections.plot(
-            *section(data["theory"][EXPANDED], 0.0), ".-", color=PURPLE, markersize=2.0, linewidth=0.5
-        )
-    sections.set(
-        xlabel=axis(r"\rho", "m"),
-        ylabel=axis(r"\dot\varphi", "rad/s"),
-        title="Section $y=0$, $x>0$: once a turn",
-    )
+        dots = section(data["theory"][EXPANDED], 0.0)
+        sections.plot(*dots, ".-", color=plots.PURPLE, markersize=2.0, linewidth=0.5)
+    sections.set(xlabel=axis(r"\rho", "m"), ylabel=axis(r"\dot\varphi", "rad/s"))
+    sections.set(title="Section $y=0$, $x>0$: once a turn")
     if sections.lines:
         sections.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9.0)
     return figure
@@ -163,56 +139,28 @@ def draw_section(data: ByEngine) -> Figure:
 
 def draw_spectrum(panel: Axes, data: ByEngine) -> None:
     floor = 1e-4
-    for name, states in histories(data, "six points").items():
+    for name, states in [*histories(data, "six points").items()][:1]:
         frequency, amplitude = spectrum(states[TIMES > SETTLED])
-        panel.semilogy(
-            frequency / K, amplitude, color=GREY, linewidth=1.0, label=f"{name}, six points (Hann window)"
-        )
-        break
+        style: dict[str, Any] = {"color": plots.GREY, "linewidth": 1.0}
+        panel.semilogy(frequency / K, amplitude, label=f"{name}, six points (Hann window)", **style)
     if "theory" in data:
         period, turn = data["theory"]["modulation"][:2]
-        carrier, modulation = turn / period, 2.0 * math.pi / period
-        orders = np.arange(-SIDE_BANDS, SIDE_BANDS + 1)
+        carrier, modulation = turn / period / K, 2.0 * math.pi / period / K
+        lines = carrier + modulation * np.arange(-SIDE_BANDS, SIDE_BANDS + 1)
         for rank, (name, states) in enumerate(histories(data, "the continuous ring").items()):
-            heights = harmonics(states, period, carrier)
-            style = points(name, f"{name}, ring")
-            panel.semilogy((carrier + modulation * orders) / K, heights, **style)
+            heights = harmonics(states, period, turn / period)
+            panel.semilogy(lines, heights, **points(name, f"{name}, ring"))
             if rank == 0:
-                panel.vlines(
-                    (carrier + modulation * orders) / K,
-                    floor,
-                    heights,
-                    color=engine_style(name).colour,
-                    linewidth=1.0,
-                )
+                panel.vlines(lines, floor, heights, color=engine_style(name).colour, linewidth=1.0)
                 top = float(np.max(heights))
-                panel.annotate(
-                    f"carrier {carrier / K:.4f} $k$",
-                    (carrier / K, top),
-                    (0, 26),
-                    textcoords="offset points",
-                    ha="center",
-                    fontsize=9.5,
-                )
-                panel.annotate(
-                    "",
-                    ((carrier + modulation) / K, 1.6 * top),
-                    (carrier / K, 1.6 * top),
-                    arrowprops={"arrowstyle": "<->", "linewidth": 0.8},
-                )
-                panel.annotate(
-                    rf"$2\pi/T$, $T$ = {period:.1f} s",
-                    ((carrier + 1.1 * modulation) / K, 1.5 * top),
-                    fontsize=9.5,
-                    va="center",
-                )
-    panel.set(
-        xlabel=r"frequency of $x + \mathrm{i}y$ over $k$",
-        ylabel="amplitude in m",
-        xlim=(0.83, 1.17),
-        ylim=(floor, 0.4),
-        title="Carrier and side bands",
-    )
+                style = {"textcoords": "offset points", "ha": "center", "fontsize": 9.5}
+                panel.annotate(f"carrier {carrier:.4f} $k$", (carrier, top), (0, 26), **style)
+                between = (carrier + modulation, 1.6 * top), (carrier, 1.6 * top)
+                panel.annotate("", *between, arrowprops={"arrowstyle": "<->", "linewidth": 0.8})
+                where = carrier + 1.1 * modulation, 1.5 * top
+                panel.annotate(rf"$2\pi/T$, $T$ = {period:.1f} s", where, fontsize=9.5, va="center")
+    panel.set(xlabel=r"frequency of $x + \mathrm{i}y$ over $k$", ylabel="amplitude in m")
+    panel.set(xlim=(0.83, 1.17), ylim=(floor, 0.4), title="Carrier and side bands")
     if panel.lines:
         panel.legend(loc="upper left", fontsize=9.0)
 
@@ -257,17 +205,10 @@ def draw_growth(data: ByEngine) -> Figure:
         if "theory" in data:
             rate, frequency = data["theory"]["eigenvalues"][row]
             times = np.array([0.0, 640.0 if row == 0 else 440.0])
-            panel.semilogy(
-                times,
-                5e-4 * np.exp(rate * times),
-                **curve("theory", rf"$\propto \exp({rate:.5f}\,t)$, linearised", linewidth=1.2),
-            )
-            panel.annotate(
-                rf"$\lambda = {rate:.5f} \pm {frequency:.5f}\,\mathrm{{i}}$ 1/s",
-                (0.97, 0.30),
-                xycoords="axes fraction",
-                ha="right",
-            )
+            style = curve("theory", rf"$\propto \exp({rate:.5f}\,t)$, linearised", linewidth=1.2)
+            panel.semilogy(times, 5e-4 * np.exp(rate * times), **style)
+            value = rf"$\lambda = {rate:.5f} \pm {frequency:.5f}\,\mathrm{{i}}$ 1/s"
+            panel.annotate(value, (0.97, 0.30), xycoords="axes fraction", ha="right")
         panel.set(xlabel=axis("t", "s"), title=words[:1].upper() + words[1:], xlim=(0.0, None))
         if panel.lines:
             panel.legend(loc="lower right", fontsize=9.0)
@@ -280,22 +221,25 @@ def draw_offsets(data: ByEngine) -> Figure:
     theory = data["theory"]
     critical, rest = float(theory["critical offset"]), float(theory["rest offset"])
     for panel, place, top in ((panels[0], 0, 0.0475), (panels[1], 1, 1.437)):
-        for stable in (True, False):
-            dash = "-" if stable else ":"
-            offsets = theory["whirl: offset"]
-            shown = offsets >= critical if stable else offsets <= critical
-            for edge, label in ((0, "whirl" if stable else "whirl, unstable"), (1, "_")):
-                look = curve("theory", label, linewidth=1.4, linestyle=dash)
-                panel.plot(offsets[shown], theory["whirl: extents"][shown, 2 * place + edge], **look)
-        for stable in (True, False):
-            offsets = theory["rest: offset"]
-            shown = offsets >= rest if stable else offsets <= rest
-            label = "self-centred equilibrium" if stable else "the same, unstable"
-            look = curve("theory", label, color=GREY, linewidth=1.8, linestyle="-" if stable else ":")
+        both = slice(2 * place, 2 * place + 2)
+        offsets = theory["whirl: offset"]
+        look = curve("theory", linewidth=1.4)
+        for label, dash, shown in (
+            ("whirl", "-", offsets >= critical),
+            ("whirl, unstable", ":", offsets <= critical),
+        ):
+            look |= {"label": (label, "_"), "linestyle": dash}
+            panel.plot(offsets[shown], theory["whirl: extents"][shown, both], **look)
+        offsets = theory["rest: offset"]
+        for label, dash, shown in (
+            ("self-centred equilibrium", "-", offsets >= rest),
+            ("the same, unstable", ":", offsets <= rest),
+        ):
+            look = curve("theory", label, color=plots.GREY, linewidth=1.8, linestyle=dash)
             panel.plot(offsets[shown], theory["rest: place"][shown, place], **look)
         for engine in engines_in(data):
             if "extents" in data[engine]:
-                ends = data[engine]["extents"][:, 2 * place : 2 * place + 2]
+                ends = data[engine]["extents"][:, both]
                 panel.plot(np.repeat(data[engine]["offsets"], 2), ends.ravel(), **points(engine))
         for middle, words in (
             (0.5 * critical, "modulated"),
@@ -304,7 +248,7 @@ def draw_offsets(data: ByEngine) -> Figure:
         ):
             panel.annotate(words, (middle, top), ha="center", va="center", fontsize=10.5)
         for offset in (critical, rest):
-            panel.axvline(offset, color=GREY, linewidth=0.8, linestyle="--")
+            panel.axvline(offset, color=plots.GREY, linewidth=0.8, linestyle="--")
         panel.set(xlabel=axis("X_0", "m"), xlim=(0.0, X0_AXIS))
     panels[0].set(ylabel=axis(r"\rho", "m") + ", smallest and largest", ylim=(0.0, 0.05))
     panels[1].set(ylabel=axis(r"\dot\varphi", "rad/s") + ", smallest and largest", ylim=(1.325, 1.442))

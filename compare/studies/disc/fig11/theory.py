@@ -16,8 +16,9 @@ from scipy.optimize import brentq
 from compare.claims import TRUTH, Study
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import FIG8, FIG11
-from compare.engines import Engine
+from compare.engines import Engine, reference
 from compare.studies.toolkit.fig11 import DISCS, RING, SOURCE, START, integrated, rates
+from compare.studies.toolkit.pins import whirl_of
 from compare.studies.toolkit.steady_motion import steady_motion
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit, whirls
 from reference_model.contact.contact_law import IsotropicContact, ThreeTermRing
@@ -31,14 +32,10 @@ CENTRED = f"{SOURCE}: 0 here"
 EXTREMES = ("smallest radius in m", "largest radius in m", "smallest spin in rad/s", "largest spin in rad/s")
 
 UNTIL = 700.0  # duration in s, three periods of the modulation
-
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
-TRIED = (0.0072, 0.00725, 0.0073)  # X0 in m between which the critical X0 is interpolated
-
-SAMPLES_A_TURN = 16
-
-BOTH_STABLE = 0.0073  # X0 in m, slightly above the critical one
+TRIED, BOTH_STABLE, SAMPLES_A_TURN = (0.0072, 0.00725, 0.0073), 0.0073, 16
+"""X0 in m between which the critical X0 is interpolated, and slightly above it."""
 
 STUDY = Study.beside(
     __file__,
@@ -57,15 +54,15 @@ STUDY = Study.beside(
 class SteadyWhirl:
     """A whirl that is periodic up to a rotation, and its least damped pair of modes.
 
-    On n points it has a ripple, which repeats each time the disc has turned by 2π/n relative to the line from the
-    axis to its centre.
+    On n points it has a ripple, with a period of 2π/n of the disc's turn relative to the line from the axis to its
+    centre.
 
     - ``state``: a state on the whirl, shape (6,).
     - ``period``: in s.
     - ``turn``, ``advance``: rotation of the whirl in a period (rad), and the disc's additional rotation.
     - ``eigenvalue``: growth rate and frequency > 0 (1/s) of the pair.
-    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,). The share projection·d of a
-      deviation d grows with the eigenvalue, in axes that turn with the whirl.
+    - ``mode``, ``projection``: right and left eigenvectors with product 1, shape (6,), in axes that turn with the
+      whirl.
     """
 
     state: FloatArray
@@ -114,7 +111,6 @@ def whirls_by_law() -> list[SteadyWhirl]:
 
 def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     """Return the whirl on points close to ``guess``, with modes of the return map linearised by differences."""
-    reference = Engine("reference", simulate, ("points",))
     motion = steady_motion(reference, disc, guess, TRUTH)
     if motion is None:
         raise RuntimeError(f"no whirl on {disc.contact_points} points near the circle of the ring")
@@ -123,12 +119,9 @@ def _on_points(disc: DiscOnDisc, guess: FloatArray) -> SteadyWhirl:
     def returned(state: FloatArray) -> FloatArray:
         return rotated(simulate(disc, state, [0.0, period], tolerance=TRUTH).at_end, -turn)
 
-    step = 1e-4 * guess[0]
-    columns = [
-        (returned(motion.state + shift) - returned(motion.state - shift)) / (2.0 * step)
-        for shift in step * np.eye(disc.state_size)
-    ]
-    multipliers, right = np.linalg.eig(np.column_stack(columns))
+    shifts = 1e-4 * guess[0] * np.eye(disc.state_size)
+    columns = [returned(motion.state + one) - returned(motion.state - one) for one in shifts]
+    multipliers, right = np.linalg.eig(np.column_stack(columns) / (2e-4 * guess[0]))
     values = np.log(multipliers.astype(complex)) / period
     mode, projection = _growing(values, right)
     return SteadyWhirl(
@@ -154,7 +147,7 @@ def _growing(values: ComplexArray, right: ComplexArray) -> tuple[ComplexArray, C
 def modulations(states: FloatArray) -> FloatArray:
     """Return period (s), turn (rad), smallest and largest radius (m) and spin (rad/s) of each modulation, (n, 6).
 
-    A modulation is the interval between successive maxima of the radius; ``states`` are those at ``TIMES``.
+    A modulation lasts from one maximum of the radius to the next; ``states`` are those at ``TIMES``.
     """
     x, y = states[:, 0], states[:, 1]
     radius, spin = CubicSpline(TIMES, np.hypot(x, y)), CubicSpline(TIMES, states[:, 5])
@@ -165,9 +158,8 @@ def modulations(states: FloatArray) -> FloatArray:
     for start, end in itertools.pairwise(largest):
         radii = radius(turning[(start <= turning) & (turning <= end)])
         spins = spin([start, *of_spin[(start < of_spin) & (of_spin < end)]])
-        rows.append(
-            [end - start, angle(end) - angle(start), radii.min(), radii.max(), spins.min(), spins.max()]
-        )
+        extremes = radii.min(), radii.max(), spins.min(), spins.max()
+        rows.append((end - start, angle(end) - angle(start), *extremes))
     return np.array(rows).reshape(-1, 6)
 
 
@@ -214,21 +206,12 @@ def critical_offset(engine: Engine, tolerance: float) -> tuple[float, float, flo
     """Return the critical X0 (m), its error, the slope of the modulus (1/m), and the middle whirl of ``TRIED``.
 
     A parabola through the moduli gives the X0 of modulus 1. The error is the change with a line through the two
-    nearest points, which exceeds a cubic term. Raise ``RuntimeError`` if no whirl is nearly critical.
+    nearest points. Raise ``RuntimeError`` if no whirl is nearly critical.
     """
-    orbits: list[Orbit] = []
+    orbits = [_whirl_of_reference()]
     for offset in TRIED:
-        guess = orbits[-1] if orbits else _whirl_of_reference()
-        orbits.append(
-            whirl_orbit(
-                disc_at(offset),
-                simulate=engine.simulate,
-                guess=guess,
-                tolerance=tolerance,
-                samples=SAMPLES_A_TURN,
-                precision=engine.precision,
-            )
-        )
+        orbits.append(whirl_of(engine, disc_at(offset), tolerance, orbits[-1], samples=SAMPLES_A_TURN))
+    orbits = orbits[1:]
     middle = TRIED[1]
     tried, moduli = (np.subtract(TRIED, middle), [pair_modulus(orbit.multipliers) - 1.0 for orbit in orbits])
     parabola = Polynomial.fit(tried, moduli, 2).convert()
@@ -251,14 +234,13 @@ def _whirl_of_reference() -> Orbit:
 
 @functools.cache
 def critical_offset_of_reference() -> float:
-    return critical_offset(Engine("reference", simulate, ("ring",)), 1e-10)[0]
+    return critical_offset(reference, 1e-10)[0]
 
 
 def multipliers_by_variation(disc: DiscOnDisc, near: Orbit, tolerance: float = 1e-8) -> ComplexArray:
     """Return the multipliers of the whirl of ``disc`` closest to the orbit ``near``, shape (5,).
 
-    Newton's method finds the orbit by integrating (19) with its linearisation. Raise ``RuntimeError`` if it does not
-    converge.
+    Newton's method integrates (19) with its linearisation. Raise ``RuntimeError`` if it does not converge.
     """
 
     def equations(_: float, both: FloatArray) -> FloatArray:

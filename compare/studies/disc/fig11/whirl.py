@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.special import stdtrit
@@ -14,27 +15,20 @@ from compare.claims import WORKING, Measured, Measurement, known, refined
 from compare.claims.linearised_flow import ComplexArray, rotated
 from compare.claims.parameters import components_of
 from compare.engines import Engine
-from compare.studies.disc.fig11.theory import (
-    STUDY,
-    SteadyWhirl,
-    last_modulation,
-    predicted_modulation,
-    steady_whirl,
-)
+from compare.studies.disc.fig11.theory import STUDY, SteadyWhirl, predicted_modulation, steady_whirl
 from compare.studies.toolkit.fig11 import DISCS, RING, START, integrated
+from compare.studies.toolkit.measuring import compared
 from reference_model import Trajectory
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
-SLIDING_START = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39)
+SLIDING_START, SLIDING = (0.02, 0.0, 0.0, 0.0, 0.02, 1.39), np.linspace(0.0, 100.0, 101)
 """All contact points slip for 100 s (our choice)."""
 
-SLIDING = np.linspace(0.0, 100.0, 101)
+AMPLITUDE, DURATION, TOLERANCE = 1e-4, 200.0, 2000 * WORKING
+"""Initial deviation as a share of the whirl's radius, duration in s until it is ten times larger, and tolerance."""
 
 OF_CYCLE = 10 * WORKING  # for the motion that settles on the modulated cycle
-AMPLITUDE = 1e-4  # initial deviation as a share of the whirl's radius
-DURATION = 200.0  # duration in s, about a period of the modulation; the deviation grows tenfold
-TOLERANCE = 2000 * WORKING  # small compared with ``AMPLITUDE``
 
 
 GROWTH_NOTE = (
@@ -57,12 +51,11 @@ def slides(engine: Engine, contact: str) -> Measured:
     predicted, rougher = (
         integrated(disc, SLIDING_START, SLIDING[-1], len(SLIDING), tolerance) for tolerance in (3e-14, 2e-13)
     )
-    found = refined(
-        lambda tolerance: engine.simulate(disc, SLIDING_START, SLIDING, tolerance=tolerance).states, 5e-10
-    )
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    motion = disc, SLIDING_START, SLIDING
+    found = refined(lambda tolerance: engine.simulate(*motion, tolerance=tolerance).states, 5e-10)
+    return compared(
+        predicted,
+        found,
         error=found.largest + float(np.max(np.abs(rougher - predicted))),
         at={"t in s": SLIDING},
         components=components_of(RING),
@@ -121,7 +114,7 @@ def _of_growth(engine: Engine, contact: str, which: int, share: float, name: str
 def growth(engine: Engine, disc: DiscOnDisc, contact: IsotropicContact | None = None) -> Measurement:
     """Return growth rate and frequency (1/s) of a deviation from the whirl under the law ``contact``, shape (2,).
 
-    The error is the 95 % interval of the fit plus the changes with twice the deviation and at a smaller tolerance.
+    The error is the 95 % interval plus the changes with twice the deviation and at a smaller tolerance.
     """
     whirl = steady_whirl(disc, contact)
     (measured, scatter), (error, _) = refined(
@@ -136,16 +129,13 @@ def deviation(
 ) -> tuple[FloatArray, ComplexArray]:
     """Return times (s), once a period, and the pair's share q of a deviation, 1 at the start.
 
-    Half the difference of two simulations that start on opposite sides of the whirl has no even powers.
+    Half the difference of two simulations from opposite sides of the whirl has no even powers.
     """
     turns = np.arange(round(DURATION / whirl.period) + 1)
     times = turns * whirl.period
+    motions = [(disc, whirl.displaced(sign * amplitude), times) for sign in (1.0, -1.0)]
     outwards, inwards = (
-        rotated(
-            engine.simulate(disc, whirl.displaced(sign * amplitude), times, tolerance=tolerance).states,
-            -turns * whirl.turn,
-        )
-        for sign in (1.0, -1.0)
+        rotated(run.states, -turns * whirl.turn) for run in engine.simulate_many(motions, tolerance=tolerance)
     )
     # The real part of the mode contains half of it, so the whole difference has the share 1 at the start.
     share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
@@ -167,7 +157,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
     """Return times (s), once a period, and the size of the pair's share over the radius.
 
-    The deviation starts ten times larger than in :func:`deviation`, and reaches the modulated cycle in 900 s.
+    The deviation starts ten times larger than in :func:`deviation`, and reaches the cycle in 900 s.
     """
     turns = np.arange(round(900.0 / whirl.period) + 1)
     times = turns * whirl.period
@@ -197,14 +187,8 @@ CYCLE_NOTE = (
     named={"period of the modulation": 0, "turn in it": 1},
 )
 def period_and_turn(engine: Engine) -> Measured:
-    found = modulation(engine)
-    return Measured(
-        predicted=predicted_modulation()[0][:2],
-        value=found.value[:2],
-        error=found.error[:2],
-        components=("period in s", "turn in rad"),
-        data={"the continuous ring": _run(engine, OF_CYCLE).states},
-    )
+    data = {"the continuous ring": _run(engine, OF_CYCLE).states}
+    return _of_modulation(engine, slice(2), components=("period in s", "turn in rad"), data=data)
 
 
 @STUDY.claim(
@@ -216,22 +200,23 @@ def period_and_turn(engine: Engine) -> Measured:
     note=CYCLE_NOTE,
 )
 def extremes(engine: Engine) -> Measured:
-    found = modulation(engine)
-    return Measured(
-        predicted=predicted_modulation()[0][2:],
-        value=found.value[2:],
-        error=found.error[2:],
-        components=theory.EXTREMES,
-    )
+    return _of_modulation(engine, slice(2, None), components=theory.EXTREMES)
+
+
+def _of_modulation(engine: Engine, part: slice, **more: Any) -> Measured:
+    value, error = modulation(engine)
+    return compared(predicted_modulation()[0][part], Measurement(value[part], error[part]), **more)
 
 
 @functools.lru_cache(maxsize=4)
 def modulation(engine: Engine) -> Measurement:
     """Return the engine's ``last_modulation``, with the errors of the engine and the prediction."""
-    found = refined(
-        lambda tolerance: last_modulation(_run(engine, tolerance).states)[0], OF_CYCLE, alike=False
-    )
-    error = found.error + predicted_modulation()[1] + last_modulation(_run(engine, OF_CYCLE).states)[1]
+
+    def last(tolerance: float) -> tuple[FloatArray, FloatArray]:
+        return theory.last_modulation(_run(engine, tolerance).states)
+
+    found = refined(lambda tolerance: last(tolerance)[0], OF_CYCLE, alike=False)
+    error = found.error + predicted_modulation()[1] + last(OF_CYCLE)[1]
     return Measurement(found.value, known(found.value, error))
 
 

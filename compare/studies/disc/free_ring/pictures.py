@@ -23,32 +23,21 @@ def draw(data: ByEngine) -> Figures:
         ratio.loglog(data["theory"]["inertia"], data["theory"]["ratio"], **curve("theory", "closed form"))
     for engine in engines_in(data):
         found = data[engine]
-        for i, (sliding, rim, place) in enumerate(
-            zip(found["sliding"], found["rim"], found["approach"], strict=True)
-        ):
-            label = None if i == 0 else "_"
+        style = curve(engine)
+        for sliding, rim, place in zip(found["sliding"], found["rim"], found["approach"], strict=True):
             largest = np.hypot(sliding[0], rim[0])
-            plane.plot(rim / largest, sliding / largest, **curve(engine, label))
+            plane.plot(rim / largest, sliding / largest, **style)
             away = np.abs(np.log(sliding / rim))
             seen = (away > LEAST_DEVIATION) & (place > 0.0)
-            approach.semilogy(place[seen], away[seen], **curve(engine, label))
+            approach.semilogy(place[seen], away[seen], **style)
+            style |= {"label": "_"}
         ends = [*found["ratio"], found["ratio of rings"]]
         ratio.plot([*found["inertia"], 1.0], ends, **points(engine))
-    plane.set(
-        xlabel=r"$R\,|\dot\varphi|\,/\,v_0$",
-        ylabel=r"$|v|\,/\,v_0$",
-        aspect="equal",
-        xlim=(0.0, 1.02),
-        ylim=(0.0, 1.02),
-        title=r"Speeds of rim and centre, $J = mR^2$",
-    )
-    approach.set(
-        xlabel=r"$\tau\,/\,t$, $t$: time until the ring rests",
-        ylabel=r"$|\ln(|v|\,/\,R\dot\varphi)|$",
-        xlim=(0.0, 22.0),
-        ylim=(LEAST_DEVIATION, 20.0),
-        title=r"Approach to the ratio 1, $J = mR^2$",
-    )
+    plane.set(xlabel=r"$R\,|\dot\varphi|\,/\,v_0$", ylabel=r"$|v|\,/\,v_0$", aspect="equal")
+    plane.set(xlim=(0.0, 1.02), ylim=(0.0, 1.02), title=r"Speeds of rim and centre, $J = mR^2$")
+    approach.set(title=r"Approach to the ratio 1, $J = mR^2$")
+    approach.set(xlabel=r"$\tau\,/\,t$, $t$: time until the ring rests", xlim=(0.0, 22.0))
+    approach.set(ylabel=r"$|\ln(|v|\,/\,R\dot\varphi)|$", ylim=(LEAST_DEVIATION, 20.0))
     ticks = [0.5, 0.7, 1.0, 1.4, 2.0]
     ratio.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     values = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
@@ -58,13 +47,8 @@ def draw(data: ByEngine) -> Figures:
         ratio.axvline(limit, color=GREY, linewidth=0.9, linestyle="--")
     ratio.annotate(r"$\infty$", (0.46, 5.0), ha="center", fontsize=13)
     ratio.annotate("0", (2.2, 0.19), ha="center", fontsize=12)
-    ratio.set(
-        xlabel=r"$J\,/\,mR^2$",
-        ylabel=r"final $|v|\,/\,R\dot\varphi$",
-        xlim=(0.42, 2.4),
-        ylim=(0.1, 10.0),
-        title="Final ratio",
-    )
+    ratio.set(xlabel=r"$J\,/\,mR^2$", ylabel=r"final $|v|\,/\,R\dot\varphi$", title="Final ratio")
+    ratio.set(xlim=(0.42, 2.4), ylim=(0.1, 10.0))
     plane.legend(loc="upper right")
     approach.legend(loc="upper right")
     ratio.legend(loc="lower left", bbox_to_anchor=(0.13, 0.05))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,15 +13,18 @@ from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
 
 import compare.studies.disc.free_ring.theory as theory
-from compare.claims import Measured, Measurement, Study, answers_of, observed_exponent, refined
+from compare.claims import Measured, Study, answers_of, observed_exponent, refined
 from compare.claims.parameters import at_each
 from compare.engines import Engine
+from compare.studies.disc.free_ring.theory import OTHERS, REMAINING, RINGS, SOURCE, TOLERANCE, Throw
 from compare.studies.toolkit.free_bodies import LARGEST, NEAR, Slowing
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.elliptic import mean_directions
 from reference_model.systems import FloatArray
 
-STUDY = Study.beside(__file__, "free-ring", source=theory.SOURCE, seconds=2.0)
+Throws = Sequence[Throw]
+
+STUDY = Study.beside(__file__, "free-ring", source=SOURCE, seconds=2.0)
 STUDY.provides(curves=theory.curves)
 
 
@@ -32,37 +36,38 @@ STUDY.provides(curves=theory.curves)
     equation="(19), (20)",
     resolution=1e-4,
     note="Delay of the end of sliding after the end of spinning, over the time to rest; U and W are extrapolated "
-    f"linearly from t/T = {theory.REMAINING[1]:g}, {theory.REMAINING[0]:g} before rest. Error: the change for "
+    f"linearly from t/T = {REMAINING[1]:g}, {REMAINING[0]:g} before rest. Error: the change for "
     "earlier samples, and at a smaller tolerance.",
 )
-def end_together(
-    engine: Engine, throws: Sequence[theory.Throw] = (*theory.RINGS, *theory.OTHERS)
-) -> Measured:
+def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured:
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
         """Return the delay of the centre's rest after the rim's over the time to rest, by two pairs of samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
-            times = rest * (1.0 - theory.REMAINING[:3])
-            speeds = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
-            ends = [_zeros_between(times, speed) for speed in speeds]
-            found.append((ends[0] - ends[1]) / rest)
+            times = rest * (1.0 - REMAINING[:3])
+            centre, rim = theory.speeds_at(theory.thrown(engine, throw, tolerance), times)
+            found.append((_zeros_between(times, centre) - _zeros_between(times, rim)) / rest)
         return np.array(found)
 
-    found = refined(apart, theory.TOLERANCE)
+    found = refined(apart, TOLERANCE)
     # Three errors of a speed over its slope, which exceeds 0.4·g.
-    noise = 2.0 * 3.0 * theory.TOLERANCE / (0.4 * theory.DECELERATION) / rests
+    noise = 2.0 * 3.0 * TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=np.zeros(len(throws)),
         value=found.value[:, 0],
         error=found.largest + noise + bend,
-        at={"throw": [throw.name for throw in throws]},
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
     )
+
+
+def of_throws(throws: Throws, **measured: Any) -> Measured:
+    at = {"throw": [throw.name for throw in throws]} | measured.pop("at", {})
+    return Measured(system=theory.TABLE, at=at, **measured)
 
 
 def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
@@ -73,28 +78,25 @@ def _zeros_between(times: FloatArray, speeds: FloatArray) -> FloatArray:
     "The ratio of sliding speed to rim speed ends at 1 for a ring with J = mR², whatever the start",
     equation="(19), (20)",
     resolution=1e-4,
-    note=f"U/W when {theory.REMAINING[0]:g} of the time to rest remains. Error: the tolerance of both speeds, "
+    note=f"U/W when {REMAINING[0]:g} of the time to rest remains. Error: the tolerance of both speeds, "
     "and the change at a smaller one. Model error: the remaining distance to 1.",
 )
-def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def ratio_one(engine: Engine, throws: Throws = RINGS) -> Measured:
 
-    def ratio(tolerance: float) -> FloatArray:
-        speeds = [
-            theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[0]) for throw in throws
-        ]
-        return np.array([sliding[0] / rim[0] for sliding, rim in speeds])
+    def ratio(tolerance: float) -> list[float]:
+        found = (theory.speeds_before_rest(engine, throw, tolerance, REMAINING[0]) for throw in throws)
+        return [sliding[0] / rim[0] for sliding, rim in found]
 
-    found = refined(ratio, theory.TOLERANCE)
-    rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
-    farthest = np.array([theory.expected_approach(throw) for throw in throws]) / (theory.REMAINING[0] * rests)
-    return Measured(
-        system=theory.TABLE,
+    found = refined(ratio, TOLERANCE)
+    left = REMAINING[0] * np.array([theory.roughly_rest(engine, throw) for throw in throws])
+    farthest = np.array([theory.expected_approach(throw) for throw in throws]) / left
+    return of_throws(
+        throws,
         predicted=np.ones(len(throws)),
         value=found.value,
-        error=found.largest + ratio_noise(theory.REMAINING[0] * rests),
+        error=found.largest + ratio_noise(left),
         model=float(np.max(theory.deviation(farthest))),
-        at={"throw": [throw.name for throw in throws]},
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
         data={"ratio of rings": np.mean(found.value)},
     )
 
@@ -102,7 +104,7 @@ def ratio_one(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> 
 def ratio_noise(left: ArrayLike) -> FloatArray:
     """Return the error of ln(U/W), ``left`` s before rest, that the tolerance of both speeds causes for c = 1."""
     speed = 2.0 / math.pi * theory.DECELERATION * np.asarray(left)
-    return np.asarray(2.0 * theory.TOLERANCE / speed)
+    return np.asarray(2.0 * TOLERANCE / speed)
 
 
 @STUDY.claim(
@@ -114,7 +116,7 @@ def ratio_noise(left: ArrayLike) -> FloatArray:
     "measurement.",
     basis="reference",
 )
-def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def approach(engine: Engine, throws: Throws = RINGS) -> Measured:
 
     def constants(tolerance: float) -> FloatArray:
         found = []
@@ -125,7 +127,7 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
             found.append((theory.rest_of(trajectory) - times) * theory.nearness(np.log(sliding / rim)))
         return np.array(found)
 
-    found = refined(constants, theory.TOLERANCE)
+    found = refined(constants, TOLERANCE)
     there = np.isfinite(found.error)  # samples without an error estimate must not affect the others
     largest = np.where(there, np.max(found.error[there], initial=0.0), found.error)
     predicted = np.array([theory.expected_approach(throw) for throw in throws])
@@ -133,65 +135,56 @@ def approach(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> M
     left = predicted[:, np.newaxis] / np.array(theory.NEARNESSES)
     noise = left * ratio_noise(left) / theory.deviation(theory.NEARNESSES)
     # The law of the approach is valid for small δ; integrals to the measured δ give its error.
-    left_out = [
-        abs(
-            theory.expected_approach(throw, float(theory.deviation(theory.NEARNESSES[0])))
-            - theory.expected_approach(throw)
-        )
-        for throw in throws
-    ]
-    return Measured(
-        system=theory.TABLE,
+    near = float(theory.deviation(theory.NEARNESSES[0]))
+    left_out = np.abs([theory.expected_approach(throw, near) for throw in throws] - predicted)
+    return of_throws(
+        throws,
         predicted=np.repeat(predicted[:, np.newaxis], len(theory.NEARNESSES), axis=1),
         value=found.value,
         error=largest + noise,
-        model=max(left_out),
+        model=float(np.max(left_out)),
         resolution=1e-2 * float(np.min(predicted)),
-        at={"throw": [throw.name for throw in throws], "A/t": theory.NEARNESSES},
+        at={"A/t": theory.NEARNESSES},
         data=_drawn(engine, throws),
     )
 
 
-def _drawn(engine: Engine, throws: Sequence[theory.Throw]) -> dict[str, ArrayLike]:
-    speeds, approaches = [], []
+def _drawn(engine: Engine, throws: Throws) -> dict[str, ArrayLike]:
+    rows = []
     for throw in throws:
-        trajectory, times = (
-            theory.thrown(engine, throw, theory.TOLERANCE),
-            theory.uniform_times(engine, throw),
-        )
-        speeds.append(theory.speeds_at(trajectory, times))
-        approaches.append(theory.expected_approach(throw) / (theory.rest_of(trajectory) - times))
-    sliding, rim = zip(*speeds, strict=True)
-    return {"sliding": sliding, "rim": rim, "approach": approaches}
+        trajectory = theory.thrown(engine, throw, TOLERANCE)
+        times = theory.uniform_times(engine, throw)
+        approach = theory.expected_approach(throw) / (theory.rest_of(trajectory) - times)
+        rows.append((*theory.speeds_at(trajectory, times), approach))
+    return dict(zip(("sliding", "rim", "approach"), zip(*rows, strict=True), strict=True))
 
 
 @STUDY.claim(
     "For mR²/2 < J < 2mR², the ratio ends at the balance of both decelerations, whatever the start",
     equation="(19), (20)",
     resolution=1e-2,
-    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in theory.REMAINING[:3])} of the time to rest, "
+    note=f"U/W at t/T = {', '.join(f'{left:g}' for left in REMAINING[:3])} of the time to rest, "
     "extrapolated to zero as a power. Predicted: the root of J·∂P/∂U·W = mR²·∂P/∂W·U of the closed form. Error: "
     "the change at twice the remaining time, and at a smaller tolerance.",
     basis="reference",
     swept=("polar_inertia",),
 )
-def other_ratios(engine: Engine, throws: Sequence[theory.Throw] = theory.OTHERS) -> Measured:
+def other_ratios(engine: Engine, throws: Throws = OTHERS) -> Measured:
 
     def ratios(tolerance: float) -> FloatArray:
         found = []
         for throw in throws:
-            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.REMAINING[:4])
+            sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, REMAINING[:4])
             found.append([_limit(*(sliding / rim)[:3]), _limit(*(sliding / rim)[1:])])
         return np.array(found)
 
-    found = refined(ratios, theory.TOLERANCE)
-    return Measured(
-        system=theory.TABLE,
+    found = refined(ratios, TOLERANCE)
+    return of_throws(
+        throws,
         predicted=[math.exp(Slowing(throw.inertia).terminal) for throw in throws],
         value=found.value[:, 0],
         error=found.largest + np.abs(found.value[:, 1] - found.value[:, 0]),
-        at={"throw": [throw.name for throw in throws]},
-        source=theory.SOURCE + theory.CITED,
+        source=SOURCE + theory.CITED,
         data={"inertia": [throw.inertia for throw in throws], "ratio": found.value[:, 0]},
     )
 
@@ -209,30 +202,29 @@ def _limit(last: float, middle: float, first: float) -> float:
     f"{theory.ENDING[0]:g} of the time to rest, with the next term, whose size is the model error.",
     swept=("polar_inertia",),
 )
-def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> Measured:
+def powers(engine: Engine, throws: Throws = theory.LOPSIDED) -> Measured:
     predicted, found = [], []
     for throw in throws:
         slow = throw.inertia < 0.5
         power = 0.5 / throw.inertia - 1.0 if slow else 0.5 * throw.inertia - 1.0
 
-        def shares(tolerance: float, throw: theory.Throw = throw, slow: bool = slow) -> FloatArray:
+        def shares(tolerance: float, throw: Throw = throw, slow: bool = slow) -> FloatArray:
             sliding, rim = theory.speeds_before_rest(engine, throw, tolerance, theory.ENDING)
             return rim / sliding if slow else sliding / rim
 
-        share = refined(shares, theory.TOLERANCE)
+        share = refined(shares, TOLERANCE)
         predicted.append(power)
         found.append(
             observed_exponent(theory.ENDING, share.value, next_term=2.0 * power, noise=share.largest)
         )
     exponents, errors, models = zip(*found, strict=True)
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=predicted,
         value=exponents,
         error=errors,
         model=max(models),
-        at={"throw": [throw.name for throw in throws]},
-        source=theory.SOURCE + "; limits as Goyal et al. 1991",
+        source=SOURCE + "; limits as Goyal et al. 1991",
     )
 
 
@@ -248,32 +240,26 @@ def powers(engine: Engine, throws: Sequence[theory.Throw] = theory.LOPSIDED) -> 
     basis="reference",
     swept=("polar_inertia",),
 )
-def stops(engine: Engine, throws: Sequence[theory.Throw] = theory.INTEGRATED) -> Measured:
-    found = stops_of(engine, throws)
+def stops(engine: Engine, throws: Throws = theory.INTEGRATED) -> Measured:
+
+    def stops_at(tolerance: float) -> list[tuple[float, ...]]:
+        runs = [theory.thrown(engine, throw, tolerance) for throw in throws]
+        return [(theory.rest_of(run), *run.at_end[:3]) for run in runs]
+
+    found = refined(stops_at, TOLERANCE)
     predicted, nearly = (
         np.array([_integrated(throw, near) for throw in throws]) for near in (NEAR, 10.0 * NEAR)
     )
-    return Measured(
-        system=theory.TABLE,
+    return of_throws(
+        throws,
         predicted=predicted,
         value=found.value,
         error=found.largest + float(np.max(np.abs(predicted - nearly))),
-        at={"throw": [throw.name for throw in throws]},
         components=("time in s", "x in m", "y in m", "angle in rad"),
     )
 
 
-def stops_of(engine: Engine, throws: Sequence[theory.Throw]) -> Measurement:
-    """Return the time to rest (s), x, y (m) and the angle (rad), shape (n, 4)."""
-
-    def found(tolerance: float) -> FloatArray:
-        trajectories = [theory.thrown(engine, throw, tolerance) for throw in throws]
-        return np.array([[theory.rest_of(trajectory), *trajectory.at_end[:3]] for trajectory in trajectories])
-
-    return refined(found, theory.TOLERANCE)
-
-
-def _integrated(throw: theory.Throw, near: float) -> list[float]:
+def _integrated(throw: Throw, near: float) -> list[float]:
     rest = Slowing(throw.inertia).stop(throw.sliding, abs(throw.rim), near)
     place = cmath.rect(rest.slid / theory.DECELERATION, theory.HEADING)
     turned = math.copysign(rest.turned, throw.rim) / theory.DECELERATION / theory.TABLE.contact_radius
@@ -289,7 +275,7 @@ def _integrated(throw: theory.Throw, near: float) -> list[float]:
     "the quadrature of μN·P(U, W) without every second sample.",
     basis="reference",
 )
-def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measured:
+def heat(engine: Engine, throws: Throws = RINGS) -> Measured:
 
     def imbalance(tolerance: float) -> FloatArray:
         found = []
@@ -306,15 +292,10 @@ def heat(engine: Engine, throws: Sequence[theory.Throw] = theory.RINGS) -> Measu
             found.append(row)
         return np.array(found)
 
-    found = refined(imbalance, theory.TOLERANCE)
+    found = refined(imbalance, TOLERANCE)
     halved = np.abs(found.value[:, 1] - found.value[:, 0])
-    return Measured(
-        system=theory.TABLE,
-        predicted=np.zeros(len(throws)),
-        value=found.value[:, 0],
-        error=found.largest + 2.0 * theory.TOLERANCE / theory.SPEED + halved,
-        at={"throw": [throw.name for throw in throws]},
-    )
+    error = found.largest + 2.0 * TOLERANCE / theory.SPEED + halved
+    return of_throws(throws, predicted=np.zeros(len(throws)), value=found.value[:, 0], error=error)
 
 
 # --- Existence of a terminal ratio
@@ -352,10 +333,6 @@ def published_ratio() -> Measured:
         resistance, moment = face.shares(ratio, 1.0)
         return resistance / ratio - moment / 0.5
 
-    return Measured(
-        predicted=0.653,
-        value=brentq(unevenness, 0.1, 0.9, xtol=1e-12),
-        error=1e-10,
-        model=5e-4,  # half of the last published digit
-        source="Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007",
-    )
+    found = brentq(unevenness, 0.1, 0.9, xtol=1e-12)
+    source = "Farkas, Bartels, Unger and Wolf 2003; Weidman and Malhotra 2007"
+    return Measured(predicted=0.653, value=found, error=1e-10, model=5e-4, source=source)

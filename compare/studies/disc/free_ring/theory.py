@@ -44,10 +44,7 @@ HEADING = 0.7  # direction of the throw in rad from the x axis
 
 @dataclass(frozen=True)
 class Throw:
-    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees.
-
-    0 only slides, 90 only spins, and a negative value reverses the spin.
-    """
+    """A ring with inertia c = J/(mR²) and the initial atan(W/U) in degrees; a negative value reverses the spin."""
 
     inertia: float
     degrees: float
@@ -92,13 +89,10 @@ LOPSIDED = tuple(Throw(inertia, degrees) for inertia in (0.3, 3.0) for degrees i
 
 INTERVALS = 400  # samples until rest
 
-REMAINING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3])
-"""Remaining times of samples over the time to rest."""
+REMAINING, ENDING = np.array([2e-4, 4e-4, 8e-4, 1.6e-3]), np.geomspace(1e-3, 3e-2, 10)
+"""Remaining times of samples as shares of the time to rest, also for a power law."""
 
 NEARNESSES = (7.0, 9.0)  # A/t of the samples
-
-ENDING = np.geomspace(1e-3, 3e-2, 10)
-"""Remaining times for a power law, as shares of the time to rest."""
 
 TOLERANCE = WORKING / 10
 """For ratios near rest, where less than a thousandth of the initial speed is left."""
@@ -141,8 +135,7 @@ def curves() -> Data:
 def roughly_rest(engine: Engine, throw: Throw) -> float:
     """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    At a smaller tolerance the rest moves relative to the samples, so the change of a measured value includes the
-    error of the sample times.
+    At a smaller tolerance the rest moves relative to the samples, so a change includes the error of their times.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))
@@ -152,14 +145,9 @@ def roughly_rest(engine: Engine, throw: Throw) -> float:
 @functools.cache
 def thrown(engine: Engine, throw: Throw, tolerance: float) -> Trajectory:
     rest = roughly_rest(engine, throw)
-    times = [
-        *uniform_times(engine, throw),
-        *(rest * (1.0 - REMAINING)),
-        *(rest * (1.0 - ENDING)),
-        1.02 * rest,
-    ]
-    if throw in RINGS:
-        times += [*approach_times(engine, throw)]
+    shares = 1.0 - np.concatenate((REMAINING, ENDING, [-0.02]))
+    approach = approach_times(engine, throw) if throw in RINGS else ()
+    times = np.concatenate((uniform_times(engine, throw), rest * shares, approach))
     return engine.simulate(throw.disc, throw.state, np.unique(times), tolerance=tolerance)
 
 

@@ -14,16 +14,17 @@ from scipy.optimize import brentq
 import compare.studies.disc.stability_map.theory as theory
 from compare.claims import Measured, answers_of
 from compare.claims.linearised_flow import ComplexArray
-from compare.studies.disc.stability_map.theory import STUDY, growth_of_rotation
+from compare.studies.disc.stability_map.theory import DISC, STUDY, growth_of_rotation
 from compare.studies.toolkit.fig11 import FINE, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
+from reference_model.formulas.disc import pin_of
 from reference_model.formulas.pin import upper_branch_margin
 from reference_model.simulation import simulate
 from reference_model.steady.bifurcation_curves import Kind, crossings
 from reference_model.steady.lyapunov_coefficient import growth_by_amplitude
 from reference_model.steady.stability import onset_load, whirl_eigenvalues
 from reference_model.steady.steady_states import whirls
-from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc
+from reference_model.systems import DiscOnDisc, FloatArray
 
 ONE_AT_A_TIME = "Fig. 11 with X0 = 0; one parameter at a time"
 
@@ -107,7 +108,7 @@ def folds() -> Measured:
     "The traced curves cross the line of Fig. 11 where a search along this line finds the boundary",
     equation=BOTH_LAWS,
     unit="N",
-    resolution=1e-3 * theory.DISC.friction_force,
+    resolution=1e-3 * DISC.friction_force,
     note="μN of the Hopf curves, by a cubic spline through the points of the curves, and by a zero of Hurwitz' "
     "determinant over the ratio U : W. Error: the change with points at twice the distance.",
     swept=("friction_force",),
@@ -117,11 +118,16 @@ def crosses_line() -> Measured:
     names: list[str] = []
     for law in LAWS:
         sets = theory.traced()["load", law, "Hopf"], curves_in("load", "Hopf", law, step=2.0 * FINE)
-        fine, coarse = (theory.crossed(curves, theory.DISC.disc_speed) for curves in sets)
-        predicted = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law])
+        fine, coarse = (theory.crossed(curves, DISC.disc_speed) for curves in sets)
+        predicted = hopf_loads(law)
         rows.extend(zip(predicted, fine, np.abs(fine - coarse), strict=True))
         names.extend(f"{law}, crossing {1 + i}" for i in range(len(fine)))
     return _of_rows(rows, names)
+
+
+def hopf_loads(law: str) -> Sequence[float]:
+    """Return μN (N) of the Hopf curves at the speed of Fig. 11."""
+    return crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed, LAWS[law])
 
 
 def _of_rows(rows: Sequence[tuple[float, ...]], components: Sequence[str], **more: Any) -> Measured:
@@ -133,7 +139,7 @@ def _of_rows(rows: Sequence[tuple[float, ...]], components: Sequence[str], **mor
     "The centred rotation loses its stability at the onset that the closed form predicts",
     equation=BOTH_LAWS,
     unit="N",
-    resolution=1e-9 * theory.DISC.friction_force,
+    resolution=1e-9 * DISC.friction_force,
     note="Measured: root of the largest real part over μN; the ring and (23) have the same onset. Error: rounding "
     "of the eigenvalues.",
     swept=("friction_force", "disc_speed"),
@@ -156,13 +162,13 @@ def onset() -> Measured:
     return _of_rows(rows, [f"{law}, ω = {speed:g} rad/s" for law in LAWS for speed in ONSET_SPEEDS])
 
 
-SLIP_SPEED = theory.DISC.disc_speed - theory.DISC.shaft_speed
+SLIP_SPEED = DISC.disc_speed - DISC.shaft_speed
 
 WAYS: dict[str, tuple[Callable[[float], DiscOnDisc], float]] = {
-    "load": (lambda share: theory.at(friction_force=share * theory.DISC.friction_force), 0.8),
-    "shaft damping": (lambda share: theory.at(shaft_damping=share * theory.DISC.shaft_damping), 1.5),
-    "damping of the springs": (lambda share: theory.at(damping=share * theory.DISC.damping), 1.6),
-    "slip speed": (lambda share: theory.at(shaft_speed=theory.DISC.disc_speed - share * SLIP_SPEED), 1.3),
+    "load": (lambda share: theory.at(friction_force=share * DISC.friction_force), 0.8),
+    "shaft damping": (lambda share: theory.at(shaft_damping=share * DISC.shaft_damping), 1.5),
+    "damping of the springs": (lambda share: theory.at(damping=share * DISC.damping), 1.6),
+    "slip speed": (lambda share: theory.at(shaft_speed=DISC.disc_speed - share * SLIP_SPEED), 1.3),
 }
 """Discs by the share of one parameter of Fig. 11, and a share with stable rotation."""
 
@@ -203,22 +209,16 @@ def by_whirls() -> Measured:
     for law in LAWS:
         for plane in PLANES.values():
             for fixed, name in (plane.names[::-1], plane.names):
-                here = getattr(theory.DISC, name)
-                borders = crossings(plane, "Hopf", fixed, getattr(theory.DISC, fixed), LAWS[law])
+                here = getattr(DISC, name)
+                borders = crossings(plane, "Hopf", fixed, getattr(DISC, fixed), LAWS[law])
                 for value in theory.nearest(borders, here):
                     if law == "ring":
                         named[f"{'lower' if value < here else 'upper'} {name}"] = len(rows)
                     rows.append((value, *theory.change_of_stability(name, value, LAWS[law])))
                     names.append(f"{law}: {name} {value:.4g} ({100.0 * (value / here - 1.0):+.1f} %)")
-    return _of_rows(
-        rows,
-        names,
-        source=ONE_AT_A_TIME,
-        note="Borders on either side of the point of Fig. 11, and their distances: "
-        + "; ".join(dict.fromkeys(names))
-        + ".",
-        named=named,
-    )
+    distances = "; ".join(dict.fromkeys(names))
+    note = f"Borders on either side of the point of Fig. 11, and their distances: {distances}."
+    return _of_rows(rows, names, source=ONE_AT_A_TIME, note=note, named=named)
 
 
 @STUDY.claim(
@@ -270,18 +270,15 @@ def stable_by_23() -> Measured:
 
 
 def _side(law: str, sign: float) -> Measured:
-    (whirl,) = whirls(theory.DISC, LAWS[law])
-    values, error = theory.critical_eigenvalues(theory.DISC, whirl.state, LAWS[law])
-    near = theory.nearest(
-        crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed, LAWS[law]), np.inf
-    )
+    (whirl,) = whirls(DISC, LAWS[law])
+    values, error = theory.critical_eigenvalues(DISC, whirl.state, LAWS[law])
     return answers_of(
         sign * values[0].real,
         error,
         source="Fig. 11 with X0 = 0",
         note=f"Radius {whirl.radius:.5f} m, spin {whirl.spin:.5f} rad/s, eigenvalues {values[0].real:+.5f} "
         f"± {abs(values[0].imag):.5f}i 1/s. "
-        f"At this speed the whirl of this law is unstable up to μN = {near[0]:.5f} N.",
+        f"At this speed the whirl of this law is unstable up to μN = {max(hopf_loads(law)):.5f} N.",
     )
 
 
@@ -294,13 +291,7 @@ def _side(law: str, sign: float) -> Measured:
 )
 def pin_is_stable() -> Measured:
     pins = [
-        PinOnDisc(
-            mass=theory.DISC.mass,
-            stiffness=theory.DISC.stiffness,
-            damping=damping,
-            friction_force=theory.DISC.friction_force,
-            disc_speed=speed,
-        )
+        replace(pin_of(DISC), damping=damping, disc_speed=speed)
         for speed in SPEEDS.tolist()
         for damping in np.linspace(LOW, HIGH, 20).tolist()
     ]
@@ -313,15 +304,13 @@ def pin_is_stable() -> Measured:
     basis="reference",
 )
 def collapses_by_23() -> Measured:
-    law, plane, speed = LAWS["(23)"], PLANES["load"], theory.DISC.disc_speed
+    law, plane, speed = LAWS["(23)"], PLANES["load"], DISC.disc_speed
     (fold,), (hopf,) = (crossings(plane, kind, "disc_speed", speed, law) for kind in ("fold", "Hopf"))
     starts = []
     for share in UNSTABLE_LOADS:
         disc = theory.at(friction_force=fold + share * (hopf - fold))
         largest = whirls(disc, law)[0]
-        starts += [
-            theory.Start(disc, tuple((largest.state * factors).tolist()), "rotation", theory.SLOWLY_SETTLED)
-            for factors in BESIDE_LARGEST
-        ]
+        states = [tuple((largest.state * factors).tolist()) for factors in BESIDE_LARGEST]
+        starts += [theory.Start(disc, state, "rotation", theory.SLOWLY_SETTLED) for state in states]
     _, measured = theory.ends_of(functools.partial(simulate, contact=law), starts)
     return measured

@@ -2,28 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.parameters import FIG11
-from compare.output.figures import (
-    BLACK,
-    GREEN,
-    GREY,
-    PURPLE,
-    SKY,
-    Axes,
-    Figure,
-    axis,
-    beside,
-    engine_style,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Axes, Figure, axis, beside, engine_style, engines_in, new_figure, points
 from compare.studies.disc.stability_map.theory import ENDS
 from compare.studies.toolkit.fig11 import PLANES
 from reference_model.systems import FloatArray
@@ -32,7 +19,7 @@ ENDS_AS = dict(zip((f"ends as {end}" for end in ENDS), ("P", "o", "D", "s"), str
 SIDES = {"small deviations from the whirl grow": "^", "small deviations from the whirl decay": "v"}
 SHRINKING = "v"
 
-COLOURS = {"ring": GREEN, "(23)": PURPLE}
+COLOURS = {"ring": plots.GREEN, "(23)": plots.PURPLE}
 DASHES: dict[str, Any] = {"ring": "-", "(23)": (0.0, (5.0, 2.0))}
 NAMES = {"ring": "ring", "(23)": "eq. (23)"}
 SHADE = "#d3ece4"
@@ -40,27 +27,22 @@ SHADE = "#d3ece4"
 K = FIG11.natural_frequency
 
 
-class Region(NamedTuple):
-    """Name of a region and its position; ``at`` is the tip of an arrow from names outside the region."""
-
-    across: float
-    up: float
-    words: str
-    at: tuple[float, float] | None = None
-
-
 class Panel(NamedTuple):
-    """Labels, ranges and regions of a plane.
+    """Labels and ranges of a plane, and the ``places`` of the names ``REGIONS``.
 
-    ``outward`` is the sign of the change of the second coordinate from the onset to the large whirls.
+    ``outward`` is the sign of the change of the second coordinate from the onset to the large whirls. An arrow with
+    this ``tip`` leads to a modulated cycle that is too small for its name.
     """
 
     labels: tuple[str, str]
     x: tuple[float, float]
     y: tuple[float, float]
     outward: float
-    regions: tuple[Region, ...]
+    places: Sequence[tuple[float, float]]
+    tip: tuple[float, float] | None = None
 
+
+REGIONS = ("rotation about the axis", "modulated cycle", "whirl", "whirl or sticking")
 
 PANELS = {
     "load": Panel(
@@ -68,59 +50,37 @@ PANELS = {
         (0.95, 1.95),
         (0.0, 0.06),
         1.0,
-        (
-            Region(1.68, 0.012, "rotation about the axis"),
-            Region(1.79, 0.024, "modulated cycle", (1.66, 0.0335)),
-            Region(1.76, 0.046, "whirl"),
-            Region(1.25, 0.05, "whirl or sticking"),
-        ),
+        ((1.68, 0.012), (1.79, 0.024), (1.76, 0.046), (1.25, 0.05)),
+        tip=(1.66, 0.0335),
     ),
     "dampers": Panel(
         (axis(r"\beta", "N s/m"), axis("b", "N m s/rad")),
         (0.2, 2.0),
         (0.004, 0.026),
         -1.0,
-        (
-            Region(1.2, 0.02, "rotation about the axis"),
-            Region(1.4, 0.0089, "modulated cycle"),
-            Region(0.36, 0.0122, "whirl"),
-            Region(1.2, 0.0055, "whirl or sticking"),
-        ),
+        ((1.2, 0.02), (1.4, 0.0089), (0.36, 0.0122), (1.2, 0.0055)),
     ),
     "speeds": Panel(
         (axis(r"\omega", "rad/s"), axis(r"\omega - \Omega", "rad/s")),
         (0.95, 1.95),
         (0.0, 0.5),
         -1.0,
-        (
-            Region(1.25, 0.39, "rotation about the axis"),
-            Region(1.7, 0.21, "modulated cycle", (1.62, 0.278)),
-            Region(1.8, 0.255, "whirl"),
-            Region(1.55, 0.08, "whirl or sticking"),
-        ),
+        ((1.25, 0.39), (1.7, 0.21), (1.8, 0.255), (1.55, 0.08)),
+        tip=(1.62, 0.278),
     ),
     "inertia": Panel(
         (axis("J", "kg m²"), axis("b", "N m s/rad")),
         (0.0, 4.0),
         (0.0085, 0.0215),
         -1.0,
-        (
-            Region(2.5, 0.0202, "rotation about the axis"),
-            Region(2.5, 0.0142, "modulated cycle"),
-            Region(0.35, 0.0166, "whirl"),
-            Region(2.0, 0.0096, "whirl or sticking"),
-        ),
+        ((2.5, 0.0202), (2.5, 0.0142), (0.35, 0.0166), (2.0, 0.0096)),
     ),
 }
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {}
-    if "theory" in data:
-        figures["stability-map"] = draw_map(data)
-    if data:
-        figures["stability-map-load"] = draw_section(data)
-    return figures
+    plane = {"stability-map": draw_map(data)} if "theory" in data else {}
+    return plane | {"stability-map-load": draw_section(data)} if data else {}
 
 
 def draw_map(data: ByEngine) -> Figure:
@@ -130,7 +90,7 @@ def draw_map(data: ByEngine) -> Figure:
     for (name, panel), panel_axes in zip(PANELS.items(), axes, strict=True):
         draw_plane(panel_axes, name, panel, data)
     handles, _ = axes[0].get_legend_handles_labels()
-    marks: dict[str, Any] = {"color": GREY, "linestyle": "none", "markerfacecolor": "none"}
+    marks: dict[str, Any] = {"color": plots.GREY, "linestyle": "none", "markerfacecolor": "none"}
     if engines_in(data):
         handles += [
             Line2D([], [], marker=mark, label=words, **marks) for words, mark in (SIDES | ENDS_AS).items()
@@ -151,51 +111,37 @@ def draw_plane(axes: Axes, name: str, panel: Panel, data: ByEngine) -> None:
         x, small, large, where=panel.outward * (large - small) > 0.0, color=SHADE, linewidth=0.0
     )
     for law, colour in COLOURS.items():
-        for kind, width, dashes, words in (
-            ("Hopf", 2.0, DASHES[law], "whirl loses its stability (Hopf)"),
-            ("fold", 1.3, ":", "two whirls meet (fold)"),
-        ):
-            found = [shown(name, curve) for curve in curves(theory, name, law, kind)]
-            for i, (first, second) in enumerate(found):
-                label = f"{NAMES[law]}: {words}" if i == 0 else None
-                axes.plot(
-                    first, second, color=colour, linestyle=dashes, linewidth=width, zorder=3.0, label=label
-                )
-    for i, curve in enumerate(curves(theory, name, "ring", "onset")):
-        label = "both: rotation loses its stability (onset)" if i == 0 else None
-        axes.plot(*shown(name, curve), color=BLACK, linewidth=1.1, zorder=2.5, label=label)
-    axes.plot(
-        *sticking(name, x),
-        color=GREY,
-        linestyle="-.",
-        linewidth=1.2,
-        label="largest shaft moment at which the disc sticks",
-    )
+        hopf: Any = {"color": colour, "linestyle": DASHES[law], "linewidth": 2.0, "zorder": 3.0}
+        draw_curves(axes, name, law, "Hopf", data, f"{NAMES[law]}: whirl loses its stability (Hopf)", **hopf)
+        fold = hopf | {"linestyle": ":", "linewidth": 1.3}
+        draw_curves(axes, name, law, "fold", data, f"{NAMES[law]}: two whirls meet (fold)", **fold)
+    onset: Any = {"color": plots.BLACK, "linewidth": 1.1, "zorder": 2.5}
+    draw_curves(axes, name, "ring", "onset", data, "both: rotation loses its stability (onset)", **onset)
+    style: dict[str, Any] = {"color": plots.GREY, "linestyle": "-.", "linewidth": 1.2}
+    axes.plot(*sticking(name, x), label="largest shaft moment at which the disc sticks", **style)
     if PLANES[name].names[0] == "disc_speed":
-        axes.axvline(K, color=SKY, linewidth=1.4)
-        axes.annotate(
-            r"$\omega = k$", (K, 0.97), (5, 0), xycoords=("data", "axes fraction"), textcoords="offset points"
-        )
+        axes.axvline(K, color=plots.SKY, linewidth=1.4)
+        style = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
+        axes.annotate(r"$\omega = k$", (K, 0.97), (5, 0), **style)
     here = np.array([[getattr(FIG11, parameter) for parameter in PLANES[name].names]])
-    axes.plot(
-        *shown(name, here), "*", color=BLACK, markersize=8.0, linestyle="none", zorder=4.0, label="Fig. 11"
-    )
+    star: dict[str, Any] = {"color": plots.BLACK, "markersize": 8.0, "linestyle": "none", "zorder": 4.0}
+    axes.plot(*shown(name, here), "*", label="Fig. 11", **star)
     for rank, engine in enumerate(engines_in(data)):
         draw_dots(axes, name, engine, data[engine], rank)
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.15}
-    for region in panel.regions:
-        axes.annotate(
-            region.words,
-            region.at or (region.across, region.up),
-            (region.across, region.up),
-            ha="center",
-            va="center",
-            style="italic",
-            bbox=box if region.at else None,
-            arrowprops={"arrowstyle": "-", "linewidth": 0.7} if region.at else None,
-            zorder=6.0,
-        )
+    for words, place in zip(REGIONS, panel.places, strict=True):
+        style = {"ha": "center", "va": "center", "style": "italic", "zorder": 6.0}
+        tip = panel.tip if words == "modulated cycle" else None
+        if tip is not None:
+            style |= {"bbox": box, "arrowprops": {"arrowstyle": "-", "linewidth": 0.7}}
+        axes.annotate(words, tip or place, place, **style)
     axes.set(xlabel=panel.labels[0], ylabel=panel.labels[1], xlim=panel.x, ylim=panel.y)
+
+
+def draw_curves(axes: Axes, name: str, law: str, kind: str, data: ByEngine, label: str, **style: Any) -> None:
+    for curve in curves(data["theory"], name, law, kind):
+        axes.plot(*shown(name, curve), label=label, **style)
+        label = "_"
 
 
 def draw_dots(axes: Axes, name: str, engine: str, found: Data, rank: int) -> None:
@@ -256,22 +202,15 @@ def draw_section(data: ByEngine) -> Figure:
     if "theory" in data:
         for law, colour in COLOURS.items():
             load, radius, growth = data["theory"][f"section/{law}"].T
-            for stable, dashes, words in ((True, "-", "stable"), (False, ":", "unstable")):
-                axes.plot(
-                    load,
-                    np.where((growth < 0.0) == stable, radius, np.nan),
-                    color=colour,
-                    linestyle=dashes,
-                    linewidth=2.2,
-                    label=f"whirl, {NAMES[law]}: {words}",
-                )
+            for words, dashes, shown in (("stable", "-", growth < 0.0), ("unstable", ":", ~(growth < 0.0))):
+                label, part = f"whirl, {NAMES[law]}: {words}", np.where(shown, radius, np.nan)
+                axes.plot(load, part, color=colour, linestyle=dashes, linewidth=2.2, label=label)
     for engine in engines_in(data):
         load, low, high = data[engine]["section"].T
         label = f"{engine}: smallest and largest"
         axes.plot(np.repeat(load, 2), np.column_stack((low, high)).ravel(), **points(engine, label))
-    axes.axvline(FIG11.friction_force, color=GREY, linewidth=1.0, linestyle="--", label="Fig. 11")
-    axes.set(
-        xlabel=axis(r"\mu N", "N"), ylabel=axis(r"\rho", "m"), xlim=(0.0192, 0.0285), ylim=(-0.001, 0.05)
-    )
+    axes.axvline(FIG11.friction_force, color=plots.GREY, linewidth=1.0, linestyle="--", label="Fig. 11")
+    axes.set(xlabel=axis(r"\mu N", "N"), xlim=(0.0192, 0.0285))
+    axes.set(ylabel=axis(r"\rho", "m"), ylim=(-0.001, 0.05))
     axes.legend(loc="lower right")
     return figure

@@ -12,14 +12,16 @@ import numpy as np
 
 import compare.studies.disc.stability_map.theory as theory
 from compare.claims import WORKING, Data, Measured, answers_of, refined
-from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.claims.linearised_flow import real_and_imaginary
 from compare.engines import Engine
-from compare.studies.disc.stability_map.theory import STUDY
+from compare.studies.disc.stability_map.theory import DISC, STUDY, Start, at
+from compare.studies.toolkit.deviations import PARTS
 from compare.studies.toolkit.fig11 import PLANES
+from compare.studies.toolkit.steady_motion import mode_growth
 from reference_model.steady.bifurcation_curves import crossings
 from reference_model.steady.stability import turning_frame_jacobian
 from reference_model.steady.steady_states import SpinningWhirl, whirls
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import ANGLE, DiscOnDisc, FloatArray
 
 LINES = (
     ("load", "disc_speed", 1.5),
@@ -29,12 +31,8 @@ LINES = (
 )
 """Lines across the ring's Hopf curves: plane, fixed parameter, its value."""
 
-ASIDE = 0.01  # relative distance from the curves
-
-DEVIATION = 0.02
-"""Initial deviation from the whirl as a share of the distance to U = W, where a point of the ring comes to rest."""
-
-FLOW_TOLERANCE = 100 * WORKING  # for motions whose small differences are evaluated
+ASIDE, DEVIATION, FLOW_TOLERANCE = 0.01, 0.02, 100 * WORKING
+"""Relative distance of discs from the curves, deviation as a share of the distance to U = W, and tolerance."""
 
 ON_CYCLE = (0.035, 0.0, 0.0, 0.0, 0.035, 1.385)
 """x, y, angle, vx, vy, spin near the largest radius of the modulated cycle."""
@@ -82,7 +80,7 @@ def rates(engine: Engine, lines: Lines = LINES) -> Measured:
         value=real_and_imaginary([one.measured for one in found]),
         error=np.repeat([one.error for one in found], 2).reshape(-1, 2),
         at={"disc": [_place(one) for one in found]},
-        components=("real part", "imaginary part"),
+        components=PARTS,
     )
 
 
@@ -126,31 +124,20 @@ def discs_beside(lines: Lines) -> Iterator[tuple[str, DiscOnDisc]]:
         along = plane.names[1 - plane.names.index(fixed)]
         for crossing in crossings(plane, "Hopf", fixed, value):
             for side in (1.0 - ASIDE, 1.0 + ASIDE):
-                yield name, theory.at(**{fixed: value, along: side * crossing})
+                yield name, at(**{fixed: value, along: side * crossing})
 
 
 def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) -> tuple[complex, float]:
-    """Return the growth rate λ (1/s) of a small deviation in the plane of the slow pair, and its error.
-
-    Half the difference of two motions on either side of the whirl, projected by the left eigenvector in axes that
-    turn with it, grows by exp(λt).
-    """
+    """Return the growth rate λ (1/s) of a small deviation in the plane of the slow pair, and its error."""
     values, vectors = np.linalg.eig(turning_frame_jacobian(disc, whirl.state))
-    which = int(np.argmin(np.abs(values - whirl.eigenvalues[1])))
-    left = np.linalg.inv(vectors)[which]
+    mode = vectors[:, np.argmin(np.abs(values - whirl.eigenvalues[1]))]
     slip = (disc.disc_speed - theory.K) * whirl.radius
     gap = abs(disc.contact_radius * abs(disc.disc_speed - whirl.spin) - slip)
-    deviation = gap / np.max(np.abs(vectors[:, which])) * vectors[:, which].real
-    duration = 1.0 / abs(values[which].imag)  # less than half a period: the logarithm is unique
+    deviation = np.insert(gap / np.max(np.abs(mode)) * mode.real, ANGLE, 0.0)
+    duration = 1.0 / abs(whirl.eigenvalues[1].imag)
 
     def rate(size: float, tolerance: float) -> complex:
-        shift = np.insert(size * deviation, 2, 0.0)
-        ends = [
-            engine.simulate(disc, whirl.state + sign * shift, [0.0, duration], tolerance=tolerance).at_end
-            for sign in (1.0, -1.0)
-        ]
-        end = np.delete(rotated((ends[0] - ends[1]) / 2.0, -whirl.frequency * duration), 2)
-        return complex(np.log((left @ end) / (left @ (size * deviation))) / duration)
+        return mode_growth(engine, disc, whirl, size * deviation, duration, tolerance)
 
     parts, error = refined(lambda tolerance: real_and_imaginary(rate(DEVIATION, tolerance)), FLOW_TOLERANCE)
     found = complex(*parts)
@@ -163,7 +150,7 @@ def pair_of_deviation(engine: Engine, disc: DiscOnDisc, whirl: SpinningWhirl) ->
 @STUDY.claim(
     "In each region of the map, motions end as the map predicts", equation="(19), (20)", basis="reference"
 )
-def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Measured:
+def regions(engine: Engine, starts: Sequence[Start] | None = None) -> Measured:
     starts = starts_in_regions() if starts is None else starts
     ends, measured = theory.ends_of(engine.simulate, starts)
     return replace(measured, data=ends_by_plane(starts, ends))
@@ -175,57 +162,54 @@ def regions(engine: Engine, starts: Sequence[theory.Start] | None = None) -> Mea
     basis="reference",
 )
 def coexist(
-    engine: Engine, starts: Sequence[theory.Start] | None = None, loads: Sequence[float] = LOADS
+    engine: Engine, starts: Sequence[Start] | None = None, loads: Sequence[float] = LOADS
 ) -> Measured:
     """Draw motions at ``loads`` (N) in the bifurcation diagram."""
     _, measured = theory.ends_of(engine.simulate, coexisting() if starts is None else starts)
     return replace(measured, data={"section": long_motions(engine, loads)})
 
 
-def starts_in_regions() -> tuple[theory.Start, ...]:
-    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, theory.DISC.disc_speed)  # turns with the master disc
+def starts_in_regions() -> tuple[Start, ...]:
+    at_rest = (0.0, 0.0, 0.0, 0.0, 0.0, DISC.disc_speed)  # turns with the master disc
     outside = (0.03, 0.0, 0.0, 0.0, 0.03, 1.38)
     near_axis = (1e-3, 0.0, 0.0, 0.0, 1e-3, 1.41)
 
     return (
-        theory.Start(theory.at(friction_force=0.018), outside, "rotation"),
-        theory.Start(theory.at(friction_force=0.0211), near_axis, "whirl", theory.SLOWLY_SETTLED),
-        theory.Start(theory.DISC, near_axis, "modulated cycle"),
-        theory.Start(theory.DISC, outside, "modulated cycle"),
-        theory.Start(theory.at(friction_force=0.028), near_axis, "whirl"),
-        theory.Start(theory.at(friction_force=0.034), outside, "whirl"),
-        theory.Start(theory.at(friction_force=0.034), at_rest, "sticking", 60.0),  # only creep changes it
-        theory.Start(theory.at(shaft_damping=0.011), near_axis, "whirl"),
-        theory.Start(theory.at(shaft_damping=0.02), outside, "rotation"),
-        theory.Start(theory.at(polar_inertia=0.4), outside, "whirl", theory.SLOWLY_SETTLED),
-        theory.Start(theory.at(polar_inertia=2.0), outside, "modulated cycle"),
-        theory.Start(theory.at(damping=0.35), outside, "whirl"),
-        theory.Start(theory.at(damping=0.8), outside, "rotation"),
-        theory.Start(theory.at(shaft_speed=1.15), outside, "rotation"),
-        theory.Start(theory.at(shaft_speed=1.3), near_axis, "whirl"),
+        Start(at(friction_force=0.018), outside, "rotation"),
+        Start(at(friction_force=0.0211), near_axis, "whirl", theory.SLOWLY_SETTLED),
+        Start(DISC, near_axis, "modulated cycle"),
+        Start(DISC, outside, "modulated cycle"),
+        Start(at(friction_force=0.028), near_axis, "whirl"),
+        Start(at(friction_force=0.034), outside, "whirl"),
+        Start(at(friction_force=0.034), at_rest, "sticking", 60.0),  # only creep changes it
+        Start(at(shaft_damping=0.011), near_axis, "whirl"),
+        Start(at(shaft_damping=0.02), outside, "rotation"),
+        Start(at(polar_inertia=0.4), outside, "whirl", theory.SLOWLY_SETTLED),
+        Start(at(polar_inertia=2.0), outside, "modulated cycle"),
+        Start(at(damping=0.35), outside, "whirl"),
+        Start(at(damping=0.8), outside, "rotation"),
+        Start(at(shaft_speed=1.15), outside, "rotation"),
+        Start(at(shaft_speed=1.3), near_axis, "whirl"),
     )
 
 
-def coexisting() -> tuple[theory.Start, ...]:
-    """Return motions outside both Hopf curves: two close to each, from whirl and cycle, and one farther off.
-
-    The cycle coexists with the whirl 0.3 % outside, but not 2 % outside.
-    """
-    lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", theory.DISC.disc_speed)
+def coexisting() -> tuple[Start, ...]:
+    """Return motions 0.3 % outside both Hopf curves, from whirl and cycle, and 2 % outside, where no cycle exists."""
+    lower, upper = crossings(PLANES["load"], "Hopf", "disc_speed", DISC.disc_speed)
     starts = []
     for border, outward, settled in ((lower, -1.0, theory.SLOWLY_SETTLED), (upper, 1.0, theory.SETTLED)):
-        near, far = (theory.at(friction_force=border * (1.0 + outward * share)) for share in (0.003, 0.02))
+        near, far = (at(friction_force=border * (1.0 + outward * share)) for share in (0.003, 0.02))
         (whirl,) = whirls(near)
         beside_whirl = whirl.state * (1.002, 1.0, 1.0, 1.0, 1.002, 1.0)
         starts += [
-            theory.Start(near, tuple(beside_whirl.tolist()), "whirl"),
-            theory.Start(near, ON_CYCLE, "modulated cycle"),
-            theory.Start(far, ON_CYCLE, "whirl", settled),
+            Start(near, tuple(beside_whirl.tolist()), "whirl"),
+            Start(near, ON_CYCLE, "modulated cycle"),
+            Start(far, ON_CYCLE, "whirl", settled),
         ]
     return tuple(starts)
 
 
-def ends_by_plane(starts: Sequence[theory.Start], ends: Sequence[str]) -> Data:
+def ends_by_plane(starts: Sequence[Start], ends: Sequence[str]) -> Data:
     """Return both parameters and the index in ``ENDS`` of each motion, by plane, shape (n, 3)."""
     rows: dict[str, list[tuple[float, float, float]]] = {}
     for name, plane in PLANES.items():
@@ -242,6 +226,6 @@ def long_motions(engine: Engine, loads: Sequence[float]) -> FloatArray:
     for load in loads:
         slow = load in (0.0208, 0.0211)  # disturbances of the stable whirl decay slowly
         duration = theory.SLOWLY_SETTLED if slow else theory.SETTLED
-        start = theory.Start(theory.at(friction_force=load), ON_CYCLE, "", duration)
+        start = Start(at(friction_force=load), ON_CYCLE, "", duration)
         rows.append((load, *theory.kind_of_end(engine.simulate, start)[1:]))
     return np.array(rows)

@@ -60,7 +60,7 @@ def critical_eigenvalues(
 ) -> tuple[ComplexArray, float]:
     """Return the eigenvalues of a whirl except the phase's, critical ones first, and their rounding error (1/s).
 
-    The error includes that of the state: if U and W are nearly equal, friction's slopes depend on their difference.
+    The error includes that of the state, because friction's slopes depend on small differences of U and W.
     """
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
@@ -104,10 +104,7 @@ def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
-    """Return the value where a pair of the whirl crosses the imaginary axis, and its error.
-
-    The value is NaN if no pair crosses within 0.1 % of ``near``.
-    """
+    """Return the value where a pair of the whirl crosses the imaginary axis, NaN if beyond 0.1 %, and its error."""
 
     def crossing_pair(value: float) -> tuple[float, float]:
         disc = at(**{name: value})
@@ -130,11 +127,12 @@ def nearest(values: Sequence[float], to: float) -> list[float]:
 
 
 def curves() -> Data:
-    data: Data = {}
-    for (plane, law, kind), found in traced().items():
-        for i, curve in enumerate(found):
-            data[f"{plane}/{law}/{kind}/{i}"] = np.column_stack((curve.parameters, curve.alpha))
-    return data | section()
+    points = {
+        f"{plane}/{law}/{kind}/{i}": np.column_stack((curve.parameters, curve.alpha))
+        for (plane, law, kind), found in traced().items()
+        for i, curve in enumerate(found)
+    }
+    return points | section()
 
 
 def section() -> Data:
@@ -150,19 +148,17 @@ def section() -> Data:
     return data
 
 
-SETTLED = 600.0
-WATCHED = 350.0
-"""Time until motions have settled, and length of the evaluated end, in s."""
-
-SLOWLY_SETTLED = 2400.0
-"""Settling time (s) just outside the range of a cycle, where disturbances decay at less than 0.01 1/s."""
+SETTLED, WATCHED, SLOWLY_SETTLED = 600.0, 350.0, 2400.0
+"""Time until motions have settled, length of the evaluated end, and settling time just outside the range of a cycle,
+where disturbances decay at less than 0.01 1/s; in s.
+"""
 
 SETTLING_TOLERANCE = 1e-5
 
-AXIS = 1e-3  # largest radius of rotation about the axis, as a share of R
-
-MODULATED = 0.05
-"""Smallest (largest − smallest)/(largest + smallest) radius of a modulated motion."""
+AXIS, MODULATED = 1e-3, 0.05
+"""Largest radius of rotation about the axis as a share of R, and smallest (largest − smallest)/(largest + smallest)
+radius of a modulated motion.
+"""
 
 
 ENDS = ("rotation", "whirl", "modulated cycle", "sticking")
@@ -217,10 +213,8 @@ def ends_of(simulate: Simulate, starts: Sequence[Start]) -> tuple[list[str], Mea
 
 
 def changes(disc: DiscOnDisc) -> str:
-    differing = [
-        f"{name} = {value:.4g}" for name, value in asdict(disc).items() if value != getattr(DISC, name)
-    ]
-    return ", ".join(differing) or "Fig. 11"
+    differing = asdict(disc).items() - asdict(DISC).items()
+    return ", ".join(f"{name} = {value:.4g}" for name, value in sorted(differing)) or "Fig. 11"
 
 
 def border(name: str, unit: str, digits: int = 3) -> str:

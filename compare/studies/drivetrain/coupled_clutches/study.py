@@ -4,56 +4,28 @@ from __future__ import annotations
 
 import functools
 import math
+from typing import Any
 
 import numpy as np
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures, Measured, Study, observed_exponent
 from compare.claims.parameters import at_each
 from compare.engines import Engine, UnsupportedSystemError
-from compare.output.figures import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    Axes,
-    axis,
-    engine_style,
-    engines_in,
-    new_figure,
-)
-from compare.studies.drivetrain.coupled_clutches.theory import (
-    ACCUMULATED,
-    ALL_SLIP_UNTIL,
-    BREAKS,
-    BRISTLES,
-    EPSILONS,
-    INERTIAS,
-    LETS_GO_FROM,
-    PUBLISHED_TOLERANCE,
-    SHOWN,
-    SMALL_EPSILON,
-    SPEED,
-    STEPS,
-    TORQUE,
-    UNTIL,
-    Run,
-    exact,
-    first_and_slips,
-    published,
-    switches,
-    with_bristles,
-    with_our_contact,
-)
+from compare.output.figures import Axes, axis, engine_style, engines_in, new_figure
+from compare.studies.drivetrain.coupled_clutches import theory
+from compare.studies.drivetrain.coupled_clutches.theory import EPSILONS, exact, published, with_our_contact
 from compare.studies.toolkit.torsional_chain import STUCK
 from reference_model.systems import FloatArray
 
+SHOWN, STEPS, INERTIAS = theory.SHOWN, theory.STEPS, theory.INERTIAS
+BRISTLES, SMALL_EPSILON = theory.BRISTLES, theory.SMALL_EPSILON
 ROTORS = tuple(f"speed of rotor {i + 1}" for i in range(len(INERTIAS)))
 FOLLOWED = STEPS[[0, 2]]
 
 EVENTS = tuple(
     f"clutch {clutch + 1} {'sticks' if mode == STUCK else 'releases'} at {time:.4f} s"
-    for time, clutch, mode in switches()
+    for time, clutch, mode in theory.switches()
 )
 OF_ORDER = (
     "Largest error of a speed. Numerical error: scatter about the power law. Model error: the next term."
@@ -61,20 +33,15 @@ OF_ORDER = (
 
 
 def curves() -> Data:
-    t = np.linspace(0.0, UNTIL, 1501)
+    t = np.linspace(0.0, theory.UNTIL, 1501)
     record = published()
-    off = record.speeds - first_and_slips(exact().states(record.times)[1])
+    off = record.speeds - theory.first_and_slips(exact().states(record.times)[1])
     return {"t": t, "speeds": exact().states(t)[1], "published t": record.times, "published": off}
 
 
-STUDY = Study.beside(
-    __file__,
-    "coupled-clutches",
-    source="Modelica.Mechanics.Rotational.Examples.CoupledClutches",
-    only=("exudyn", "exudyn-native"),
-    contact=True,
-    seconds=2.0,
-)
+SOURCE = "Modelica.Mechanics.Rotational.Examples.CoupledClutches"
+ENGINES = ("exudyn", "exudyn-native")
+STUDY = Study.beside(__file__, "coupled-clutches", source=SOURCE, only=ENGINES, contact=True, seconds=2.0)
 
 
 def _speeds(t: FloatArray) -> FloatArray:
@@ -86,21 +53,22 @@ def _is_native(engine: Engine) -> bool:
 
 
 @functools.lru_cache(maxsize=2)
-def _runs(engine: Engine) -> list[Run]:
+def _runs(engine: Engine) -> list[theory.Run]:
     if _is_native(engine):
-        return [with_bristles(*of_one) for of_one in BRISTLES]
+        return [theory.with_bristles(*of_one) for of_one in BRISTLES]
     return [with_our_contact(float(epsilon)) for epsilon in EPSILONS]
 
 
-def _explicit(engine: Engine) -> list[Run]:
+def _explicit(engine: Engine) -> list[theory.Run]:
     _check_has_epsilon(engine)
     return _runs(engine)
 
 
 @functools.lru_cache(maxsize=len(STEPS))
-def _implicit(engine: Engine, step: float) -> Run:
+def _implicit(engine: Engine, step: float) -> theory.Run:
     _check_has_epsilon(engine)
-    return with_our_contact(SMALL_EPSILON, step, until=UNTIL if step in FOLLOWED else ALL_SLIP_UNTIL)
+    until = theory.UNTIL if step in FOLLOWED else theory.ALL_SLIP_UNTIL
+    return with_our_contact(SMALL_EPSILON, step, until=until)
 
 
 def _check_has_epsilon(engine: Engine) -> None:
@@ -134,16 +102,8 @@ def moves(engine: Engine) -> Measured:
         if _is_native(engine)
         else f"add_ring_friction with ε = {EPSILONS[0]:g} m/s, explicit."
     )
-    return Measured(
-        predicted=_speeds(SHOWN),
-        value=found,
-        error=error,
-        components=ROTORS,
-        at={"t in s": SHOWN},
-        note=note,
-        named={"speeds of four rotors": None},
-        data={"run t": runs[0].times, "run off": runs[0].speeds - _speeds(runs[0].times)},
-    )
+    data = {"run t": runs[0].times, "run off": runs[0].speeds - _speeds(runs[0].times)}
+    return _of_speeds(found, error, note=note, named={"speeds of four rotors": None}, data=data)
 
 
 @STUDY.claim(
@@ -153,16 +113,17 @@ def moves(engine: Engine) -> Measured:
     note=f"Times when the slip passes ε = {EPSILONS[0]:g} m/s, nearest to each event. {HALVED}",
 )
 def switches_on_time(engine: Engine) -> Measured:
-    times, error = _finest(
-        [_passings(run, float(epsilon)) for run, epsilon in zip(_explicit(engine), EPSILONS, strict=True)]
+    runs = zip(_explicit(engine), EPSILONS.tolist(), strict=True)
+    times, error = _finest([_passings(run, epsilon) for run, epsilon in runs])
+    return Measured(
+        predicted=[time for time, *_ in theory.switches()], value=times, error=error, components=EVENTS
     )
-    return Measured(predicted=[time for time, *_ in switches()], value=times, error=error, components=EVENTS)
 
 
-def _passings(run: Run, epsilon: float) -> FloatArray:
+def _passings(run: theory.Run, epsilon: float) -> FloatArray:
     """Return for each event the nearest time (s) when the slip passes ``epsilon`` (rad/s), or NaN."""
     found = []
-    for time, clutch, mode in switches():
+    for time, clutch, mode in theory.switches():
         above = (np.abs(run.slips[:, clutch]) - epsilon) * (1.0 if mode == STUCK else -1.0)
         first = np.flatnonzero((above[:-1] > 0.0) & (above[1:] <= 0.0))
         share = above[first] / (above[first] - above[first + 1])
@@ -187,14 +148,15 @@ def _nearest(times: FloatArray, time: float) -> float:
 def momentum(engine: Engine) -> Measured:
     from exudyn_models.solver.breaks import GAP
 
-    gaps = 2.0 * GAP * UNTIL * len({*BREAKS, *SHOWN.tolist()})  # s
+    gaps = 2.0 * GAP * theory.UNTIL * len({*theory.BREAKS, *SHOWN.tolist()})  # s
     runs = _runs(engine)
     found = [float(np.dot(INERTIAS, run.speeds[-1])) for run in runs]
     return Measured(
-        predicted=float(np.dot(INERTIAS, _speeds(np.array([UNTIL]))[0])),
+        predicted=float(np.dot(INERTIAS, _speeds(np.array([theory.UNTIL]))[0])),
         value=found[0],
-        error=8.0 * (float(np.ptp(found)) + np.finfo(float).eps * SPEED * math.sqrt(len(runs[0].times)))
-        + gaps * TORQUE,
+        error=8.0
+        * (float(np.ptp(found)) + np.finfo(float).eps * theory.SPEED * math.sqrt(len(runs[0].times)))
+        + gaps * theory.TORQUE,
     )
 
 
@@ -208,13 +170,12 @@ def momentum(engine: Engine) -> Measured:
 )
 def implicit(engine: Engine) -> Measured:
     fine, coarse = (_implicit(engine, float(step)).at(SHOWN) for step in FOLLOWED)
-    return Measured(
-        predicted=_speeds(SHOWN),
-        value=fine,
-        error=float(np.max(np.abs(fine - coarse))),
-        components=ROTORS,
-        at={"t in s": SHOWN},
-    )
+    return _of_speeds(fine, float(np.max(np.abs(fine - coarse))))
+
+
+def _of_speeds(found: FloatArray, error: float, **more: Any) -> Measured:
+    at = {"t in s": SHOWN}
+    return Measured(predicted=_speeds(SHOWN), value=found, error=error, components=ROTORS, at=at, **more)
 
 
 @STUDY.claim(
@@ -225,7 +186,7 @@ def implicit(engine: Engine) -> Measured:
 )
 def order_in_epsilon(engine: Engine) -> Measured:
     """Measure before the first release, whose delay contains a logarithm of ε."""
-    times = SHOWN[(SHOWN > ALL_SLIP_UNTIL + 0.01) & (SHOWN < LETS_GO_FROM)]
+    times = SHOWN[(SHOWN > theory.ALL_SLIP_UNTIL + 0.01) & (SHOWN < theory.LETS_GO_FROM)]
     return _order(EPSILONS, _explicit(engine), times, predicted=1.0)
 
 
@@ -237,10 +198,10 @@ def order_in_epsilon(engine: Engine) -> Measured:
 )
 def order_in_step(engine: Engine) -> Measured:
     runs = [_implicit(engine, float(step)) for step in STEPS]
-    return _order(STEPS, runs, SHOWN[SHOWN < ALL_SLIP_UNTIL + 0.01], predicted=2.0)
+    return _order(STEPS, runs, SHOWN[SHOWN < theory.ALL_SLIP_UNTIL + 0.01], predicted=2.0)
 
 
-def _order(lengths: FloatArray, runs: list[Run], times: FloatArray, *, predicted: float) -> Measured:
+def _order(lengths: FloatArray, runs: list[theory.Run], times: FloatArray, *, predicted: float) -> Measured:
     errors = np.array([np.max(np.abs(run.at(times) - _speeds(times))) for run in runs])
     exponent, numerical, model = observed_exponent(lengths, errors, next_term=1.0)
     words = ", ".join(f"{error:.3g} rad/s" for error in errors)
@@ -255,13 +216,14 @@ def _order(lengths: FloatArray, runs: list[Run], times: FloatArray, *, predicted
 
 OF_PUBLISHED = (
     "Published by the Modelica Association: Dymola 2020x, DASSL. Numerical error: "
-    f"{ACCUMULATED:g} times its relative tolerance of {PUBLISHED_TOLERANCE:g}, times the largest value of its kind."
+    f"{theory.ACCUMULATED:g} times its relative tolerance of {theory.PUBLISHED_TOLERANCE:g}, times the largest value "
+    "of its kind."
 )
 SLIPS = tuple(f"slip of clutch {i}" for i in range(1, len(INERTIAS)))
 
 
 def _published(values: FloatArray, predicted: FloatArray, components: tuple[str, ...]) -> Measured:
-    allowed = ACCUMULATED * PUBLISHED_TOLERANCE * float(np.max(np.abs(predicted)))
+    allowed = theory.ACCUMULATED * theory.PUBLISHED_TOLERANCE * float(np.max(np.abs(predicted)))
     worst = np.argmax(np.abs(values - predicted), axis=0), np.arange(len(components))
     return Measured(predicted=predicted[worst], value=values[worst], error=allowed, components=components)
 
@@ -276,7 +238,7 @@ def _published(values: FloatArray, predicted: FloatArray, components: tuple[str,
     named={"published speed": 0},
 )
 def published_speeds() -> Measured:
-    predicted = first_and_slips(_speeds(published().times))
+    predicted = theory.first_and_slips(_speeds(published().times))
     return _published(published().speeds, predicted, ("speed of rotor 1", *SLIPS))
 
 
@@ -289,10 +251,9 @@ def published_speeds() -> Measured:
     note=f"Where they differ most. {OF_PUBLISHED}",
 )
 def published_angles() -> Measured:
-    predicted = first_and_slips(exact().states(published().times)[0])
-    return _published(
-        published().angles, predicted, ("angle of rotor 1", *(f"angle of {one}" for one in SLIPS))
-    )
+    predicted = theory.first_and_slips(exact().states(published().times)[0])
+    names = ("angle of rotor 1", *(f"angle of {one}" for one in SLIPS))
+    return _published(published().angles, predicted, names)
 
 
 @STUDY.claim(
@@ -305,10 +266,10 @@ def published_angles() -> Measured:
 def published_switches() -> Measured:
     times, modes = published().times, published().modes
     found = []
-    for time, clutch, mode in switches():
+    for time, clutch, mode in theory.switches():
         begins = (modes[1:, clutch] == mode) & (modes[:-1, clutch] != mode)
         found.append(_nearest(times[1:][begins], time))
-    return _published(np.array([found]), np.array([[time for time, *_ in switches()]]), EVENTS)
+    return _published(np.array([found]), np.array([[time for time, *_ in theory.switches()]]), EVENTS)
 
 
 EXACT = 1e-7
@@ -319,31 +280,26 @@ def draw(data: ByEngine) -> Figures:
     if not data:
         return {}
     figure, (speeds, errors) = new_figure(nrows=2, width=9.0, height=6.4, sharex=True, height_ratios=(3, 2))
-    theory = data.get("theory", {})
-    if "t" in theory:
-        for number, (colour, speed) in enumerate(
-            zip((BLUE, ORANGE, GREEN, PURPLE), theory["speeds"].T, strict=True), 1
-        ):
-            speeds.plot(theory["t"], speed, color=colour, linewidth=1.6, label=f"rotor {number}")
+    exact_motion = data.get("theory", {})
+    if "t" in exact_motion:
+        for number, speed in enumerate(exact_motion["speeds"].T):
+            colour, label = plots.PALETTE[number], f"rotor {number + 1}"
+            speeds.plot(exact_motion["t"], speed, color=colour, linewidth=1.6, label=label)
         speeds.legend(loc="upper right")
-        _error(errors, theory["published t"], theory["published"], "Modelica, as published", GREY)
+        record = exact_motion["published t"], exact_motion["published"]
+        _error(errors, *record, "Modelica, as published", plots.GREY)
     for engine in engines_in(data):
         found = data[engine]
         if "run t" in found:
             _error(errors, found["run t"], found["run off"], engine, engine_style(engine).colour)
-    for time, clutch, mode in switches():
+    for time, clutch, mode in theory.switches():
         for panel in (speeds, errors):
-            panel.axvline(time, color=GREY, linewidth=0.6, linestyle="-" if mode == STUCK else ":")
+            panel.axvline(time, color=plots.GREY, linewidth=0.6, linestyle="-" if mode == STUCK else ":")
         words = f"{clutch + 1} {'sticks' if mode == STUCK else 'releases'}"
         speeds.annotate(words, (time, 10.6), rotation=90, ha="right", va="top", fontsize=8.0, color="0.3")
     speeds.set(ylabel="speed in rad/s", ylim=(-0.3, 10.8))
-    errors.set(
-        xlabel=axis("t", "s"),
-        ylabel="largest speed error\nin rad/s",
-        yscale="log",
-        ylim=(EXACT, 0.1),
-        xlim=(0.0, 1.5),
-    )
+    errors.set(xlabel=axis("t", "s"), xlim=(0.0, 1.5))
+    errors.set(ylabel="largest speed error\nin rad/s", yscale="log", ylim=(EXACT, 0.1))
     if errors.get_legend_handles_labels()[0]:
         errors.legend(loc="upper left", ncols=3, fontsize=9.0)
     return {"coupled-clutches": figure}

@@ -17,11 +17,8 @@ from compare.studies.toolkit.rotors import Rotors
 from compare.studies.toolkit.torsional_chain import Chain, Harmonic, Motion
 from reference_model.systems import FloatArray
 
-INERTIAS = (1.0, 1.0, 1.0, 1.0)
-"""Inertias in kg m²."""
-
-SPEED = 10.0
-"""Initial speed of the first rotor in rad/s; the others rest."""
+INERTIAS, SPEED = (1.0, 1.0, 1.0, 1.0), 10.0
+"""Inertias in kg m², and initial speed of the first rotor in rad/s; the others rest."""
 
 TORQUE, FREQUENCY = 10.0, 5.0
 """Amplitude in N m and frequency in Hz of the torque on the first rotor."""
@@ -32,34 +29,22 @@ RADIUS, COEFFICIENT, STATIC_RATIO, LOAD = 1.0, 0.5, 1.1, 20.0
 OPENS = 0.2
 """Frequency in Hz of the cosine that unloads the first clutch; the load stays 0 after its first root."""
 
-OPEN_FROM = 0.25 / OPENS
-ENGAGED_FROM = (0.4, 0.9)
-"""Times in s when the second and the third clutch receive the whole load at once."""
+OPEN_FROM, ENGAGED_FROM, UNTIL = 0.25 / OPENS, (0.4, 0.9), 1.5
+"""Times in s when the first clutch opens, and the second and third receive the whole load; duration in s."""
 
 BREAKS = (*ENGAGED_FROM, OPEN_FROM)
-UNTIL = 1.5
-"""Duration in s."""
 
 SHOWN = np.array([0.05 * i for i in range(1, 30) if i != 20]).round(2)
 """Times in s, at least 5 ms from any event; a clutch releases 0.3 ms after 1 s."""
 
-EPSILONS = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""ε in m/s, which equals rad/s at the radius of 1 m."""
+EPSILONS, TOLERANCE = 2.5e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-9
+"""Explicit steps: ε in m/s, which equals rad/s at the radius of 1 m, and a tolerance of a millionth of its effect."""
 
-TOLERANCE = 1e-9
-"""For explicit steps in rad/s; a millionth of the effect of the smallest ε."""
+STEPS, SMALL_EPSILON = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0]), 1e-5
+"""Implicit steps in s, and their ε in m/s, whose effect is at most a tenth of that of the shortest step."""
 
-SMALL_EPSILON = 1e-5
-"""ε of implicit runs in m/s; its effect is at most a tenth of that of the shortest step."""
-
-STEPS = 1.25e-4 * np.array([1.0, 2.0, 4.0, 8.0])
-"""Implicit steps in s."""
-
-ALL_SLIP_UNTIL = 0.7
-"""Time in s, one of ``SHOWN``; until then all closed clutches slip."""
-
-LETS_GO_FROM = 0.82
-"""Time in s before the first release; the first and second clutches stick."""
+ALL_SLIP_UNTIL, LETS_GO_FROM = 0.7, 0.82
+"""Times in s: all closed clutches slip until the first, one of ``SHOWN``; the first release is after the second."""
 
 BRISTLES = ((5e-5, 6.25e6), (1e-4, 1.5625e6), (2e-4, 3.90625e5))
 """Step in s and bristle stiffness in N m/rad of Exudyn's own connector; errors double from each to the next.
@@ -70,11 +55,8 @@ The bristle's damping in N m s/rad is twice the root of its stiffness, critical 
 DECAY = 1e-4
 """Range of slip in rad/s where that connector's friction falls from its static to its sliding value."""
 
-PUBLISHED_TOLERANCE = 1e-6
-"""Relative tolerance of DASSL in the published result."""
-
-ACCUMULATED = 10.0
-"""Assumed ratio of the motion's error to the tolerance of a step."""
+PUBLISHED_TOLERANCE, ACCUMULATED = 1e-6, 10.0
+"""Relative tolerance of DASSL in the published result, and assumed ratio of the motion's error to it."""
 
 
 def first_load(time: float) -> float:
@@ -121,13 +103,12 @@ def exact() -> Motion:
 @functools.cache
 def switches() -> list[tuple[float, int, int]]:
     """Return time (s), clutch number and new mode of each event that friction alone causes."""
-    found = [
+    return sorted(
         (time, clutch, mode)
         for clutch in range(len(INERTIAS) - 1)
         for time, mode in exact().switches(clutch)
         if time not in exact().chain.breaks
-    ]
-    return sorted(found)
+    )
 
 
 @dataclass(frozen=True)
@@ -197,10 +178,9 @@ def _rotors() -> Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s).
+    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s), which stops at ``SHOWN``.
 
-    The solver is implicit with a ``step`` (s), otherwise explicit. The run stops at ``SHOWN``, so speeds there
-    need no interpolation.
+    The solver is implicit with a ``step`` (s), otherwise explicit.
     """
     from exudyn_models import add_ring_friction
 
@@ -228,19 +208,19 @@ def with_our_contact(epsilon: float, step: float | None = None, *, until: float 
 def with_bristles(step: float, stiffness: float) -> Run:
     """Return the run with Exudyn's own connector, for a bristle ``stiffness`` (N m/rad) and a ``step`` (s).
 
-    The connector has no input for the load. A function sets its torques before each step, and the resulting slip is
-    of second order in the step. Without load the clutch is switched off, because its bristle would hold on.
+    The connector has no input for the load, so a function sets its torques before each step, an error of second
+    order. Without load the clutch is switched off, because its bristle would hold on.
     """
     rotors = _rotors()
     mbs, items, sliding = rotors.mbs, rotors.items, COEFFICIENT * RADIUS
+    backward = items.NodeGenericData(
+        initialCoordinates=[-sliding * LOAD, 0.0, 0.0], numberOfDataCoordinates=3
+    )
     clutches = []
     for *pair, begins in zip(rotors.nodes, rotors.nodes[1:], (0.0, *ENGAGED_FROM), strict=False):
-        slipping = [-sliding * LOAD, 0.0, 0.0]  # backward
         connector = items.ObjectConnectorCoordinateSpringDamperExt(
             markerNumbers=[rotors.marker(node) for node in pair],
-            nodeNumber=mbs.AddNode(
-                items.NodeGenericData(initialCoordinates=slipping, numberOfDataCoordinates=3)
-            ),
+            nodeNumber=mbs.AddNode(backward),
             stickingStiffness=stiffness,
             stickingDamping=2.0 * math.sqrt(stiffness),
             exponentialDecayStatic=DECAY,

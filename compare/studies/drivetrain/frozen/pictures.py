@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from scipy.linalg import expm
@@ -27,13 +28,10 @@ NO_WHIRL = "#d0d0d0"
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {}
-    if engines_in(data):
-        figures["drivetrain-steady"] = draw_steady(data)
-        figures["drivetrain-modulated"] = draw_modulated(data)
-    if "theory" in data:
-        figures["drivetrain-map"] = draw_maps(data["theory"])
-    return figures
+    maps = {"drivetrain-map": draw_maps(data["theory"])} if "theory" in data else {}
+    if not engines_in(data):
+        return maps
+    return {"drivetrain-steady": draw_steady(data), "drivetrain-modulated": draw_modulated(data)} | maps
 
 
 def draw_steady(data: ByEngine) -> Figure:
@@ -50,21 +48,19 @@ def draw_steady(data: ByEngine) -> Figure:
         place.plot(MM * x, MM * y, **curve("theory", "reference, reduced disc", linewidth=1.2))
         speed, rho, kappa = data["theory"]["whirl"].T
         onset = float(data["theory"]["onset"])
+        style: Any = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points"}
         for panel, values in ((radius, MM * rho), (frequency, kappa / (2.0 * math.pi))):
             panel.plot(speed, values, **curve("theory", "reference, reduced disc", linewidth=1.2))
             panel.axvline(onset, color=GREY, lw=0.8, ls="--")
-            panel.annotate(
-                "onset", (onset, 0.03), (4, 0), xycoords=("data", "axes fraction"), textcoords="offset points"
-            )
+            panel.annotate("onset", (onset, 0.03), (4, 0), **style)
     for engine in engines_in(data):
         style = points(engine, f"{engine}, whole drivetrain", markersize=7.0, markeredgewidth=1.6)
         speed, x, y, _ = data[engine]["rest"].T
         place.plot(MM * x, MM * y, **style)
         labels = ((8, 4, "left"), (-2, -16, "center"), (-2, 8, "center"))
         for turns, where, (right, up, side) in zip(speed, MM * np.column_stack((x, y)), labels, strict=False):
-            place.annotate(
-                f"{turns:.0f} rpm", where, (right, up), textcoords="offset points", ha=side, fontsize=9.5
-            )
+            small: Any = {"textcoords": "offset points", "ha": side, "fontsize": 9.5}
+            place.annotate(f"{turns:.0f} rpm", where, (right, up), **small)
         speed, rho, kappa, _ = data[engine]["whirl"].T
         radius.plot(speed, MM * rho, **style)
         frequency.plot(speed, kappa / (2.0 * math.pi), **style)
@@ -74,10 +70,10 @@ def draw_steady(data: ByEngine) -> Figure:
     frequency.plot(turns, turns / 60.0, color=GREY, lw=0.8, label="flywheel, order 1")
     place.set(xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", title="At rest in space")
     place.set(xlim=(-0.02, 0.23), ylim=(-0.075, 0.125))
-    radius.set(
-        xlabel="engine speed in rpm", ylabel=axis(r"\rho", "mm"), ylim=(0.48, 0.6), title="Whirl: radius"
-    )
-    frequency.set(xlabel="engine speed in rpm", ylabel=axis(r"\kappa/2\pi", "Hz"), title="Whirl: frequency")
+    for panel in (radius, frequency):
+        panel.set(xlabel="engine speed in rpm")
+    radius.set(ylabel=axis(r"\rho", "mm"), ylim=(0.48, 0.6), title="Whirl: radius")
+    frequency.set(ylabel=axis(r"\kappa/2\pi", "Hz"), title="Whirl: frequency")
     place.legend(loc="lower center", fontsize=9.0)
     frequency.legend(loc="upper left", fontsize=9.0)
     return figure
@@ -93,18 +89,14 @@ def draw_maps(theory: Data) -> Figure:
         (left, theory["speeds"], theory["over speed"]),
         (right, theory["surpluses"], theory["over surplus"]),
     ):
-        mesh = panel.pcolormesh(
-            across, torques, values[..., 0], cmap="RdBu_r", norm=norm, shading="nearest", rasterized=True
-        )
+        look: Any = {"cmap": "RdBu_r", "norm": norm, "shading": "nearest", "rasterized": True}
+        mesh = panel.pcolormesh(across, torques, values[..., 0], **look)
         panel.contour(across, torques, values[..., 1], [gap], colors=BLACK, linewidths=1.2)
         panel.set(yscale="log", ylim=(torques[0], torques[-1]), xlim=(across[0], across[-1]))
         panel.patch.set(facecolor=NO_WHIRL, hatch="///", edgecolor="white")
         panel.grid(visible=False)
-    left.set(
-        xlabel="engine speed in rpm",
-        ylabel="torque in N m",
-        title=f"Load {100.0 * SURPLUS:.0f} % more than the torque needs",
-    )
+    left.set(xlabel="engine speed in rpm", ylabel="torque in N m")
+    left.set(title=f"Load {100.0 * SURPLUS:.0f} % more than the torque needs")
     right.set(xscale="log", xlabel="relative surplus of the load", title=f"{SPEED:.0f} rpm")
     for panel, words, where, colour in (
         (left, "no whirl: the clutch locks up", (0.05, 0.62), BLACK),
@@ -132,11 +124,9 @@ def draw_modulated(data: ByEngine) -> Figure:
         times, distance, slipping = data[engine]["modulated"].T
         radius.plot(times, MM * distance, **curve(engine, linestyle="-"))
         slip.plot(times, slipping, **curve(engine, linestyle="-"))
-        on_stop = distance > car.stop_gap
+        shade: Any = {"where": distance > car.stop_gap, "color": GREY, "alpha": 0.25}
         for panel in (radius, slip):
-            panel.fill_between(
-                times, 0.0, 1.0, where=on_stop, transform=panel.get_xaxis_transform(), color=GREY, alpha=0.25
-            )
+            panel.fill_between(times, 0.0, 1.0, transform=panel.get_xaxis_transform(), **shade)
     whirl = whirls_of(car)[0]
     matrix = in_turning_axes(state_matrix_of(car, whirl), whirl.frequency)
     start = PUSH * whirl.radius * np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, whirl.frequency, 0.0])

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.linalg import eig, matrix_balance, norm
 from scipy.optimize import brentq
 
@@ -16,23 +15,9 @@ import compare.studies.drivetrain.frozen.theory as theory
 from compare.claims import COARSENING, WORKING, Measured, Measurement, change_as_error
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.theory import STUDY
+from compare.studies.toolkit import drivetrain_bench as bench
 from compare.studies.toolkit.deviations import remaining_transient
-from compare.studies.toolkit.drivetrain_bench import (
-    BRAKE,
-    RINGS,
-    RPM,
-    Operation,
-    centre,
-    centred_car,
-    facings,
-    natural_frequency,
-    onset_speed,
-    parameters_of,
-    passenger_car,
-    rest_of,
-    start_disc,
-    whirl_of,
-)
+from compare.studies.toolkit.drivetrain_bench import RPM, Operation, centre, centred_car, passenger_car
 from reference_model.steady.stability import jacobian_without_angle
 from reference_model.systems import FloatArray
 
@@ -93,16 +78,16 @@ def reduced_disc_loses_stability() -> Measured:
 
     def matrix(speed: float, slip: float, torque: float) -> FloatArray:
         disc = Operation(speed, slip, torque).reduced(car)
-        return jacobian_without_angle(disc, [0.0] * 5 + [speed - slip], facings(car))
+        return jacobian_without_angle(disc, [0.0] * 5 + [speed - slip], bench.facings(car))
 
     return _onset_of(matrix)
 
 
 def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
     car = centred_car()
-    closed = [onset_speed(car, slip, torque) for torque, slip in theory.CASES]
+    closed = [bench.onset_speed(car, slip, torque) for torque, slip in theory.CASES]
     found = [
-        _onset(partial(matrix, slip=slip, torque=torque), near, natural_frequency(car))
+        _onset(partial(matrix, slip=slip, torque=torque), near, bench.natural_frequency(car))
         for (torque, slip), near in zip(theory.CASES, closed, strict=True)
     ]
     measured, errors = np.transpose(found)
@@ -111,7 +96,7 @@ def _onset_of(matrix: Callable[..., FloatArray]) -> Measured:
         value=measured,
         error=errors,
         at={"torque and slip": IN_WORDS},
-        parameters=parameters_of(car),
+        parameters=bench.parameters_of(car),
     )
 
 
@@ -144,7 +129,7 @@ NOTE = (
 class Steady(NamedTuple):
     """A steady motion on the bench at ``speed`` (rpm), measured and predicted by the reference, shape (3,) each.
 
-    The values are x, y (m) and slip (rad/s), or radius (m), frequency and slip (rad/s) of a whirl.
+    The values are x, y (m), or radius (m) and frequency (rad/s) of a whirl, and the slip (rad/s).
     """
 
     speed: float
@@ -159,13 +144,8 @@ class Steady(NamedTuple):
 )
 def rests(engine: Engine, below: tuple[float, ...] = theory.BELOW) -> Measured:
     motions = _motions(engine, below, whirling=False)
-    return _measured(
-        motions,
-        slice(0, 2),
-        passenger_car().offset,
-        components=("x", "y"),
-        data={"rest": _shown(motions)},
-    )
+    data = {"rest": _shown(motions)}
+    return _measured(motions, slice(0, 2), passenger_car().offset, components=("x", "y"), data=data)
 
 
 @STUDY.claim(
@@ -199,31 +179,17 @@ def slips(
     return _measured(motions, 2, passenger_car().offset)
 
 
-def _measured(
-    motions: Sequence[Steady],
-    place: slice | int,
-    offset: float,
-    *,
-    components: Sequence[str] = (),
-    data: Mapping[str, ArrayLike] | None = None,
-) -> Measured:
+def _measured(motions: Sequence[Steady], place: slice | int, offset: float, **more: Any) -> Measured:
     predicted = np.array([one.predicted.value[place] for one in motions])
+    changed = {"unbalance": 0.0, "offset": offset, "torque": theory.TORQUE, "brake": bench.BRAKE}
     return Measured(
         predicted=predicted,
         value=[one.found.value[place] for one in motions],
         error=np.max([one.found.error[place] + one.predicted.error[place] for one in motions]),
         resolution=1e-7 * float(np.max(np.abs(predicted))),
         at={"speed in rpm": [one.speed for one in motions]},
-        components=components,
-        parameters=parameters_of(
-            passenger_car(),
-            without=("offset",),
-            unbalance=0.0,
-            offset=offset,
-            torque=theory.TORQUE,
-            brake=BRAKE,
-        ),
-        data=data or {},
+        parameters=bench.parameters_of(passenger_car(), without=("offset",), **changed),
+        **more,
     )
 
 
@@ -238,18 +204,18 @@ def _motions(engine: Engine, speeds: tuple[float, ...], whirling: bool) -> tuple
 
 def _motion(speed: float, whirling: bool) -> Steady:
     car = passenger_car()
-    bench = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, 0.0 if whirling else car.offset)
+    point = Operation(speed * RPM, theory.SLIPPING, theory.TORQUE, 0.0 if whirling else car.offset)
 
     def by_reference(rings: int) -> tuple[FloatArray, float]:
         if whirling:
-            whirl = whirl_of(car, bench, rings)
-            values = (whirl.radius, whirl.frequency, bench.speed - whirl.spin)
+            whirl = bench.whirl_of(car, point, rings)
+            values = (whirl.radius, whirl.frequency, point.speed - whirl.spin)
             return np.array(values), -whirl.eigenvalues[1].real
-        rest = rest_of(car, bench, rings)
-        return np.array([rest.x, rest.y, bench.speed - rest.spin]), -rest.eigenvalues[0].real
+        rest = bench.rest_of(car, point, rings)
+        return np.array([rest.x, rest.y, point.speed - rest.spin]), -rest.eigenvalues[0].real
 
-    (values, rate), (finer, _) = by_reference(RINGS), by_reference(theory.FINER)
-    found = _settled(car, bench, rate, whirling=whirling)
+    (values, rate), (finer, _) = by_reference(bench.RINGS), by_reference(theory.FINER)
+    found = _settled(car, point, rate, whirling=whirling)
     return Steady(speed, found, Measurement(values, np.abs(values - finer)))
 
 
@@ -258,7 +224,7 @@ def _settled(car: Drivetrain, operation: Operation, rate: float, *, whirling: bo
 
     def run(tolerance: float) -> tuple[FloatArray, FloatArray]:
         model = operation.build(car)
-        start_disc(model, complex(theory.START if whirling else operation.offset), 0j)
+        bench.start_disc(model, complex(theory.START if whirling else operation.offset), 0j)
         motion = model.run(theory.DECAYS / rate, sample_every=theory.SAMPLE, tolerance=tolerance)
         z, velocity = centre(motion.disc), centre(motion.disc_velocity)
         shape = (np.abs(z), (velocity / z).imag) if whirling else (z.real, z.imag)

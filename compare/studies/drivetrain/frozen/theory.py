@@ -2,8 +2,7 @@
 
 Their five coordinates are x, y and the angle φ of the disc, and the angles θ of the engine and ψ of the vehicle. The
 slip u = (ẋ + θ̇y) + i(ẏ − θ̇x) and the relative spin S = θ̇ − φ̇ are linear in their rates. The transpose of this map
-applies friction to the disc and its reaction, the moment −(M + z×F), to the engine. In axes that turn with the whirl,
-its stability is an eigenvalue problem.
+applies friction to the disc and its reaction, the moment −(M + z×F), to the engine.
 """
 
 from __future__ import annotations
@@ -18,21 +17,8 @@ from scipy.optimize import brentq
 
 from compare.claims import WORKING, Data, Study
 from compare.claims.linearised_flow import ComplexArray
-from compare.studies.toolkit.drivetrain_bench import (
-    EPSILON,
-    RINGS,
-    RPM,
-    SOURCE,
-    Operation,
-    centred_car,
-    facings,
-    natural_frequency,
-    onset_speed,
-    passenger_car,
-    rest_of,
-    start_disc,
-    whirl_of,
-)
+from compare.studies.toolkit import drivetrain_bench as bench
+from compare.studies.toolkit.drivetrain_bench import EPSILON, RINGS, RPM, SOURCE, Operation, facings
 from reference_model import Annulus
 from reference_model.steady.stability import QUARTER_TURN
 from reference_model.support import ROUNDED_UP, Support
@@ -46,10 +32,8 @@ FINER = 24
 """Rings of the reference's annulus instead of 16, to estimate their error."""
 
 CASES = ((80.0, 12.0), (40.0, 12.0), (80.0, 30.0))
-"""Torque in N m and slip in rad/s for each onset."""
-
 TORQUE, SLIPPING = 80.0, 12.0
-"""Torque in N m and slip in rad/s on the bench, similar to the run-up."""
+"""Torque in N m and slip in rad/s for each onset, and on the bench, similar to the run-up."""
 
 BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 """Speeds in rpm below and above the onset."""
@@ -57,11 +41,8 @@ BELOW, ABOVE = (1500.0, 2200.0, 2700.0), (3600.0, 4500.0, 6000.0)
 DECAYS, SEEN = 20.0, 5.0
 """Length of a run in decay times of its slowest mode; the last ``SEEN`` show the remaining transient."""
 
-START = 3e-4
-"""Initial position of a whirl in m, within the play."""
-
-SAMPLE = 5e-4
-"""Sampling interval in s."""
+START, SAMPLE = 3e-4, 5e-4
+"""Initial position of a whirl in m, within the play, and sampling interval in s."""
 
 MODULATED = (6000.0, 0.6, 0.1)
 """Speed in rpm, torque in N m, and relative surplus of the load over the load that this torque needs."""
@@ -75,48 +56,30 @@ BORDER_SURPLUS, BORDER_TORQUES = MODULATED[2], (0.2, 0.8, 1.4)
 BETWEEN = (3900.0, 4300.0)
 """Speeds in rpm below and above the border."""
 
-TIME = 0.4
-"""Duration in s of runs with small deviations."""
+TIME, DEVIATION, TOLERANCE = 0.4, 3e-3, 20 * WORKING
+"""Runs whose difference is taken: duration in s, initial deviation as a share of the radius, and tolerance."""
 
-DEVIATION = 3e-3
-"""Initial deviation as a share of the radius."""
+PUSH, UNTIL, CYCLE_SAMPLE, ROUGHER = 0.2, 6.0, 2e-3, 80.0
+"""Modulated motion: initial deviation as a share of the radius, end and sampling interval in s, and tolerance as a
+multiple of the usual one.
+"""
 
-TOLERANCE = 20 * WORKING
-"""For runs whose difference is taken."""
-
-PUSH, UNTIL = 0.2, 6.0
-"""Modulated motion: initial deviation as a share of the radius, and end in s."""
-
-ROUGHER = 80.0
-"""Its tolerance as a multiple of the usual one."""
-
-CYCLE_SAMPLE = 2e-3
-"""Its sampling interval in s."""
-
-SPEEDS = np.linspace(2900.0, 6500.0, 32)
-"""Speeds in rpm, from just above the natural frequency."""
-
-TORQUES = np.geomspace(0.2, 60.0, 32)
-"""Torques in N m."""
-
+SPEEDS, TORQUES = np.linspace(2900.0, 6500.0, 32), np.geomspace(0.2, 60.0, 32)
 SURPLUSES = np.geomspace(1e-4, 0.2, 32)
-
 SURPLUS, SPEED = 0.1, 6000.0
-"""Surplus in the map of speeds, and speed in rpm in the map of surpluses."""
+"""Speeds in rpm, from just above the natural frequency, torques in N m and surpluses of the maps; surplus in the map
+of speeds, and speed in the map of surpluses.
+"""
 
-
-ENGINE, VEHICLE, ANGLE = 0, 1, 4
-"""Indices of θ, ψ and φ among the coordinates; x and y lie between them."""
-
-CENTRE = slice(2, 4)
+ENGINE, VEHICLE, ANGLE, CENTRE = 0, 1, 4, slice(2, 4)
+"""Indices of θ, ψ, φ, and of x and y, among the coordinates."""
 
 
 @dataclass(frozen=True)
 class CarWhirl:
     """A steady whirl of the clutch disc in a car whose engine and load have constant torques (N m).
 
-    ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with the moment
-    ρ·βκρ of friction.
+    ω, S and κ are in rad/s, ρ in m, and μN of both facings in N. The engine also drives the whirl, with ρ·βκρ.
     """
 
     engine_speed: float
@@ -133,9 +96,8 @@ def whirl_under_surplus(
 ) -> CarWhirl | None:
     """Return the whirl of a clutch whose load exceeds that for ``torque`` by the fraction ``surplus``, or None.
 
-    A centred disc would lock up, but the whirl reduces the friction moment. M(U, S), with the slips U of the centre
-    and S of the rim, equals the torque at one ratio U/S. This ratio determines F, and ρ·β·κ(ρ) = μN·F determines the
-    radius. Then S = (ω − κ)ρ/(U/S).
+    M(U, S), with the slips U of the centre and S of the rim, equals the torque at one ratio U/S. This ratio
+    determines F, and ρ·β·κ(ρ) = μN·F determines the radius. Then S = (ω − κ)ρ/(U/S).
     """
     law, support = facings(car), support_of(car)
     needed = car.friction_radius / (1.0 + surplus)
@@ -147,7 +109,7 @@ def whirl_under_surplus(
     def left(radius: float) -> float:
         return damping * math.sqrt(support.secant(radius) / mass) * radius - drive
 
-    largest = drive / (damping * natural_frequency(car)) * ROUNDED_UP
+    largest = drive / (damping * bench.natural_frequency(car)) * ROUNDED_UP
     radius = float(brentq(left, 0.0, largest, xtol=1e-18, rtol=1e-14))
     frequency = math.sqrt(support.secant(radius) / mass)
     if frequency >= engine_speed:
@@ -225,12 +187,12 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 def curves(every: int = 1) -> Data:
     """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
-    car, centred = passenger_car(), centred_car()
-    onset = onset_speed(car, SLIPPING, TORQUE) / RPM
+    car, centred = bench.passenger_car(), bench.centred_car()
+    onset = bench.onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]
     fast = np.linspace(onset + 5.0, 6200.0, 25)[::every]
-    rests = [rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
-    circles = [whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
+    rests = [bench.rest_of(car, Operation(speed * RPM, SLIPPING, TORQUE, car.offset)) for speed in slow]
+    circles = [bench.whirl_of(car, Operation(speed * RPM, SLIPPING, TORQUE)) for speed in fast]
     speeds, torques, surpluses = SPEEDS[::every], TORQUES[::every], SURPLUSES[::every]
     return {
         "onset": np.array(onset),
@@ -269,20 +231,11 @@ def build(
         shaft_torque=whirl.torque,
     )
     scale = 1.0 + deviation
-    start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
+    bench.start_disc(model, complex(scale * whirl.radius), scale * (1j * whirl.frequency * whirl.radius))
     return model
 
 
-STUDY = Study.beside(
-    __file__,
-    "drivetrain-frozen",
-    words={
-        "surplus": f"{100.0 * BORDER_SURPLUS:g}",
-        "low": f"{BORDER_TORQUES[0]:g}",
-        "high": f"{BORDER_TORQUES[-1]:g}",
-    },
-    source=SOURCE,
-    only=("exudyn",),
-    seconds=4.0,
-)
+LOW, *_, HIGH = (f"{torque:g}" for torque in BORDER_TORQUES)
+WORDS = {"surplus": f"{100.0 * BORDER_SURPLUS:g}", "low": LOW, "high": HIGH}
+STUDY = Study.beside(__file__, "drivetrain-frozen", words=WORDS, source=SOURCE, only=("exudyn",), seconds=4.0)
 STUDY.provides(curves=curves)

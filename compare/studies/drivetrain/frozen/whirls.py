@@ -1,7 +1,6 @@
 """The modulated whirl of the clutch disc: eigenvalues, growth and the resulting cycle.
 
-A whirl reduces the friction moment, so a clutch may slip under a load larger than its torque needs. Slip and radius
-of this whirl oscillate together; the map shows where the oscillation grows.
+A whirl reduces the friction moment, so a clutch may slip under a load larger than its torque needs.
 """
 
 from __future__ import annotations
@@ -21,14 +20,10 @@ from compare.claims import COARSENING, ROUNDING, WORKING, Measured, refined
 from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, real_and_imaginary
 from compare.engines import Engine
 from compare.studies.drivetrain.frozen.theory import STUDY, build
-from compare.studies.toolkit.drivetrain_bench import (
-    RINGS,
-    RPM,
-    balance_of,
-    centre,
-    centred_car,
-    parameters_of,
-)
+from compare.studies.toolkit import drivetrain_bench as bench
+from compare.studies.toolkit.deviations import PARTS
+from compare.studies.toolkit.drivetrain_bench import RINGS, RPM, centre, centred_car, parameters_of
+from compare.studies.toolkit.measuring import compared
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -72,7 +67,7 @@ def linearised(engine: Engine) -> Measured:
         value=real_and_imaginary(found),
         error=max(errors) + ROUNDING * scale,
         at={"whirl": whirls, "eigenvalue": range(1, 7)},
-        components=("real part", "imaginary part"),
+        components=PARTS,
         parameters=parameters_of(car),
     )
 
@@ -148,17 +143,20 @@ def growth(engine: Engine) -> Measured:
     found = refined(
         lambda tolerance: real_and_imaginary(grown(theory.DEVIATION, tolerance)), theory.TOLERANCE
     )
-    return Measured(
-        predicted=real_and_imaginary(predicted),
-        value=found.value,
-        error=np.hypot(*found.error)
-        + abs(grown(2.0 * theory.DEVIATION, theory.TOLERANCE) - complex(*found.value)),
+    wide = abs(grown(2.0 * theory.DEVIATION, theory.TOLERANCE) - complex(*found.value))
+    return compared(
+        real_and_imaginary(predicted),
+        found,
+        error=np.hypot(*found.error) + wide,
         resolution=1e-3 * abs(predicted),
-        components=("real part", "imaginary part"),
-        parameters=parameters_of(
-            car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]
-        ),
+        components=PARTS,
+        parameters=_parameters(car, whirl),
     )
+
+
+def _parameters(car: Drivetrain, whirl: theory.CarWhirl) -> dict[str, float | str]:
+    speed, _, surplus = theory.MODULATED
+    return parameters_of(car, speed=speed, torque=whirl.torque, surplus=surplus)
 
 
 def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, tolerance: float) -> FloatArray:
@@ -168,13 +166,10 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
     )
     turn = np.exp(-1j * whirl.frequency * motion.times)
     z, velocity = turn * centre(motion.disc), turn * centre(motion.disc_velocity)
-    twist = motion.disc[:, 2] - motion.vehicle_angle
-    return np.column_stack(
-        (
-            *(z.real, z.imag, twist, motion.engine_speed, motion.vehicle_speed),
-            *(velocity.real, velocity.imag, motion.disc_velocity[:, 2]),
-        )
-    )[[0, -1]]
+    place = z.real, z.imag, motion.disc[:, 2] - motion.vehicle_angle
+    spins = motion.engine_speed, motion.vehicle_speed
+    rates = *spins, velocity.real, velocity.imag, motion.disc_velocity[:, 2]
+    return np.column_stack((*place, *rates))[[0, -1]]
 
 
 @STUDY.claim(
@@ -186,16 +181,11 @@ def _deviations(car: Drivetrain, whirl: theory.CarWhirl, deviation: float, toler
 def balance(engine: Engine, until: float = theory.UNTIL) -> Measured:
     car = centred_car()
     whirl = theory.whirls_of(car)[0]
-    motions = [
-        build(car, whirl, deviation=theory.PUSH).run(
-            until, sample_every=theory.CYCLE_SAMPLE, tolerance=tolerance
-        )
-        for tolerance in (theory.ROUGHER * WORKING, theory.ROUGHER * WORKING / COARSENING)
-    ]
-    measured = balance_of(
-        [motion.energy for motion in motions],
-        parameters_of(car, speed=theory.MODULATED[0], torque=whirl.torque, surplus=theory.MODULATED[2]),
+    every, roughest = theory.CYCLE_SAMPLE, theory.ROUGHER * WORKING
+    motion, finer = (
+        build(car, whirl, deviation=theory.PUSH).run(until, sample_every=every, tolerance=tolerance)
+        for tolerance in (roughest, roughest / COARSENING)
     )
-    motion = motions[0]
+    measured = bench.balance_of([motion.energy, finer.energy], _parameters(car, whirl))
     shown = np.column_stack((motion.times, np.abs(centre(motion.disc)), motion.slip))
     return replace(measured, data={"modulated": shown})

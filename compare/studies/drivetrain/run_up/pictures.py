@@ -8,20 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import (
-    BLACK,
-    BLUE,
-    GREY,
-    ORANGE,
-    Axes,
-    Figure,
-    axis,
-    curve,
-    engine_style,
-    engines_in,
-    new_figure,
-)
+from compare.output.figures import Figure, axis, curve, engine_style, engines_in, new_figure
 from compare.report.animation import gif
 from compare.studies.drivetrain.run_up.study import order_spectrum
 from compare.studies.toolkit.drivetrain_bench import RPM, centre, natural_frequency, passenger_car
@@ -31,32 +20,21 @@ MM = 1e3
 
 CYAN = "#58e0ff"
 
-OPEN = 0.7
-"""Angle in rad that turns the cut of the cover towards the viewer."""
+SHOWN, ENLARGED, OPEN = (2000.0, 3100.0, 5000.0), 50.0, 0.7
+"""Speeds in rpm, magnification of radial motion, and angle in rad that turns the cut of the cover to the viewer."""
 
-ENLARGED = 50.0
-"""Magnification of radial motion."""
-
-SHOWN = (2000.0, 3100.0, 5000.0)
-"""Speeds in rpm."""
-
-FRAMES = 15
-"""Frames of each slow motion."""
-
-SIZE = (330, 280)
-"""Size in pixels."""
-
-STEP = math.radians(48.0)
-"""Rotation of the engine per frame in rad."""
+FRAMES, SIZE, STEP = 15, (330, 280), math.radians(48.0)
+"""Slow motions: number of frames, size in pixels, and rotation of the engine per frame in rad."""
 
 
 def draw(data: ByEngine) -> Figures:
-    figures: dict[str, Figure] = {}
-    if engines_in(data):
-        figures["drivetrain-run-up"] = draw_run_up(data)
-        figures["drivetrain-waterfall"] = draw_waterfall(data)
-        figures["drivetrain-picture"] = draw_pictures(data)
-    return figures
+    if not engines_in(data):
+        return {}
+    return {
+        "drivetrain-run-up": draw_run_up(data),
+        "drivetrain-waterfall": draw_waterfall(data),
+        "drivetrain-picture": draw_pictures(data),
+    }
 
 
 def draw_run_up(data: ByEngine) -> Figure:
@@ -64,19 +42,10 @@ def draw_run_up(data: ByEngine) -> Figure:
     car = passenger_car()
     for engine in engines_in(data):
         found = data[engine]
-        colour = engine_style(engine).colour
-        speed, least, largest = envelope(found, np.abs(centre(found["disc"])))
-        radius.fill_between(
-            speed,
-            MM * least,
-            MM * largest,
-            color=colour,
-            alpha=0.35,
-            lw=0.0,
-            label=f"{engine}: smallest to largest",
-        )
-        speed, least, largest = envelope(found, found["slip"])
-        slip.fill_between(speed, least, largest, color=colour, alpha=0.5, lw=0.0)
+        style: dict[str, Any] = {"color": engine_style(engine).colour, "lw": 0.0}
+        band = envelope(found, MM * np.abs(centre(found["disc"])))
+        radius.fill_between(*band, alpha=0.35, label=f"{engine}: smallest to largest", **style)
+        slip.fill_between(*envelope(found, found["slip"]), alpha=0.5, **style)
     if "theory" in data:
         theory = data["theory"]
         speed, rest = theory["rest"].T
@@ -85,14 +54,15 @@ def draw_run_up(data: ByEngine) -> Figure:
             swing = np.abs(rest + sign * theory["unbalance"])
             radius.plot(speed / RPM, MM * swing, **curve("theory", label, linestyle="--"))
         speed, whirl, _ = theory["whirl"].T
-        radius.plot(speed / RPM, MM * whirl, **curve("theory", "reference: whirl", color=BLUE, linewidth=1.6))
+        look = curve("theory", "reference: whirl", color=plots.BLUE, linewidth=1.6)
+        radius.plot(speed / RPM, MM * whirl, **look)
         for sign, label in ((1.0, "shifted by the offset"), (-1.0, "_")):
-            look = curve("theory", label, color=BLUE, linestyle="--")
+            look = curve("theory", label, color=plots.BLUE, linestyle="--")
             radius.plot(speed / RPM, MM * (whirl + sign * car.offset), **look)
         onset, k = theory["onset"] / RPM
         for panel in (radius, slip):
-            panel.axvline(k, color=GREY, lw=0.8, ls=":")
-            panel.axvline(onset, color=GREY, lw=0.8, ls="--")
+            panel.axvline(k, color=plots.GREY, lw=0.8, ls=":")
+            panel.axvline(onset, color=plots.GREY, lw=0.8, ls="--")
         radius.annotate("$k$", (k, 0.9), (-3, 0), ha="right", textcoords="offset points")
         radius.annotate("onset", (onset, 0.9), (3, 0), textcoords="offset points")
     radius.set(ylabel="distance of the disc's centre\nfrom the engine's axis in mm", ylim=(0.0, 0.96))
@@ -116,16 +86,9 @@ def draw_waterfall(data: ByEngine) -> Figure:
     speed, orders, amplitude = order_spectrum(data[engine])
     level = 20.0 * np.log10(np.maximum(amplitude, 1e-9) / 1e-6)
     frequency = orders[:, np.newaxis] * speed / (2.0 * math.pi)
-    mesh = panel.pcolormesh(
-        np.broadcast_to(speed / RPM, frequency.shape),
-        frequency,
-        level,
-        cmap="magma",
-        vmin=0.0,
-        vmax=58.0,
-        shading="gouraud",
-        rasterized=True,
-    )
+    places = np.broadcast_to(speed / RPM, frequency.shape), frequency
+    shades: dict[str, Any] = {"cmap": "magma", "vmin": 0.0, "vmax": 58.0, "shading": "gouraud"}
+    mesh = panel.pcolormesh(*places, level, rasterized=True, **shades)
     figure.colorbar(mesh, label="amplitude in dB over 1 μm")
     across = np.array([speed[0], speed[-1]]) / RPM
     own = natural_frequency(passenger_car()) / (2.0 * math.pi)
@@ -145,12 +108,8 @@ def draw_waterfall(data: ByEngine) -> Figure:
         lines.append(("whirl of the reference", (3000.0, 75.0), CYAN))
     for words, where, colour in lines:
         panel.annotate(words, where, color=colour)
-    panel.set(
-        xlabel="engine speed in rpm",
-        ylabel="frequency in Hz (negative: backwards)",
-        xlim=across,
-        ylim=(-130.0, 200.0),
-    )
+    panel.set(xlabel="engine speed in rpm", xlim=across)
+    panel.set(ylabel="frequency in Hz (negative: backwards)", ylim=(-130.0, 200.0))
     panel.grid(visible=False)
     return figure
 
@@ -160,19 +119,13 @@ def draw_pictures(data: ByEngine) -> Figure:
 
     found = data[engines_in(data)[0]]
     figure, panels = new_figure(ncols=len(SHOWN), width=11.0, height=3.4)
+    look: dict[str, Any] = {"engine_angle": OPEN, "magnification": ENLARGED, "size": (660, 560)}
     for panel, turns in zip(panels, SHOWN, strict=True):
         _, disc = motion_at(found, time_of(found, turns))
-        image = draw_drivetrain(
-            passenger_car(), engine_angle=OPEN, disc=disc, magnification=ENLARGED, size=(660, 560)
-        )
-        show(panel, image, f"{turns:.0f} rpm")
+        panel.imshow(draw_drivetrain(passenger_car(), disc=disc, **look))
+        panel.set_axis_off()
+        panel.set_title(f"{turns:.0f} rpm", loc="center")
     return figure
-
-
-def show(panel: Axes, image: Any, title: str) -> None:
-    panel.imshow(image)
-    panel.set_axis_off()
-    panel.set_title(title, loc="center")
 
 
 def time_of(found: Data, turns: float) -> float:
@@ -201,14 +154,13 @@ def animations(data: ByEngine) -> dict[str, bytes]:
     around = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
     x0 = MM * car.offset
     stop = x0 + MM * car.stop_gap * around
-    orbit.plot(stop.real, stop.imag, color=GREY, lw=0.8, label="play")
-    orbit.plot([0.0], [0.0], "+", color=BLACK, markersize=9.0, label="engine's axis")
-    orbit.plot([x0], [0.0], "x", color=GREY, markersize=7.0, label="shaft's axis")
-    (trail,) = orbit.plot([], [], color=ORANGE, lw=1.2)
-    (dot,) = orbit.plot([], [], "o", color=ORANGE, markersize=6.0)
-    orbit.set(
-        xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", xlim=(-0.75, 0.95), ylim=(-0.85, 0.85)
-    )
+    orbit.plot(stop.real, stop.imag, color=plots.GREY, lw=0.8, label="play")
+    orbit.plot([0.0], [0.0], "+", color=plots.BLACK, markersize=9.0, label="engine's axis")
+    orbit.plot([x0], [0.0], "x", color=plots.GREY, markersize=7.0, label="shaft's axis")
+    (trail,) = orbit.plot([], [], color=plots.ORANGE, lw=1.2)
+    (dot,) = orbit.plot([], [], "o", color=plots.ORANGE, markersize=6.0)
+    orbit.set(xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal")
+    orbit.set(xlim=(-0.75, 0.95), ylim=(-0.85, 0.85))
     orbit.legend(loc="lower center", ncols=3, fontsize=8.0, handlelength=1.0, columnspacing=0.8)
     stages = [(turns, time_of(found, turns)) for turns in SHOWN]
     image = picture.imshow(np.full((*SIZE[::-1], 3), 255, dtype=np.uint8))
@@ -226,8 +178,5 @@ def animations(data: ByEngine) -> dict[str, bytes]:
         trail.set_data(z.real, z.imag)
         dot.set_data([z[-1].real], [z[-1].imag])
 
-    return {
-        "drivetrain-turning": gif(
-            figure, update, FRAMES * len(SHOWN), moving=(image, title, trail, dot), fps=12.0
-        )
-    }
+    moving = (image, title, trail, dot)
+    return {"drivetrain-turning": gif(figure, update, FRAMES * len(SHOWN), moving=moving, fps=12.0)}

@@ -12,44 +12,25 @@ from scipy.interpolate import CubicSpline
 
 from compare.claims import COARSENING, Data, Measured, Study, change_as_error
 from compare.engines import Engine
-from compare.studies.toolkit.drivetrain_bench import (
-    EPSILON,
-    RPM,
-    SOURCE,
-    Operation,
-    balance_of,
-    centre,
-    natural_frequency,
-    onset_speed,
-    parameters_of,
-    passenger_car,
-    rest_of,
-    rotating_damping,
-    whirl_of,
-)
+from compare.studies.toolkit import drivetrain_bench as bench
+from compare.studies.toolkit.drivetrain_bench import RPM, SOURCE, Operation, natural_frequency, passenger_car
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from exudyn_models import Drivetrain
     from exudyn_models.drivetrain.model import DrivetrainMotion
 
-IDLE, TOP = 800.0, 6000.0
-"""Speeds in rpm."""
-
-TORQUE, RIPPLE = 100.0, 1.0
-"""Mean torque of the engine in N m, and amplitude of its firing order over the mean."""
+IDLE, TOP, TORQUE, RIPPLE = 800.0, 6000.0, 100.0, 1.0
+"""Speeds in rpm, mean torque of the engine in N m, and amplitude of its firing order relative to the mean."""
 
 SLIP, GAIN = 12.0, 0.05
 """Target slip in rad/s, and relative increase of the load per rad/s of excess slip."""
 
-TOLERANCE = 6.4e-6
-"""Gives the energy balance an error of 2.5e-7; the claim allows 1e-6."""
+TOLERANCE, SAMPLE = 6.4e-6, 5e-4
+"""Tolerance, which gives the energy balance an error of 2.5e-7, and sampling interval in s."""
 
 LINES_APART = 0.06
 """Smallest distance of the lines of unbalance and whirl above the onset, in orders of the engine."""
-
-SAMPLE = 5e-4
-"""Sampling interval in s; 20 samples per turn at 6000 rpm."""
 
 TURNS, SAMPLES = 36, 16
 """Window of the spectrum in turns of the engine, and samples per turn."""
@@ -74,17 +55,17 @@ def transmitted(car: Drivetrain) -> float:
 def whirls_above_onset(car: Drivetrain) -> FloatArray:
     """Return speed (rad/s), radius (m) and frequency (rad/s) of the whirl, shape (30, 3)."""
     torque = transmitted(car)
-    speeds = np.linspace(onset_speed(car, SLIP, torque), TOP * RPM, 31)[1:]
-    circles = [whirl_of(car, Operation(speed, SLIP, torque)) for speed in speeds]
+    speeds = np.linspace(bench.onset_speed(car, SLIP, torque), TOP * RPM, 31)[1:]
+    circles = [bench.whirl_of(car, Operation(speed, SLIP, torque)) for speed in speeds]
     return np.array([(s, each.radius, each.frequency) for s, each in zip(speeds, circles, strict=True)])
 
 
 def curves(count: int = 120) -> Data:
     car = passenger_car()
     k, torque = natural_frequency(car), transmitted(car)
-    onset, damping = onset_speed(car, SLIP, torque), rotating_damping(car, SLIP, torque)
+    onset, damping = bench.onset_speed(car, SLIP, torque), bench.rotating_damping(car, SLIP, torque)
     slow = np.linspace(IDLE * RPM, onset, count + 1)[:-1]
-    rests = [rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
+    rests = [bench.rest_of(car, Operation(speed, SLIP, torque, car.offset)) for speed in slow]
     # Small motions with unbalance, at the disc's own speed s: mz̈ + (β + D)ż + (C − iωD)z = m·e·s²·exp(ist)
     own = slow - SLIP
     dynamic = car.radial_stiffness - car.disc_mass * own**2
@@ -109,7 +90,7 @@ def run(car: Drivetrain, tolerance: float, top: float = TOP) -> DrivetrainMotion
     model = build_drivetrain(
         car,
         normal_load=needed,
-        regularisation=EPSILON,
+        regularisation=bench.EPSILON,
         engine_speed=IDLE * RPM,
         gearbox_speed=IDLE * RPM - SLIP,
         engine_torque=four_cylinder(TORQUE, RIPPLE),
@@ -128,12 +109,12 @@ HOP = 2 * SAMPLES
 def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return speeds (rad/s, shape (m,)), orders (n,) and amplitudes of x + iy (m, shape (n, m)).
 
-    Samples at equal angles of the engine keep an order constant although the speed increases.
+    Samples at equal angles of the engine keep an order constant.
     """
     angle, speed = found["engine"].T
     even = np.arange(angle[0], angle[-1], 2.0 * math.pi / SAMPLES)
     times = np.interp(even, angle, found["times"])
-    z = CubicSpline(found["times"], centre(found["disc"]))(times)
+    z = CubicSpline(found["times"], bench.centre(found["disc"]))(times)
     window = np.hanning(TURNS * SAMPLES)
     # scipy.signal contains such a transform, but its import takes longer than the transform of a run-up.
     first = -(-(len(window) // 2) // HOP) * HOP  # the first middle whose window lies within the run-up
@@ -149,8 +130,7 @@ def order_spectrum(found: Data) -> tuple[FloatArray, FloatArray, FloatArray]:
 def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     """Return the speed (rad/s) and the order of the strongest forward line in each window, shape (m,) each.
 
-    Orders below one half are excluded, so a disc almost at rest does not count. A parabola locates the maximum
-    between the lines.
+    Orders below one half are excluded, so a disc almost at rest does not count.
     """
     speed, orders, amplitude = order_spectrum(found)
     first = int(np.searchsorted(orders, 0.5))
@@ -159,14 +139,8 @@ def strongest_line(found: Data) -> tuple[FloatArray, FloatArray]:
     return speed, orders[top] + (orders[1] - orders[0]) * 0.5 * (low - high) / (low - 2.0 * middle + high)
 
 
-STUDY = Study.beside(
-    __file__,
-    "drivetrain-run-up",
-    words={"turns": str(TURNS)},
-    source=SOURCE,
-    only=("exudyn",),
-    seconds=5.0,
-)
+WORDS = {"turns": str(TURNS)}
+STUDY = Study.beside(__file__, "drivetrain-run-up", words=WORDS, source=SOURCE, only=("exudyn",), seconds=5.0)
 STUDY.provides(curves=curves)
 
 
@@ -186,7 +160,7 @@ def _shown(motion: DrivetrainMotion) -> Data:
 
 
 def _parameters() -> dict[str, float | str]:
-    return parameters_of(passenger_car(), torque=TORQUE, ripple=RIPPLE, slip=SLIP, gain=GAIN)
+    return bench.parameters_of(passenger_car(), torque=TORQUE, ripple=RIPPLE, slip=SLIP, gain=GAIN)
 
 
 @STUDY.claim(
@@ -197,7 +171,7 @@ def _parameters() -> dict[str, float | str]:
 )
 def balance(engine: Engine, top: float = TOP) -> Measured:
     motions = _run_ups(engine, top)
-    measured = balance_of([motion.energy for motion in motions], _parameters())
+    measured = bench.balance_of([motion.energy for motion in motions], _parameters())
     return replace(measured, data=_shown(motions[0]))
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from compare.claims import ByEngine, Figures
@@ -47,16 +49,8 @@ def draw(data: ByEngine) -> Figures:
     value, low, high = found["whirl"].T
     # No line, because the share between two speeds is unknown.
     bars = np.abs([value - low, high - value])
-    share.errorbar(
-        found["speeds"],
-        value,
-        bars,
-        color=GREEN,
-        fmt="o",
-        markersize=3.5,
-        capsize=2.5,
-        label="whirl, 95 % interval",
-    )
+    style: dict[str, Any] = {"color": GREEN, "markersize": 3.5, "label": "whirl, 95 % interval"}
+    share.errorbar(found["speeds"], value, bars, fmt="o", capsize=2.5, **style)
     share.set(xlabel=axis(r"\omega", "rad/s"), ylabel="share of the starts", ylim=(-0.02, 1.02))
     share.legend(loc="lower right")
     return {"basins": figure}

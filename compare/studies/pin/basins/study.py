@@ -10,17 +10,13 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from compare.claims import TIGHTEST, WORKING, Data, Measured, Study, answers_of, asked, known, refined
-from compare.claims.parameters import FIG5
+from compare.claims.parameters import FIG5, components_of
 from compare.claims.shares import Ends, mixed, of_grid, of_sample
 from compare.engines import Engine
-from reference_model import (
-    StickSlipOrbit,
-    basin_boundary,
-    self_centred_equilibria,
-    simulate,
-    stick_slip_orbits,
-)
+from compare.studies.toolkit.measuring import compared
+from reference_model import StickSlipOrbit, basin_boundary, simulate, stick_slip_orbits
 from reference_model.ensemble import EndState, Ensemble, simulate_ensemble
+from reference_model.formulas.pin import equilibrium_position
 from reference_model.orbits.basin_boundary import Separatrix
 from reference_model.orbits.release_map import Release, ReleaseMap
 from reference_model.systems import FloatArray, PinOnDisc
@@ -48,9 +44,10 @@ ASKED, BARELY = 64, 1e-6
 UNTIL = 3000.0  # duration in s
 SPEEDS = tuple(np.linspace(1.05, FASTEST.disc_speed, 20).tolist())  # disc speeds in rad/s
 STARTS, SEED = 2000, 5  # random starts, the same at every speed
-RECOMPUTED = 16  # starts for the plain reference, half of them near the boundary
-SETTLED = 250.0  # duration in s until these starts have reached one of the two ends
 STEP = 5e-3  # distance (rad) of neighbouring releases, whose differences give the multiplier
+
+RECOMPUTED, SETTLED = 16, 250.0
+"""Starts for the plain reference, half of them near the boundary, and duration in s until their ends."""
 
 PLACES, ASIDE = 4, 5e-3
 """Starts on the boundary, and distance of simulated starts from it in m and m/s."""
@@ -66,9 +63,8 @@ def curves(
     side: int = SIDE, cells: int = CELLS, speeds: tuple[float, ...] = SPEEDS, starts: int = STARTS
 ) -> Data:
     orbit = saddle(FIG5).trajectory
-    held = np.zeros(len(orbit.times))
-    for begin, end in orbit.stick_times.reshape(-1, 2):
-        held[(orbit.times >= begin) & (orbit.times <= end)] = 1.0
+    begins, ends = orbit.stick_times.reshape(-1, 2, 1).swapaxes(0, 1)
+    held = np.any((orbit.times >= begins) & (orbit.times <= ends), axis=0).astype(float)
     return {
         "ends": ends_on_grid(FIG5, side).astype(float),
         "curve": smooth(boundary(FIG5, cells)),
@@ -112,8 +108,7 @@ def enclosed(curve: FloatArray) -> float:
 
 def beyond_equilibrium(state: FloatArray) -> float:
     """Return the distance (m) of a state from the equilibrium minus X0; it is positive on the whirl."""
-    (rest,) = self_centred_equilibria(FIG5)
-    return math.hypot(state[0] - rest.x, state[1] - rest.y) - abs(FIG5.offset)
+    return math.dist(state[:2], equilibrium_position(FIG5)) - abs(FIG5.offset)
 
 
 def starts_at(x: FloatArray, vx: FloatArray) -> FloatArray:
@@ -138,7 +133,7 @@ def ends_on_grid(pin: PinOnDisc, side: int) -> Ends:
 def ends_on_finer_grid(pin: PinOnDisc, side: int) -> Ends:
     """Return the ends on a grid ``FINER`` times as dense, shape (n, n), n = FINER·(side − 1) + 1.
 
-    Only starts in cells whose corners have different ends are simulated. All others get the end of their cell.
+    Only starts in cells whose corners have different ends are simulated.
     """
     coarse = ends_on_grid(pin, side)
     cell = np.arange(FINER * (side - 1) + 1) // FINER
@@ -168,14 +163,8 @@ def shares_over_speed(speeds: tuple[float, ...], starts: int) -> dict[EndState, 
     return {end: np.array([row[end] for row in rows]) for end in EndState}
 
 
-STUDY = Study.beside(
-    __file__,
-    "basins",
-    words={"rectangle": RECTANGLE, "side": f"{SIDE}"},
-    source="Fig. 5",
-    system=FIG5,
-    seconds=4.5,
-)
+WORDS = {"rectangle": RECTANGLE, "side": f"{SIDE}"}
+STUDY = Study.beside(__file__, "basins", words=WORDS, source="Fig. 5", system=FIG5, seconds=4.5)
 
 
 @STUDY.claim(
@@ -190,11 +179,11 @@ def closes(engine: Engine) -> Measured:
     found = refined(
         lambda tolerance: engine.simulate(FIG5, orbit.state, [0.0, orbit.period], tolerance=tolerance).at_end
     )
-    return Measured(
-        predicted=orbit.state,
-        value=found.value,
+    return compared(
+        orbit.state,
+        found,
         error=found.largest,
-        components=("x in m", "y in m", "vx in m/s", "vy in m/s"),
+        components=components_of(FIG5),
         note=f"Found by the map from release to release: period {orbit.period:.7g} s including "
         f"{orbit.stick_time:.5g} s of stick; multipliers "
         f"{', '.join(f'{abs(value):.5g}' for value in orbit.multipliers)}.",
@@ -236,9 +225,9 @@ def returns(engine: Engine) -> Measured:
     found = refined(one_turn)
     # The change is 15 times the error: twice the step multiplies an error of fourth order by 16.
     bent = abs(multiplier(2.0 * STEP, WORKING) - found.value[2]) / 7.5
-    return Measured(
-        predicted=(orbit.period, orbit.stick_time, orbit.multiplier),
-        value=found.value,
+    return compared(
+        (orbit.period, orbit.stick_time, orbit.multiplier),
+        found,
         error=known(found.value, found.plus(np.array([0.0, 0.0, bent])).error),
         components=("period in s", "stick time in s", "multiplier in 1"),
     )
@@ -335,15 +324,9 @@ def recomputes(count: int = RECOMPUTED, starts: int = STARTS, cells: int = CELLS
     near = curve[random.integers(len(curve), size=count // 2)]
     near = near + random.uniform(-ASIDE, ASIDE, (count // 2, 2))
     chosen = starts_at(*np.concatenate((places[: count // 2], near)).T)
-    found = ensemble_of(chosen).end
-    return answers_of(
-        [
-            (beyond_equilibrium(simulate(FIG5, start, [0.0, SETTLED]).at_end) > 0.0)
-            == (end == EndState.WHIRL)
-            for start, end in zip(chosen, found, strict=True)
-        ],
-        source="Fig. 5; random starts, half of them near the boundary",
-    )
+    whirls = [beyond_equilibrium(simulate(FIG5, start, [0.0, SETTLED]).at_end) > 0.0 for start in chosen]
+    right = np.array(whirls) == (ensemble_of(chosen).end == EndState.WHIRL)
+    return answers_of(right, source="Fig. 5; random starts, half of them near the boundary")
 
 
 @STUDY.claim(

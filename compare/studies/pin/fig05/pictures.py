@@ -9,12 +9,21 @@ import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.parameters import FIG5
-from compare.output.figures import BLACK, GREEN, PURPLE, axis, engine_style, engines_in, new_figure, points
+from compare.output.figures import (
+    BLACK,
+    GREEN,
+    PURPLE,
+    Axes,
+    axis,
+    engine_style,
+    engines_in,
+    new_figure,
+    points,
+)
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
-    from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -92,21 +101,17 @@ def _draw_errors(errors: Axes, found: Data, name: str, engine: str) -> None:
     if len(events) != len(exact):
         return
     gap = np.maximum(np.abs(events - exact), 1e-14)
-    colour = engine_style(engine).colour
-    errors.semilogy(
-        np.arange(1, len(gap) + 1), gap, color=colour, label=engine if name == "whirl" else "", **SERIES[name]
-    )
+    colour, label = engine_style(engine).colour, engine if name == "whirl" else ""
+    errors.semilogy(np.arange(1, len(gap) + 1), gap, color=colour, label=label, **SERIES[name])
     errors.axhline(float(found[f"{name}: error bar of sticks"]), color=colour, **BARS[name])
 
 
 def _legend_of_errors(engines: tuple[str, ...]) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
+    colours = {engine: engine_style(engine).colour for engine in engines}
     return [
-        *(
-            Line2D([], [], color=engine_style(engine).colour, linewidth=4.0, label=engine)
-            for engine in engines
-        ),
+        *(Line2D([], [], color=colour, linewidth=4.0, label=engine) for engine, colour in colours.items()),
         *(Line2D([], [], color=BLACK, label=f"to the {name}", **look) for name, look in SERIES.items()),
         *(Line2D([], [], color=BLACK, label=f"error bar, {name}", **look) for name, look in BARS.items()),
     ]
@@ -128,11 +133,8 @@ def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
         for view in views:
             view.show(int(shown[i]))
 
-    return {
-        "fig05-animation": gif(
-            figure, frame, len(shown), moving=[one for view in views for one in view.moving]
-        )
-    }
+    moving = [one for view in views for one in view.moving]
+    return {"fig05-animation": gif(figure, frame, len(shown), moving=moving)}
 
 
 class _View:

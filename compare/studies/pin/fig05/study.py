@@ -13,10 +13,11 @@ from compare.claims.error_estimates import TIGHTEST, TRUTH, WORKING, Measurement
 from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG5, FIG5_STARTS, components_of
 from compare.claims.study import Study
-from compare.engines import Engine
+from compare.engines import Engine, reference
 from compare.studies.toolkit.deviations import remaining_transient
-from reference_model import Orbit, Trajectory, simulate, whirl_orbit
-from reference_model.formulas.pin import equilibrium_position, release_time
+from compare.studies.toolkit.measuring import compared
+from reference_model import Orbit, Trajectory, plain, simulate, whirl_orbit
+from reference_model.formulas.pin import equilibrium_position, release_time, squared_holding_force
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.steady.stability import equilibrium_eigenvalues
 from reference_model.systems import FloatArray
@@ -29,24 +30,19 @@ UNTIL = 400.0
 SAMPLES = 4001
 
 FURTHER_TURNS = 20  # turns of the whirl after a run; the last one is averaged
-SLIDING_START = (0.9, 0.0, 0.0, 0.9)  # permanent slip near the whirl (our choice)
+SLIDING_START, SLIDING_TIMES = (0.9, 0.0, 0.0, 0.9), np.linspace(0.0, 100.0, 101)
+"""Permanent slip near the whirl (our choice)."""
 
-SLIDING_TIMES = np.linspace(0.0, 100.0, 101)
+CAPTURE, AFTERWARDS = 1e-6, 220.0
+"""Accuracy of the critical velocity in m/s, and duration in s until such a deviation, which grows by a quarter per
+turn, is of order one.
+"""
 
-CAPTURE = 1e-6  # required accuracy of the critical velocity in m/s
+RUNS_TOLERANCE, CRITICAL_TOLERANCE = 5.0 * WORKING, WORKING / 5.0
+"""For runs, and for the critical velocity, whose error under a regularised law is about a hundred times larger."""
 
-AFTERWARDS = 220.0
-"""Duration in s; a deviation ``CAPTURE`` grows by a quarter per turn, and must become of order one."""
-
-SIDES_TOLERANCE = 1e-7
-
-BESIDE = 2e-5
-"""Half width in m/s of the search for the critical velocity, about its value at ``SIDES_TOLERANCE``."""
-
-RUNS_TOLERANCE = 5.0 * WORKING
-
-CRITICAL_TOLERANCE = WORKING / 5.0
-"""For the critical velocity, whose error under a regularised law is about a hundred times larger."""
+SIDES_TOLERANCE, BESIDE = 1e-7, 2e-5
+"""Tolerance and half width in m/s of the first search for the critical velocity and of the next one."""
 
 LEAST_SHARE = 1e-5
 """Smallest error of stick times over their resolution.
@@ -75,24 +71,10 @@ def reference_events(name: str) -> FloatArray:
 def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
     """Return both times from (1) with a simple event on the slip speed, and (7), without ``simulate``.
 
-    The event occurs at a slip speed s that falls with the tolerance. The remaining slip lasts for s/(μN/m − |a|),
-    where ma is the force that friction must balance during stick.
+    The event occurs at a slip speed s. The remaining slip lasts for ms/(μN − F), with the force F that (7) holds.
     """
-    m, C, beta, omega = FIG5.mass, FIG5.stiffness, FIG5.damping, FIG5.disc_speed
-    limit = 1e4 * tolerance
-
-    def eq1(_: float, state: FloatArray) -> FloatArray:
-        x, y, vx, vy = state
-        wx, wy = vx + omega * y, vy - omega * x
-        friction = FIG5.friction_force / math.hypot(wx, wy)
-        return np.array(
-            [
-                vx,
-                vy,
-                (-beta * vx - C * (x - FIG5.offset) - friction * wx) / m,
-                (-beta * vy - C * y - friction * wy) / m,
-            ]
-        )
+    omega, limit = FIG5.disc_speed, 1e4 * tolerance
+    friction = plain.on_ring(FIG5.friction_force, 0.0, 1, 0.0)
 
     def slip(_: float, state: FloatArray) -> float:
         x, y, vx, vy = state
@@ -100,22 +82,26 @@ def first_stick_and_release(name: str, tolerance: float) -> FloatArray:
 
     slip.terminal, slip.direction = True, -1.0  # type: ignore[attr-defined]
     solution = solve_ivp(
-        eq1, (0.0, 20.0), FIG5_STARTS[name], method="DOP853", events=slip, rtol=tolerance, atol=tolerance
+        lambda _, state: plain.rates(FIG5, friction, state),
+        (0.0, 20.0),
+        FIG5_STARTS[name],
+        method="DOP853",
+        events=slip,
+        rtol=tolerance,
+        atol=tolerance,
     )
     x, y = solution.y_events[0][0][:2]
-    z = complex(x, y)
-    pull = -beta * 1j * omega * z - C * (z - FIG5.offset) + m * omega**2 * z
-    left = limit / ((FIG5.friction_force - abs(pull)) / m)
+    radius, angle = math.hypot(x, y), math.atan2(y, x)
+    left = FIG5.mass * limit / (FIG5.friction_force - math.sqrt(squared_holding_force(FIG5, radius, angle)))
     stick = solution.t_events[0][0] + left
-    return np.array([stick, stick + release_time(FIG5, abs(z), math.atan2(y, x) + omega * left)])
+    return np.array([stick, stick + release_time(FIG5, radius, angle + omega * left)])
 
 
 @functools.lru_cache(maxsize=8)
 def critical_velocity(engine: Engine, tolerance: float) -> float:
     """Return vx(0) (m/s) that puts the second stick phase as far from the axis as the first.
 
-    It is NaN if a pin does not stick twice, or moves in the same direction from both starts. At small tolerances, the
-    search begins near the result of a larger tolerance.
+    It is NaN if a pin does not stick twice, or moves in the same direction from both starts.
     """
 
     def outward(velocity: float) -> float:
@@ -160,14 +146,11 @@ def slides(engine: Engine) -> Measured:
         simulate_polar_form(FIG5, np.array(SLIDING_START), SLIDING_TIMES, tolerance=tolerance).ravel()
         for tolerance in (3e-14, 2e-13)
     )
-    found = refined(
-        lambda tolerance: engine.simulate(
-            FIG5, SLIDING_START, SLIDING_TIMES, tolerance=tolerance
-        ).states.ravel()
-    )
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    motion = FIG5, SLIDING_START, SLIDING_TIMES
+    found = refined(lambda tolerance: engine.simulate(*motion, tolerance=tolerance).states.ravel())
+    return compared(
+        predicted,
+        found,
         error=found.plus(np.abs(rougher - predicted)).largest,
         components=[f"t = {t:g} s, {name}" for t in SLIDING_TIMES for name in components_of(FIG5)],
         source="Fig. 5; start (0.9, 0, 0, 0.9) near the whirl and without stick is our choice",
@@ -185,9 +168,9 @@ def rests(engine: Engine) -> Measured:
     states = run_of(engine, "equilibrium", RUNS_TOLERANCE).states
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(states[-700:-300, :2], states[-1, :2], rate, 30.0)
-    return Measured(
-        predicted=equilibrium_position(FIG5),
-        value=found.value,
+    return compared(
+        equilibrium_position(FIG5),
+        found,
         error=found.plus(left).largest,
         components=("x", "y"),
         source=f"{SOURCE}; t = {UNTIL:g} s",
@@ -216,9 +199,9 @@ def whirls(engine: Engine) -> Measured:
     multiplier = sorted(abs(value) for value in orbit.multipliers)[-2]  # the largest except that of the phase
     # The remaining transient follows from the largest possible deviation at the end of stick.
     left = float(np.max(np.abs(orbit.state))) * multiplier ** ((UNTIL - 60.0) / orbit.period + FURTHER_TURNS)
-    return Measured(
-        predicted=orbit.mean,
-        value=found.value,
+    return compared(
+        orbit.mean,
+        found,
         error=found.plus(left).largest,
         components=("x", "y"),
         source=f"{SOURCE}; t = {UNTIL:g} s and {FURTHER_TURNS} turns",
@@ -237,9 +220,9 @@ def whirls(engine: Engine) -> Measured:
 def first_stick(engine: Engine, name: str) -> Measured:
     predicted = refined(lambda tolerance: first_stick_and_release(name, tolerance), 4e-13)
     found = _events(engine, name, "first", 2)
-    return Measured(
-        predicted=predicted.value,
-        value=found.value,
+    return compared(
+        predicted.value,
+        found,
         error=found.plus(predicted.error).largest,
         components=("stick", "release"),
         size=1.0 / FIG5.natural_frequency,
@@ -260,9 +243,9 @@ def all_sticks(engine: Engine, name: str) -> Measured:
     predicted = reference_events(name)
     found = _events(engine, name, "all", len(predicted))
     run = run_of(engine, name, RUNS_TOLERANCE)
-    return Measured(
-        predicted=predicted,
-        value=found.value,
+    return compared(
+        predicted,
+        found,
         error=found.largest,
         size=1.0 / FIG5.natural_frequency,
         components=[
@@ -303,13 +286,8 @@ def _events(engine: Engine, name: str, which: str, size: int) -> Measurement:
     named={"dividing velocity": 0},
 )
 def critical(engine: Engine) -> Measured:
-    found = _critical(engine)
-    return Measured(
-        predicted=critical_velocity(Engine("reference", simulate), TIGHTEST),
-        value=found.value,
-        error=found.largest,
-        source=f"{SOURCE}; x(0) = 0.1, vx(0) between the two printed values",
-    )
+    source = f"{SOURCE}; x(0) = 0.1, vx(0) between the two printed values"
+    return compared(critical_velocity(reference, TIGHTEST), _critical(engine), source=source)
 
 
 def _critical(engine: Engine) -> Measurement:

@@ -26,23 +26,18 @@ def draw(data: ByEngine) -> Figures:
         budget = curve(engine, f"{engine}: error budget", linewidth=1.0, linestyle="--")
         error.plot(speed, found["turn_error"][:, 0], **budget)
     domain.axvline(RESONANCE, color=GREY, linestyle=":", linewidth=1.0, label=r"$\omega_*$")
-    domain.set(
-        xlabel=axis(r"\omega", "rad/s"), ylabel=axis("A", "m"), title="Largest radius of permanent stick"
-    )
+    for panel in (domain, time, error):
+        panel.set(xlabel=axis(r"\omega", "rad/s"))
+    domain.set(ylabel=axis("A", "m"), title="Largest radius of permanent stick")
     domain.legend()
-    time.set(xlabel=axis(r"\omega", "rad/s"), ylabel=axis("t_r", "s"), title="Time until release")
+    time.set(ylabel=axis("t_r", "s"), title="Time until release")
     error.set_yscale("symlog", linthresh=1e-16)
     error.set_yticks([0.0, *10.0 ** np.arange(-16.0, 1.0, 4.0)])
-    error.set(
-        xlabel=axis(r"\omega", "rad/s"),
-        ylabel=axis(r"|\Delta(\omega\,t_r)|", "rad"),
-        ylim=(-5e-17, 1.0),
-        title="Deviation of the turn until release from (7)",
-    )
+    error.set(ylabel=axis(r"|\Delta(\omega\,t_r)|", "rad"), ylim=(-5e-17, 1.0))
+    error.set(title="Deviation of the turn until release from (7)")
     for panel, place in ((time, (0.62, 0.7)), (error, (0.2, 0.24))):
-        handles, labels = panel.get_legend_handles_labels()
-        if handles:
-            panel.legend(handles, labels, loc=place)
+        if panel.get_legend_handles_labels()[0]:
+            panel.legend(loc=place)
     return {"sticking-domain": figure}
 
 

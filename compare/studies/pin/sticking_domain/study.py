@@ -16,13 +16,9 @@ from compare.claims.measured import Measured, answers_of, asked
 from compare.claims.parameters import FIG4
 from compare.claims.study import Data, Study
 from compare.engines import Engine
+from compare.studies.toolkit.measuring import compared
 from compare.studies.toolkit.pins import first_release, safest_angle, stuck
-from reference_model.formulas.pin import (
-    release_time,
-    resonant_disc_speed,
-    sticking_radius,
-    turn_until_release,
-)
+from reference_model.formulas.pin import resonant_disc_speed, sticking_radius, turn_until_release
 from reference_model.systems import FloatArray, PinOnDisc
 
 PIN = FIG4
@@ -39,18 +35,14 @@ CREEP = 1e-2  # relative displacement that leaves stick uncertain
 CREEP_AT_EDGE = 0.05 * (OUTSIDE[0] - 1.0)
 """Such a displacement just outside (9), where creep by this share of the distance to the edge may hold a pin."""
 
-LATEST = 1.1  # duration for a pin outside, over the time (7)
-REVOLUTIONS = 2.0  # turns of a pin inside; the holding force has the period of one revolution
+LATEST, REVOLUTIONS = 1.1, 2.0
+"""Duration for a pin outside as a multiple of (7), and turns of a pin inside, two periods of the holding force."""
 
 SEARCHED = (0.9, 1.0, 1.1, 0.4, 2.0)
 """ω in rad/s of the search for the largest sticking radius; the first three are near the resonance."""
 
-BRACKET = (0.03, 4.0)
-"""Initial bracket of the search in units of X0, independent of (9)."""
-
-PRECISION = 6e-5  # relative accuracy of this search
-
-SEARCH_TOLERANCE = 1e-7
+BRACKET, PRECISION, SEARCH_TOLERANCE = (0.03, 4.0), 6e-5, 1e-7
+"""Initial bracket of the search in units of X0, independent of (9), its relative accuracy and its tolerance."""
 
 TOLERANCE = 3e-8  # moderate, because regularised laws close to Coulomb's make stick expensive
 DAMPINGS = np.geomspace(0.01, 1.3, 15)  # β in N s/m
@@ -83,8 +75,8 @@ def predicted_turns(speeds: ArrayLike) -> FloatArray:
 def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tuple[float, float]:
     """Return the square root of the vertex of the parabola through three points 1/A² over s = ω², and its error.
 
-    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if the errors of
-    all missing radii are infinite.
+    ``relative_error`` is that of the radii A. If a radius is missing, so is the vertex; it is open if all missing
+    radii are.
     """
 
     def found(values: FloatArray) -> float:
@@ -97,10 +89,8 @@ def vertex(s: FloatArray, values: FloatArray, relative_error: FloatArray) -> tup
     middle = found(values)
     if not np.all(np.isfinite(relative_error)):
         return middle, math.inf
-    shifts = [
-        abs(found(values * (1.0 + 2.0 * relative_error * (np.arange(3) == i))) - middle) for i in range(3)
-    ]
-    return middle, sum(shifts)
+    moved = values * (1.0 + 2.0 * np.diag(relative_error))
+    return middle, sum(abs(found(each) - middle) for each in moved)
 
 
 def top(pin: PinOnDisc, speed: float, width: float) -> float:
@@ -122,18 +112,14 @@ def two_revolutions(
     engine: Engine, speeds: tuple[float, ...], tolerance: float
 ) -> tuple[FloatArray, list[bool]]:
     """Return displacements, in radii, of pins inside (9), shape (n, 2), and which pins always stick."""
-    pins = [pin_at(speed) for speed in speeds]
-    radii = [INSIDE * sticking_radius(pin) for pin in pins]
-    starts = [stuck(pin, radius, safest_angle(pin)) for pin, radius in zip(pins, radii, strict=True)]
     turn = REVOLUTIONS * 2.0 * math.pi
-    runs = engine.simulate_many(
-        [(pin, start, [0.0, turn / pin.disc_speed]) for pin, start in zip(pins, starts, strict=True)],
-        tolerance=tolerance,
-    )
+    motions = [
+        (pin, stuck(pin, INSIDE * sticking_radius(pin), safest_angle(pin)), [0.0, turn / pin.disc_speed])
+        for pin in map(pin_at, speeds)
+    ]
     displacements, sticks = [], []
-    for radius, start, run in zip(radii, starts, runs, strict=True):
-        on_disc = rotated(run.at_end, -turn)
-        displacements.append((on_disc - start)[:2] / radius)
+    for run, (_, start, _) in zip(engine.simulate_many(motions, tolerance=tolerance), motions, strict=True):
+        displacements.append((rotated(run.at_end, -turn) - start)[:2] / np.hypot(*start[:2]))
         sticks.append(all(phase.kind != "slip" for phase in run.phases))
     return np.array(displacements), sticks
 
@@ -145,7 +131,7 @@ def displaced(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measurement
 
 
 def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = CREEP) -> bool:
-    """Return whether stuck pins may creep by more than ``most``, which leaves conclusions about stick open."""
+    """Return whether stuck pins may creep by more than ``most``."""
     return displaced(engine, speeds).largest > most
 
 
@@ -159,9 +145,9 @@ def creeps(engine: Engine, speeds: tuple[float, ...] = SPEEDS, *, most: float = 
 )
 def stays(engine: Engine, speeds: tuple[float, ...] = SPEEDS) -> Measured:
     found = displaced(engine, speeds)
-    return Measured(
-        predicted=np.zeros_like(found.value),
-        value=found.value,
+    return compared(
+        np.zeros_like(found.value),
+        found,
         error=found.rows,
         size=1.0,
         at={"ω in rad/s": speeds},
@@ -198,16 +184,16 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
         for pin in map(pin_at, speeds):
             for share in OUTSIDE:
                 radius, angle = share * sticking_radius(pin), safest_angle(pin)
-                end = LATEST * release_time(pin, radius, angle)
-                motions.append((pin, stuck(pin, radius, angle), [0.0, end]))
+                release = turn_until_release(pin, radius, angle) / pin.disc_speed
+                motions.append((pin, stuck(pin, radius, angle), [0.0, LATEST * release]))
         runs = engine.simulate_many(motions, tolerance=tolerance)
         found = [run.system.disc_speed * first_release(run) for run in runs]
         return np.array(found).reshape(len(speeds), len(OUTSIDE))
 
     found = refined(turns, TOLERANCE)
-    return Measured(
-        predicted=predicted_turns(speeds),
-        value=found.value,
+    return compared(
+        predicted_turns(speeds),
+        found,
         error=_unless_missing(engine, found.value, found.rows),
         at={"ω in rad/s": speeds, "radius/(9)": OUTSIDE},
         data={"speed": speeds, "turn": found.value, "turn_error": found.rows},
@@ -220,16 +206,14 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
     pins = [pin_at(speed) for speed in searched]
     first = [_between(engine, pin, SEARCH_TOLERANCE, _anywhere(pin)) for pin in pins]
 
-    def around(pin: PinOnDisc, near: tuple[float, float]) -> tuple[float, float]:
-        return near if np.all(np.isfinite(near)) else _anywhere(pin)
+    around = [
+        near if np.all(np.isfinite(near)) else _anywhere(pin) for pin, near in zip(pins, first, strict=True)
+    ]
 
     def radii(tolerance: float) -> FloatArray:
         found = first
         if tolerance != SEARCH_TOLERANCE:
-            found = [
-                _between(engine, pin, tolerance, around(pin, near))
-                for pin, near in zip(pins, first, strict=True)
-            ]
+            found = [_between(engine, pin, tolerance, near) for pin, near in zip(pins, around, strict=True)]
         return np.asarray(np.sqrt(np.prod(found, axis=1)))
 
     found = refined(radii, SEARCH_TOLERANCE)
@@ -238,15 +222,12 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
 
 
 def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
-    """Return the errors of ``values``; a missing value is open if the engine creeps, and a mistake otherwise."""
+    """Return the errors of ``values``; a missing one is open if the engine creeps, and a mistake otherwise."""
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
-    return np.where(
-        missing,
-        np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0,
-        np.where(np.isnan(errors), np.inf, errors),
-    )
+    of_missing = np.inf if creeps(engine, most=CREEP_AT_EDGE) else 0.0
+    return np.where(missing, of_missing, np.where(np.isnan(errors), np.inf, errors))
 
 
 def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
@@ -256,10 +237,7 @@ def _anywhere(pin: PinOnDisc) -> tuple[float, float]:
 def _between(
     engine: Engine, pin: PinOnDisc, tolerance: float, around: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return radii (m) that enclose the largest sticking radius, by bisection, or NaN if the search fails.
-
-    The search begins between the radii ``around`` and extends beyond them if necessary.
-    """
+    """Return radii (m) around the largest sticking radius, by bisection from ``around``, or NaN."""
     # The holding force goes from its minimum to its maximum in half a revolution.
     end = 1.02 * math.pi / pin.disc_speed
 
@@ -281,10 +259,7 @@ def _between(
             return math.nan, math.nan
     while outside - inside > PRECISION * outside:
         middle = math.sqrt(inside * outside)
-        if sticks(middle):
-            inside = middle
-        else:
-            outside = middle
+        inside, outside = (middle, outside) if sticks(middle) else (inside, middle)
     return inside, outside
 
 

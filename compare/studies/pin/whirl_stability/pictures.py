@@ -2,41 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.parameters import CENTRED
-from compare.output.figures import BLUE, GREY, ORANGE, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.whirl_stability.study import (
-    DAMPINGS,
-    DEVIATION_TIMES,
-    RATIOS,
-    K,
-    largest_real_parts,
-    linear_deviation,
-    pin_at,
+from compare.output.figures import (
+    BLUE,
+    GREY,
+    ORANGE,
+    Axes,
+    Figure,
+    axis,
+    curve,
+    engines_in,
+    new_figure,
+    points,
 )
+from compare.studies.pin.whirl_stability import study
+from compare.studies.pin.whirl_stability.study import DAMPINGS, DEVIATION_TIMES, RATIOS, K
 from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 
 def curves() -> Data:
     speeds = K * (1.0 + np.geomspace(0.01, 6.0, 240))
     return {
         "speed": speeds,
-        "eigenvalue": real_and_imaginary([whirl_eigenvalues(pin_at(speed))[1:] for speed in speeds]),
+        "eigenvalue": real_and_imaginary([whirl_eigenvalues(study.pin_at(speed))[1:] for speed in speeds]),
         "ratio": RATIOS,
         "damping": DAMPINGS,
-        "largest": largest_real_parts()[0].reshape(len(DAMPINGS), len(RATIOS)) / K,
+        "largest": study.largest_real_parts()[0].reshape(len(DAMPINGS), len(RATIOS)) / K,
         "deviation_time": DEVIATION_TIMES,
-        "deviation": linear_deviation(DEVIATION_TIMES),
+        "deviation": study.linear_deviation(DEVIATION_TIMES),
     }
 
 
@@ -56,38 +56,25 @@ def draw_motions(data: ByEngine) -> Figure:
 
 
 def _draw_leaving(panel: Axes, data: ByEngine) -> None:
-    last = 0.0
-    first = next((engine for engine in engines_in(data) if "leaving_time" in data[engine]), "")
-    for engine in engines_in(data):
-        found = data[engine]
-        if "leaving_time" not in found:  # such motions end in stick, which not every engine simulates
-            continue
+    # Such motions end in stick, which not every engine simulates.
+    drawn = [engine for engine in engines_in(data) if "leaving_time" in data[engine]]
+    small: dict[str, Any] = {"textcoords": "offset points", "va": "center", "fontsize": 9.5}
+    for engine in drawn:
+        found, label = data[engine], engine
         times = found["leaving_time"]
-        label = engine
         for speed, radius in zip(found["start"], found["leaving"], strict=True):
-            if engine == first and speed < K:
-                panel.annotate(
-                    rf"$\omega = {speed / K:g}\,k$",
-                    (times[-1], radius[-1] / radius[0]),
-                    (5, 0),
-                    textcoords="offset points",
-                    va="center",
-                    fontsize=9.5,
-                )
+            if engine == drawn[0] and speed < K:
+                end = times[-1], radius[-1] / radius[0]
+                panel.annotate(rf"$\omega = {speed / K:g}\,k$", end, (5, 0), **small)
             panel.plot(times, radius / radius[0], **curve(engine, label))
             label = "_"
-        last = max(last, float(times[-1]))
-    above = [speed / K for engine in engines_in(data)[:1] for speed in data[engine]["start"] if speed > K]
+    last = max((float(data[engine]["leaving_time"][-1]) for engine in drawn), default=0.0)
+    above = [speed / K for engine in drawn[:1] for speed in data[engine]["start"] if speed > K]
     if above:
         ratios = ", ".join(f"{ratio:g}" for ratio in above)
         panel.annotate(rf"$\omega = {ratios}\,k$", (6.0, 1.03), fontsize=9.5)
-    panel.set(
-        xlabel=axis("t", "s"),
-        ylabel=r"$\rho\,/\,\rho_c$",
-        xlim=(0.0, last + 3.6),
-        ylim=(0.0, 1.15),
-        title="Starts on the circle (11)",
-    )
+    panel.set(xlabel=axis("t", "s"), ylabel=r"$\rho\,/\,\rho_c$", title="Starts on the circle (11)")
+    panel.set(xlim=(0.0, last + 3.6), ylim=(0.0, 1.15))
     panel.legend(loc="lower left")
 
 
@@ -148,12 +135,9 @@ def draw_map(theory: Data) -> Figure:
     levels = [-0.5, -0.2, -0.1, -0.05, -0.02, 0.0, 0.02, 0.1, 0.5, 2.0, 10.0, 50.0]
     norm = SymLogNorm(linthresh=0.02, vmin=-2.0, vmax=200.0)
     for region in (ratio < 1.0, ratio > 1.0):  # the real part jumps at ω = k
-        shades = panel.contourf(
-            ratio[region], damping, largest[:, region], levels, norm=norm, cmap="Greys", extend="both"
-        )
-        panel.contour(
-            ratio[region], damping, largest[:, region], levels, norm=norm, colors="black", linewidths=0.3
-        )
+        shown = ratio[region], damping, largest[:, region], levels
+        shades = panel.contourf(*shown, norm=norm, cmap="Greys", extend="both")
+        panel.contour(*shown, norm=norm, colors="black", linewidths=0.3)
     figure.colorbar(shades, ax=panel, label=r"$\max\,\mathrm{Re}\,\lambda\,/\,k$", format="%g", ticks=levels)
     fine = np.geomspace(damping[0], damping[-1], 400)
     q = (2.0 / fine) ** 2

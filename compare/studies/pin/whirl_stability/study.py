@@ -15,6 +15,7 @@ from compare.claims.linearised_flow import eigenvalues_with_rounding, matched, r
 from compare.claims.parameters import CENTRED
 from compare.engines import Engine
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
+from compare.studies.toolkit.measuring import compared
 from reference_model.formulas.pin import (
     characteristic_coefficients,
     coefficient_margins,
@@ -36,16 +37,14 @@ DISPLACED, DURATION, DELAY = 1.1, 460.0, 40.0
 the remaining transient. The slowest deviation falls to 1e-10.
 """
 
-STARTS = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0)
-CAUGHT = 18.0
+STARTS, CAUGHT = (0.5, 0.8, 0.9, 1.2, 1.5, 3.0), 18.0
 """Starts on the circle (11): ω in rad/s below and above k, and the time in s until a pin sticks if ω < k."""
 
 POINTS = ((1.05, 0.1), (1.1, 0.1), (1.5, 0.1), (2.5, 0.1), (5.0, 0.1), (1.5, 0.5), (1.5, 2.0))
 FLOW_DURATION = 0.5
 """Eigenvalues: ω in rad/s and β in N s/m, and duration in s."""
 
-DEVIATION = 1e-3
-DEVIATION_TIMES = np.linspace(0.0, 60.0, 301)
+DEVIATION, DEVIATION_TIMES = 1e-3, np.linspace(0.0, 60.0, 301)
 """Amplitude of the decaying deviation as a share of the radius (11), and times in s."""
 
 RATIOS = np.asarray((np.arange(225) + 0.5) / 75.0, dtype=float)
@@ -209,7 +208,7 @@ def whirls(engine: Engine, speeds: Sequence[float]) -> Measurement:
         )
         for speed in speeds
     ]
-    value, error, left = (np.array(each) for each in zip(*ends, strict=True))
+    value, error, left = map(np.array, zip(*ends, strict=True))
     return Measurement(value, error + left)
 
 
@@ -277,9 +276,9 @@ def balance(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None
     found = refined(functools.partial(rates_of, interval), 10.0 * TIGHTEST)
     wide = np.abs(rates_of(2.0 * interval, 10.0 * TIGHTEST) - found.value)
     rounding = 8.0 * np.finfo(float).eps * CENTRED.mass * K / (CENTRED.damping * interval)
-    return Measured(
-        predicted=[0.0 if speed > K else -2.0 for speed in starts],
-        value=found.value,
+    return compared(
+        [0.0 if speed > K else -2.0 for speed in starts],
+        found,
         error=np.full(len(starts), found.largest + np.max(wide) + rounding),
         at={"ω in rad/s": starts},
     )
@@ -297,38 +296,28 @@ def caught(engine: Engine, starts: Sequence[float] = STARTS) -> Measured | None:
         return None
 
     def leave(speed: float, times: ArrayLike, tolerance: float) -> Trajectory:
-        pin = pin_at(speed)
-        return engine.simulate(pin, on_circle(pin), times, tolerance=tolerance)
+        return engine.simulate(pin_at(speed), on_circle(pin_at(speed)), times, tolerance=tolerance)
 
-    def turning(tolerance: float) -> list[FloatArray]:
-        return [turning_speed(leave(speed, [0.0, CAUGHT], tolerance).at_end) / speed for speed in below]
-
-    below = [speed for speed in starts if speed < K]
-    found = refined(turning, 1e-7)
+    below, both = [speed for speed in starts if speed < K], [0.0, CAUGHT]
+    found = refined(
+        lambda tolerance: [turning_speed(leave(one, both, tolerance).at_end) / one for one in below], 1e-7
+    )
     times = np.linspace(0.0, CAUGHT, 181)
-    return Measured(
-        predicted=np.ones(len(below)),
-        value=found.value,
+    leaving = [leave(speed, times, 1e-7).radius for speed in starts]
+    return compared(
+        np.ones(len(below)),
+        found,
         error=np.full(len(below), found.largest),
         at={"ω in rad/s": below},
-        data={
-            "start": starts,
-            "leaving_time": times,
-            "leaving": [leave(speed, times, 1e-7).radius for speed in starts],
-        },
+        data={"start": starts, "leaving_time": times, "leaving": leaving},
     )
 
 
 @functools.lru_cache(maxsize=2)
 def rates(engine: Engine, points: Sequence[tuple[float, float]]) -> Rates:
     pins = [pin_at(*point) for point in points]
-    return measured_rates(
-        engine,
-        [(pin, on_circle(pin)) for pin in pins],
-        [whirl_eigenvalues(pin) for pin in pins],
-        duration=FLOW_DURATION,
-        frame_speed=K,
-    )
+    motions, predicted = [(pin, on_circle(pin)) for pin in pins], map(whirl_eigenvalues, pins)
+    return measured_rates(engine, motions, predicted, duration=FLOW_DURATION, frame_speed=K)
 
 
 @STUDY.claim(
@@ -388,9 +377,9 @@ def history(engine: Engine) -> Measured | None:
 
     found = refined(functools.partial(deviation, DEVIATION), WORKING / 10)
     twice = deviation(2.0 * DEVIATION, WORKING / 10)
-    return Measured(
-        predicted=linear_deviation(DEVIATION_TIMES),
-        value=found.value,
+    return compared(
+        linear_deviation(DEVIATION_TIMES),
+        found,
         error=np.full(len(DEVIATION_TIMES), found.largest),
         model=float(np.max(np.abs(twice - found.value))),
         at={"t in s": DEVIATION_TIMES},

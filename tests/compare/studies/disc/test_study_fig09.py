@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-from tested_studies import FIG09
 
 from compare.claims.claim import Verdict
 from compare.studies.disc.fig09 import STUDY, growth_and_stick, theory
@@ -23,7 +22,7 @@ def test_a_wrong_formula_differs(formula, claim, factor, monkeypatch):
 
 
 def test_the_curve_of_whirls_ends_at_the_equilibrium():
-    load, least, greatest, spin = FIG09.found("theory").data["orbits"].T
+    load, least, greatest, spin = theory.smooth(theory.orbits())["orbits"].T
     rest = theory.rest_of(load[-1])
     assert load[0] == pytest.approx(LARGEST_LOAD)
     assert load[-1] == pytest.approx(theory.last_stable_load(RING))

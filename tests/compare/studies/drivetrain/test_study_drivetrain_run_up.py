@@ -21,34 +21,23 @@ from compare.studies.toolkit.drivetrain_bench import (
     passenger_car,
 )
 
-SHORT = 1100.0
-"""Turns a minute; before a window of the spectrum is full."""
-
-
-MOVES = {
-    "on its lines": as_predicted,
-    "follows its unbalance all the way": lambda: run_up_with({0.98: 3e-4, 0.0: 1e-4}),
-    "whirls from the beginning": lambda: run_up_with({0.88: 3e-4, 0.0: 1e-4}),
-    "beside its lines": lambda: as_predicted(off=1.5 / TURNS),
-}
-
 
 def test_a_disc_on_the_predicted_lines_agrees():
-    (claim,) = RUN_UP.claims_of_fault(Patched(moving(MOVES["on its lines"]())), ("lines",))
+    (claim,) = RUN_UP.claims_of_fault(Patched(moving(as_predicted())), ("lines",))
     assert np.max(claim.difference) < 0.5 / TURNS
 
 
 @pytest.mark.parametrize(
     ("move", "windows"),
     [
-        ("follows its unbalance all the way", "above"),
-        ("whirls from the beginning", "below"),
-        ("beside its lines", "above"),
+        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # follows its unbalance all the way
+        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # whirls from the beginning
+        (as_predicted(off=1.5 / TURNS), "above"),
     ],
 )
 def test_a_disc_off_its_line_differs_in_the_affected_windows(move, windows):
-    (claim,) = RUN_UP.claims_of_fault(Patched(moving(MOVES[move]())), ("lines",))
-    speeds, _ = strongest_line(MOVES[move]())
+    (claim,) = RUN_UP.claims_of_fault(Patched(moving(move)), ("lines",))
+    speeds, _ = strongest_line(move)
     ends = natural_frequency(passenger_car()), whirls_above_onset(passenger_car())[0, 0]
     chosen = speeds[(speeds < ends[0]) | (speeds >= ends[1])]
     off = claim.difference > claim.budget.total
@@ -57,7 +46,7 @@ def test_a_disc_off_its_line_differs_in_the_affected_windows(move, windows):
 
 def test_the_mean_torque_brings_the_engine_to_its_final_speed():
     data = RUN_UP.found("exudyn").data
-    assert data["engine"][-1, 1] == pytest.approx(SHORT * RPM, rel=0.02)
+    assert data["engine"][-1, 1] == pytest.approx(1100.0 * RPM, rel=0.02)
     assert data["slip"][-1] == pytest.approx(SLIP, abs=4.0)
 
 

@@ -56,20 +56,18 @@ def test_stick_times_without_change_may_deviate_by_1e_5_of_the_resolution(shift,
 
 
 def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times():
-    found = {"reference": FIG05.found("reference").data, "exudyn": FIG05.found("reference").data}
-    broken = STUDY.measure(GROSS["a box for the cone"], only=("all_sticks",)).data
-    (figure,) = STUDY.draw(found | {"broken": broken}).values()
+    right = FIG05.found("reference").data
+    more = {f"{name}: sticks": np.append(right[f"{name}: sticks"], [90.0, 91.0]) for name in FIG5_STARTS}
+    (figure,) = STUDY.draw({"reference": right, "exudyn": right, "broken": right | more}).values()
     labels = [line.get_label() for line in figure.axes[3].lines]
     assert labels.count("exudyn") == 1
     assert "broken" not in labels
 
 
-def test_the_animation_is_a_gif_of_more_than_50_frames_that_move():
-    (content,) = animate({"reference": FIG05.found("reference").data}, until=20.8).values()
+def test_the_animation_is_a_gif_of_frames_that_move():
+    (content,) = animate({"reference": FIG05.found("reference").data}, until=4.0).values()
     with PIL.Image.open(io.BytesIO(content)) as picture:
-        assert picture.format == "GIF"
-        assert picture.n_frames > 50
-        assert picture.info["loop"] == 0
+        assert (picture.format, picture.n_frames, picture.info["loop"]) == ("GIF", 11, 0)
         pixels = []
         for frame in range(picture.n_frames):
             picture.seek(frame)
