@@ -29,8 +29,8 @@ DATA = ("{", '"offset"', '"state"', "t [s]", "0.", "...")
 BASIN = "friction-discs sweep basin pin --x x=-0.3:0.5:1000 --y vx=-0.4:0.4:1000"
 SMALLER = (
     (r"^friction-discs sweep basin pin( --random .*)?$", BASIN),
-    (r"^(friction-discs sweep map .*):64 (.*):64$", r"\1:2 \2:2 --until 50"),
-    (r"^(friction-discs sweep uncertainty .*)$", r"\1 --samples 256 --until 50"),
+    (r"^(friction-discs sweep map .*):64 (.*):64$", r"\1:2 \2:2"),
+    (r"^(friction-discs sweep uncertainty .*)$", r"\1 --samples 256"),
     (r"^(friction-discs sweep continuation .*):100$", r"\1:2 --samples 4"),
     (r"^friction-discs plan .*$", "friction-discs plan fig03 --output motions"),
     (r"^friction-discs report .*$", "friction-discs report --claim fig03/rests --engine reference --jobs 1"),

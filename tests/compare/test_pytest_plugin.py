@@ -67,15 +67,15 @@ OWN = ("mine", "exiting", "example", "rough")
 def run(folder, *arguments, here=True):
     """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}.
 
-    It runs in this process because starting pytest and the package takes longer than most tests. If ``here``, it also
-    measures here, without the diagnosis of failing engines.
+    It runs in this process because starting pytest and the package takes longer than most tests, and also measures
+    ``here``. The diagnosis of failing engines is left out.
     """
     output = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
         patch.chdir(folder)
         if here:
             work_here(patch)
-            patch.setattr("compare.diagnosis.run.PROBES", ())
+        patch.setattr("compare.diagnosis.run.PROBES", ())
         for name in OWN:
             patch.delitem(sys.modules, name, raising=False)
         options = (*OPTIONS, *WITHOUT_OTHERS, *WITHIN_ANOTHER)
@@ -199,8 +199,7 @@ def test_every_claim_of_a_dying_engine_fails_with_the_reason(tmp_path):
 
 
 @pytest.mark.parametrize("quick", [False, True])
-def test_a_study_out_of_time_fails_no_claim(quick, tmp_path, monkeypatch):
-    monkeypatch.setattr("compare.diagnosis.run.IN_SHORT", 1.0)
+def test_a_study_out_of_time_fails_no_claim(quick, tmp_path):
     options = ("--study-limit", "1", *["--level", "quick"] * quick)
     status, output, cases = judge(tmp_path, "fig04", "mine:hanging", options=options, here=False)
     assert set(cases) == set(CLAIMS["fig04"])  # a single engine is not named
@@ -239,9 +238,9 @@ def of_pins_that_slide(claim):
     return claim.split(": ")[1].startswith(("a pin", "pins")) and "stick" not in claim
 
 
-def test_on_several_cores_every_claim_is_reported_once(tmp_path):
+def test_claims_that_other_processes_measure_are_reported_once(tmp_path):
     status, output, cases = judge(
-        tmp_path, "sticking-domain", "mine:sliding", options=("-n", "2"), run=run_by_itself
+        tmp_path, "sticking-domain", "mine:sliding", options=("-n", "1"), run=run_by_itself
     )
     assert status == NOTHING_MEASURED
     assert set(cases) == set(CLAIMS["sticking-domain"])
