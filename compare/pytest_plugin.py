@@ -170,7 +170,9 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> StudyFile 
     study = getattr(import_module(module), "STUDY", None)
     if study not in ALL or (quick and not study.quick) or (wanted and study.name not in wanted):
         return None
-    return StudyFile.of(parent, file_path, study)
+    file: StudyFile = StudyFile.from_parent(parent, path=file_path)
+    file.study = study
+    return file
 
 
 class StudyFile(pytest.File):
@@ -178,19 +180,18 @@ class StudyFile(pytest.File):
 
     study: Study
 
-    @classmethod
-    def of(cls, parent: pytest.Collector, path: Path, study: Study) -> StudyFile:
-        """Return the collector of ``study``."""
-        file: StudyFile = cls.from_parent(parent, path=path)
-        file.study = study
-        return file
-
     def collect(self) -> Iterator[ClaimTest]:
-        """Yield a test for each sentence and engine."""
-        names = [name for name in _engines(self.config) if not self.study.only or name in self.study.only]
-        for name in names:
+        """Yield a test for each sentence and engine; its name contains the engine unless there is only one."""
+        engines = _engines(self.config)
+        for engine in engines:
+            if self.study.only and engine not in self.study.only:
+                continue
             for sentence in self.study.sentences():
-                yield ClaimTest.of(self, name, sentence, alone=len(_engines(self.config)) == 1)
+                name = sentence if len(engines) == 1 else f"{sentence} [{engine}]"
+                test: ClaimTest = ClaimTest.from_parent(self, name=name)
+                test.study, test.engine, test.sentence = self.study, engine, sentence
+                test.user_properties.append((ENGINE, engine))
+                yield test
 
 
 class ClaimTest(pytest.Item):
@@ -199,14 +200,6 @@ class ClaimTest(pytest.Item):
     study: Study
     engine: str
     sentence: str
-
-    @classmethod
-    def of(cls, parent: StudyFile, engine: str, sentence: str, *, alone: bool) -> ClaimTest:
-        """Return the test of ``sentence``; its name contains the engine unless ``alone``."""
-        test: ClaimTest = cls.from_parent(parent, name=sentence if alone else f"{sentence} [{engine}]")
-        test.study, test.engine, test.sentence = parent.study, engine, sentence
-        test.user_properties.append((ENGINE, engine))
-        return test
 
     def reportinfo(self) -> tuple[Path, None, str]:
         """Return the file of the claim, no line, and its name."""
@@ -217,19 +210,19 @@ class ClaimTest(pytest.Item):
         from compare.claims.claim import Verdict
         from compare.run.workers import Failure
 
-        outcome = self.config.stash[_COUNTS].bench.outcome(
-            self.study, self.engine, self.study.sentences()[self.sentence]
-        )
+        bench, part = self.config.stash[_COUNTS].bench, self.study.sentences()[self.sentence]
+        outcome = bench.outcome(self.study, self.engine, part)
         if isinstance(outcome, Failure) and outcome.unfinished:
             self._without_verdict(NOT_FINISHED, outcome.reason)
         if isinstance(outcome, Failure):
             pytest.fail("\n    ".join((f"no result: {outcome.reason}", *outcome.where)), pytrace=False)
         claims = [claim for claim in outcome.claims if claim.sentence == self.sentence]
-        if not claims and self.study.only:
-            self._without_verdict(NOT_ATTEMPTED, f"this claim does not apply to {self.engine}")
-        elif not claims and outcome.not_simulated:
-            self._without_verdict(NOT_ATTEMPTED, outcome.not_simulated)
-        elif not claims:
+        if not claims:
+            reason = (
+                f"this claim does not apply to {self.engine}" if self.study.only else outcome.not_simulated
+            )
+            if reason:
+                self._without_verdict(NOT_ATTEMPTED, reason)
             pytest.fail("the simulated motion does not allow this measurement", pytrace=False)
         verdicts = {claim.verdict: claim for claim in claims}
         if Verdict.DIFFERS in verdicts:

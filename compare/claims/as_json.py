@@ -74,32 +74,21 @@ def _dataclasses(kind: Any) -> dict[str, type[Any]]:
     return {one.__name__: one for one in several if isinstance(one, type) and is_dataclass(one)}
 
 
+OTHERWISE = ("budget", "identity")
+"""Fields of a claim that have another form in JSON."""
+
+
 def claim_as_json(claim: Claim) -> dict[str, Any]:
     """Return a claim as JSON values."""
-    return {
-        "sentence": claim.sentence,
-        "equation": claim.equation,
-        "kind": claim.kind,
-        "engine": claim.engine,
-        "unit": claim.unit,
-        "predicted": as_json(claim.predicted),
-        "measured": as_json(claim.measured),
+    alike = [field.name for field in fields(Claim) if field.name not in OTHERWISE]
+    return {name: as_json(getattr(claim, name)) for name in alike} | {
         "difference": as_json(claim.difference),
         "numerical_error": as_json(claim.budget.numerical),
         "model_error": claim.budget.model,
         "resolution": as_json(claim.budget.resolution),
-        "size": None if claim.size is None else as_json(claim.size),
         "grade": "" if claim.grade is None else claim.grade.value,
         "verdict": claim.verdict.value,
-        "parameters": as_json(claim.parameters),
-        "source": claim.source,
-        "note": claim.note,
-        "basis": claim.basis,
-        "implied_by": claim.implied_by,
-        "answers": claim.answers,
-        "named": dict(claim.named),
         "id": claim.identity,
-        "axes": [list(names) for names in claim.axes],
     }
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from compare.claims.claim import Claim, Verdict
+from reference_model.systems import FloatArray
 
 MINUS = "\N{MINUS SIGN}"
 
@@ -63,29 +64,22 @@ SPACE = "\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
-class Largest:
-    """The largest difference in one unit, with index and name of its element."""
+class Element:
+    """One number of a claim: element ``index`` (from 0) of ``count``, with its name, unit and errors.
 
-    index: int
-    name: str
-    difference: float
-    unit: str
-
-
-@dataclass(frozen=True)
-class Worst:
-    """The deciding element of a claim, ``index`` (from 0) of ``count``, and the largest difference in each unit."""
+    ``largest`` contains, for the deciding element only, the elements with the largest difference in each unit.
+    """
 
     index: int
     count: int
     name: str
+    unit: str
     predicted: float
     measured: float
     difference: float
     numerical: float
     model: float
-    unit: str
-    largest: tuple[Largest, ...]
+    largest: tuple[Element, ...] = ()
 
     @property
     def total(self) -> float:
@@ -93,39 +87,33 @@ class Worst:
         return self.numerical + self.model
 
 
-def worst(claim: Claim) -> Worst:
+def worst(claim: Claim) -> Element:
     """Return the element nearest to failing; for an inconclusive claim, the one with the largest error bar."""
-    numerical = np.broadcast_to(claim.budget.numerical, claim.predicted.shape)
-    i = int(np.argmax(numerical)) if claim.verdict is Verdict.INCONCLUSIVE else claim.worst
-    return Worst(
-        i,
+    difference = np.nan_to_num(claim.difference.ravel(), nan=np.inf)
+    units = np.resize(claim.units, difference.size)
+    largest = (
+        int(np.argmax(np.where(units == unit, difference, -1.0))) for unit in dict.fromkeys(claim.units)
+    )
+    is_open = claim.verdict is Verdict.INCONCLUSIVE
+    decides = int(np.argmax(_numerical(claim))) if is_open else claim.worst
+    return replace(_element(claim, decides), largest=tuple(_element(claim, i) for i in largest))
+
+
+def _element(claim: Claim, index: int) -> Element:
+    numbers = (claim.predicted, claim.measured, claim.difference, _numerical(claim))
+    name = claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
+    return Element(
+        index,
         claim.predicted.size,
-        _name(claim, i),
-        float(claim.predicted.flat[i]),
-        float(claim.measured.flat[i]),
-        float(claim.difference.flat[i]),
-        float(numerical.flat[i]),
-        claim.budget.model,
-        claim.units[i % len(claim.units)],
-        _largest(claim),
+        name if claim.predicted.size > 1 else "",
+        claim.units[index % len(claim.units)],
+        *(float(array.flat[index]) for array in numbers),
+        model=claim.budget.model,
     )
 
 
-def _largest(claim: Claim) -> tuple[Largest, ...]:
-    units = claim.units
-    found = []
-    for unit in dict.fromkeys(units):
-        own = np.resize([one == unit for one in units], claim.predicted.size)
-        difference = np.where(own, np.nan_to_num(claim.difference.ravel(), nan=np.inf), -1.0)
-        i = int(np.argmax(difference))
-        found.append(Largest(i, _name(claim, i), float(claim.difference.flat[i]), unit))
-    return tuple(found)
-
-
-def _name(claim: Claim, index: int) -> str:
-    if claim.predicted.size == 1:
-        return ""
-    return claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
+def _numerical(claim: Claim) -> FloatArray:
+    return np.broadcast_to(claim.budget.numerical, claim.predicted.shape)
 
 
 def deciding(claims: Sequence[Claim]) -> Claim:

@@ -16,7 +16,7 @@ from compare.claims.claim import EVIDENCE, GRADES, THEORY, Claim, Evidence
 from compare.claims.errata import TEXT
 from compare.claims.study import Study
 from compare.report import quotes
-from compare.report.at_a_glance import cases, contrast, glances
+from compare.report.at_a_glance import Glance, cases, contrast
 from compare.report.matrix import GRADE_SYMBOLS, WORST_FIRST, Matrix, Row, State, state_of
 from compare.report.numbers import answers_text, error_text, in_short, trimmed, value_text, worst
 from compare.report.results_json import erratum_id
@@ -29,7 +29,13 @@ from reference_model.systems import UNITS
 HERO = "drivetrain-picture"
 
 
-def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> str:
+def page(
+    run: Run,
+    matrix: Matrix,
+    stamp: Mapping[str, str],
+    paths: Mapping[str, str],
+    glances: tuple[Glance, ...],
+) -> str:
     """Return the HTML of the report; ``paths`` are the claims' tables by identity."""
     return (
         environment()
@@ -47,8 +53,8 @@ def page(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str,
             summary=summary(matrix),
             counted=counted(matrix),
             paths=paths,
-            glances=(found := glances(run, matrix)),
-            contrast=contrast(found),
+            glances=glances,
+            contrast=contrast(glances),
             recorded_cases=cases(matrix.recorded[0]) if matrix.recorded else (),
             deviation=lambda cell: error_text(max(float(claim.difference.max()) for claim in cell.claims), 1),
             hero=_hero(run),

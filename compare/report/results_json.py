@@ -27,7 +27,7 @@ from compare.claims.errata import Erratum, Evidence
 from compare.claims.prose import slug
 from compare.claims.study import Study
 from compare.output.outside_text import all_printable, printable
-from compare.report.at_a_glance import glances
+from compare.report.at_a_glance import Glance
 from compare.report.matrix import (
     VERDICTS,
     WORST_FIRST,
@@ -212,7 +212,13 @@ def seconds_of_last_run(*folders: Path) -> dict[tuple[str, str], float]:
     return {}
 
 
-def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[str, str]) -> dict[str, Any]:
+def results(
+    run: Run,
+    matrix: Matrix,
+    stamp: Mapping[str, str],
+    paths: Mapping[str, str],
+    glances: tuple[Glance, ...],
+) -> dict[str, Any]:
     """Return the content of ``results.json``; ``paths`` are the claims' tables by identity."""
     return {
         "format": FORMAT,
@@ -220,7 +226,7 @@ def results(run: Run, matrix: Matrix, stamp: Mapping[str, str], paths: Mapping[s
         "stamp": dict(stamp),
         "engines": list(run.engines),
         "engine_versions": {name: run.versions.get(name, "") for name in run.engines},
-        "in_short": {one.engine: one.sentence for one in glances(run, matrix)},
+        "in_short": {one.engine: one.sentence for one in glances},
         "interrupted": run.interrupted,
         "totals": {state.value: matrix.totals[state] for state in State},
         "evidence": {

@@ -9,7 +9,7 @@ from typing import Any
 
 from compare.output.text_files import replacing, write_text
 from compare.report.animation import still
-from compare.report.at_a_glance import badge
+from compare.report.at_a_glance import badge, glances
 from compare.report.junit import junit
 from compare.report.matrix import Matrix, matrix
 from compare.report.page import page
@@ -34,10 +34,11 @@ def write_report(run: Run, output: Path) -> Matrix:
     arrays = tables(verdicts)
     _write(dict(arrays.values()), output)
     paths = {identity: path for identity, (path, _) in arrays.items()}
-    write_text(output / FILE, _lines(results(run, verdicts, stamp, paths), LINES) + "\n")
+    found = glances(run, verdicts)
+    write_text(output / FILE, _lines(results(run, verdicts, stamp, paths, found), LINES) + "\n")
     write_text(output / "junit.xml", junit(run, verdicts).decode("utf-8"))
     write_text(output / "badge.svg", badge(verdicts))
-    write_text(output / "index.html", page(run, verdicts, stamp, paths))
+    write_text(output / "index.html", page(run, verdicts, stamp, paths, found))
     return verdicts
 
 

@@ -20,16 +20,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["
 
 BLOCK = re.compile(r"(?ms)^ *```(\w*)\n(.*?)^ *```")
 PROGRAMS = (
-    "friction-discs",
-    "pytest",
-    "python",
-    "make",
-    "pip",
-    "npm",
-    "cc",
-    "cd",
-    "dask",
-    "export",
+    *("friction-discs", "pytest", "python", "make", "pip", "npm", "cc", "cd", "dask", "export"),
     ".ci/run",
 )
 DATA = ("{", '"offset"', '"state"', "t [s]", "0.", "...")
@@ -42,7 +33,7 @@ SMALLER = (
     (r"^(friction-discs sweep uncertainty .*)$", r"\1 --samples 256"),
     (r"^(friction-discs sweep continuation .*):100$", r"\1:2 --samples 4"),
     (r"^friction-discs plan .*$", "friction-discs plan fig03 --output motions"),
-    (r"^friction-discs report .*$", "friction-discs report fig03 --engine reference --jobs 1"),
+    (r"^friction-discs report .*$", "friction-discs report --claim fig03/rests --engine reference --jobs 1"),
     (r"^friction-discs matrix .*$", "friction-discs matrix --engine mypackage.mymodule:simulate --recorded"),
     (r"(07_engine_under_pytest:euler)$", r"\1 -k 'equal and not range and not stop'"),
 )
@@ -73,14 +64,15 @@ def reduced(line):
     return line
 
 
-def engine_names(words):
-    """Replace programs and engines that may not be installed by the reference."""
+def words_of(line):
+    """Return the words of a command with the reference in place of programs and engines that may be missing."""
     absent = ("exec:", "fmu:", "files:", *INSTALLED)
-    return ["reference" if word.startswith(absent) else word for word in words]
+    words = shlex.split(line, comments=True)
+    return tuple("reference" if word.startswith(absent) else word for word in words)
 
 
 def run_of_ours(words, capsys):
-    status = cli.status(engine_names(words))
+    status = cli.status(words)
     output, errors = capsys.readouterr()
     assert (status, errors.count("Traceback")) == (0, 0), errors
     return output
@@ -88,17 +80,10 @@ def run_of_ours(words, capsys):
 
 def run_of_pytest(words, capsys, fully):
     """Collect the tests, or run them if a page shows their output."""
-    options = [
-        "-p",
-        "no:cacheprovider",
-        "-p",
-        "no:xdist",
-        "-p",
-        "no:zarr",
-        "-q",
-        *["--collect-only"] * (not fully),
-    ]
-    assert pytest.main([*engine_names(words), *options]) == int(fully)  # the engine of that page fails
+    options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:zarr", "-q"] + ["--collect-only"] * (
+        not fully
+    )
+    assert pytest.main([*words, *options]) == int(fully)  # the engine of that page fails
     return capsys.readouterr().out
 
 
@@ -161,9 +146,8 @@ DONE = {}
 """Outputs of the commands that ran, so that none runs twice."""
 
 
-def output_of(line, capsys, fully):
+def output_of(program, words, capsys, fully):
     """Run one command and return its output; a run of pytest only ``fully`` if a page shows its output."""
-    program, *words = shlex.split(line, comments=True)
     if program == "friction-discs":
         return run_of_ours(words, capsys)
     if program == "pytest":
@@ -180,9 +164,11 @@ def test_the_commands_of_a_page_run_and_print_what_the_page_shows(page, lines, s
     printed = ""
     for line in lines:
         for command in map(reduced, re.sub(r"\s+#.*| >.*", "", line).split(" && ")):
-            if command not in DONE:
-                DONE[command] = " ".join(output_of(command, capsys, bool(shown)).split())
-            printed += DONE[command]
+            program, *words = words_of(command)
+            key = (program, *words)
+            if key not in DONE:
+                DONE[key] = " ".join(output_of(program, words, capsys, bool(shown)).split())
+            printed += DONE[key]
     assert [each for each in shown if " ".join(each.split()) not in printed] == []
 
 

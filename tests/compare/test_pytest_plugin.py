@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 from contextlib import redirect_stderr, redirect_stdout
 
 import pytest
-from processes import PATIENCE, ROOT
+from processes import PATIENCE, ROOT, work_here
 
 from compare.claims.claim import THEORY
 from compare.pytest_plugin import NOTHING_MEASURED, NOTHING_SHOWN
@@ -60,16 +60,28 @@ sliding.sticks = False
 CLAIMS = {study.name: list(study.sentences()) for study in STUDIES if study.only != (THEORY,)}
 
 
-def run(folder, *arguments):
+OWN = ("mine", "exiting", "example", "rough")
+"""Modules of engines, which differ between folders."""
+
+
+def run(folder, *arguments, here=True):
     """Run pytest in ``folder`` and return its exit status, its output, and {(claim, engine): (tag, text)}.
 
-    It runs in this process because starting pytest and the package takes longer than most tests.
+    It runs in this process because starting pytest and the package takes longer than most tests, and also measures
+    ``here``. The diagnosis of failing engines is left out.
     """
     output = io.StringIO()
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(output), redirect_stderr(output):
         patch.chdir(folder)
+        if here:
+            work_here(patch)
+        patch.setattr("compare.diagnosis.run.PROBES", ())
+        for name in OWN:
+            patch.delitem(sys.modules, name, raising=False)
         options = (*OPTIONS, *WITHOUT_OTHERS, *WITHIN_ANOTHER)
         status = pytest.main([*options, *arguments])
+        for name in OWN:
+            sys.modules.pop(name, None)
     return status, output.getvalue(), cases_in(folder)
 
 
@@ -110,10 +122,10 @@ def cases_in(folder):
     return cases
 
 
-def judge(folder, study, *names, options=(), run=run):
+def judge(folder, study, *names, options=(), run=run, **more):
     (folder / "mine.py").write_text(ENGINES)
     chosen = [argument for name in names for argument in ("--engine", name)]
-    return run(folder, "--pyargs", "compare", "--study", study, *chosen, *options)
+    return run(folder, "--pyargs", "compare", "--study", study, *chosen, *options, **more)
 
 
 def test_every_study_of_engines_lists_its_claims():
@@ -140,40 +152,26 @@ def test_every_claim_is_collected_once(tmp_path):
 def test_the_status_reports_missing_measurements_without_a_terminal_plugin(
     names, options, expected, tmp_path
 ):
-    status, *_ = judge(tmp_path, "sticking-domain", *names, options=(*options, "-p", "no:terminal"))
-    assert status == expected
+    options = (*options, "-k", "which", "-p", "no:terminal")
+    assert judge(tmp_path, "sticking-domain", *names, options=options)[0] == expected
 
 
 FAILING = {
     "mine:not_a_number": "s is not finite: [nan, ",
     "exiting:simulate": "engine 'exiting:simulate' cannot be imported: SystemExit: 0",
-    "mine:dying": "its process ended unexpectedly (exit status 3)",
     "mine:missing": "engine 'mine:missing' cannot be imported: module 'mine' has no attribute 'missing'",
 }
-
 
 ASKED = [claim for claim in CLAIMS["sticking-domain"] if "which" in claim]
 
 
-@pytest.fixture(scope="module")
-def judged(tmp_path_factory):
+def test_a_correct_engine_passes_next_to_failing_ones_which_show_the_reason(tmp_path):
+    (tmp_path / "exiting.py").write_text("raise SystemExit(0)")
     names = ("reference", "mine:resting", *FAILING)
-    (folder := tmp_path_factory.mktemp("judged")).joinpath("exiting.py").write_text("raise SystemExit(0)")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("compare.diagnosis.run.PROBES", ())
-        return judge(folder, "sticking-domain", *names, options=("-k", "which"))
-
-
-def test_every_claim_is_a_test_of_every_engine_and_a_correct_one_passes_next_to_failing_ones(judged):
-    status, _, cases = judged
+    status, output, cases = judge(tmp_path, "sticking-domain", *names, options=("-k", "which"))
     assert status == 1
-    engines = ("reference", "mine:resting", *FAILING)
-    assert set(cases) == {f"{claim} [{engine}]" for claim in ASKED for engine in engines}
+    assert set(cases) == {f"{claim} [{engine}]" for claim in ASKED for engine in names}
     assert {cases[f"{claim} [reference]"][0] for claim in ASKED} == {"passed"}
-
-
-def test_a_failed_claim_shows_its_error_budget_and_how_to_repeat_it(judged):
-    _, output, cases = judged
     tag, text = cases["The largest radius at which a stuck pin does not slip is (9) [mine:resting]"]
     assert tag == "failure"
     for part in (
@@ -186,30 +184,32 @@ def test_a_failed_claim_shows_its_error_budget_and_how_to_repeat_it(judged):
     ):
         assert part in text, part
     assert "Traceback" not in output
+    for engine, reason in FAILING.items():
+        for claim in ASKED:
+            tag, text = cases[f"{claim} [{engine}]"]
+            assert tag == "failure"
+            assert "no result: " in text
+            assert reason in text
 
 
-@pytest.mark.parametrize("engine", FAILING)
-def test_an_engine_without_an_answer_fails_with_the_reason(engine, judged):
-    _, _, cases = judged
-    for claim in ASKED:
-        tag, text = cases[f"{claim} [{engine}]"]
-        assert tag == "failure"
-        assert "no result: " in text
-        assert FAILING[engine] in text
+def test_every_claim_of_a_dying_engine_fails_with_the_reason(tmp_path):
+    _, _, cases = judge(tmp_path, "sticking-domain", "mine:dying", options=("-k", "which"), here=False)
+    reason = "no result: its process ended unexpectedly (exit status 3)"
+    assert [reason in text for _, text in cases.values()] == [True] * len(ASKED)
 
 
-@pytest.mark.parametrize("options", [(), ("--level", "quick")])
-def test_a_study_out_of_time_fails_no_claim(options, tmp_path, monkeypatch):
-    monkeypatch.setattr("compare.diagnosis.run.IN_SHORT", 1.0)
-    status, output, cases = judge(tmp_path, "fig04", "mine:hanging", options=("--study-limit", "1", *options))
+@pytest.mark.parametrize("quick", [False, True])
+def test_a_study_out_of_time_fails_no_claim(quick, tmp_path):
+    options = ("--study-limit", "1", *["--level", "quick"] * quick)
+    status, output, cases = judge(tmp_path, "fig04", "mine:hanging", options=options, here=False)
     assert set(cases) == set(CLAIMS["fig04"])  # a single engine is not named
     assert {tag for tag, _ in cases.values()} == {"skipped"}
     unfinished = [text for _, text in cases.values() if "not finished within 1 s" in text]
-    assert len(unfinished) == (0 if options else 1)  # the claim that was measured then
-    remedy = "use --level full" if options else "use a larger --study-limit"
+    assert len(unfinished) == (0 if quick else 1)  # the claim that was measured then
+    remedy = "use --level full" if quick else "use a larger --study-limit"
     reason = f"the study fig04 takes longer than 1 s with mine:hanging; {remedy}"
     assert f"not attempted: {reason} ({len(cases) - len(unfinished)} claims)" in output
-    assert status == (NOTHING_MEASURED if options else NOTHING_SHOWN)
+    assert status == (NOTHING_MEASURED if quick else NOTHING_SHOWN)
 
 
 def test_the_quick_level_does_not_attempt_claims_that_would_take_too_long(tmp_path):
@@ -238,9 +238,9 @@ def of_pins_that_slide(claim):
     return claim.split(": ")[1].startswith(("a pin", "pins")) and "stick" not in claim
 
 
-def test_on_several_cores_every_claim_is_reported_once(tmp_path):
+def test_claims_that_other_processes_measure_are_reported_once(tmp_path):
     status, output, cases = judge(
-        tmp_path, "sticking-domain", "mine:sliding", options=("-n", "2"), run=run_by_itself
+        tmp_path, "sticking-domain", "mine:sliding", options=("-n", "1"), run=run_by_itself
     )
     assert status == NOTHING_MEASURED
     assert set(cases) == set(CLAIMS["sticking-domain"])
@@ -267,14 +267,13 @@ def example(tmp_path):
     return tmp_path
 
 
-def test_the_example_fails_without_its_error_and_passes_with_it(example, monkeypatch):
+def test_the_example_fails_without_its_error_and_passes_with_it(example):
     """The number of inconclusive claims of the coarse engine depends on the remaining time."""
     allowed = {
         "example:euler": {"failure"},
         "example:runge_kutta": {"passed"},
         "rough:honest": {"passed", "skipped"},
     }
-    monkeypatch.setattr("compare.diagnosis.run.PROBES", ())
     left_out = ("hardens", "range", "play", "Momentum", "Position")
     chosen = ("-k", " and ".join(f"not {word}" for word in left_out))
     _, output, cases = judge(example, "trajectories", *allowed, options=chosen)
@@ -358,15 +357,7 @@ for folder, arguments in json.loads(sys.argv[1]):
 
 
 def test_the_tests_of_others_do_not_notice_the_plugin(tmp_path):
-    options = [
-        "--engine",
-        "diesel",
-        *WITHOUT_OTHERS,
-        "-o",
-        "pythonpath=.",
-        "-p",
-        "no:cacheprovider",
-    ]
+    options = ["--engine", "diesel", *WITHOUT_OTHERS, "-o", "pythonpath=.", *OPTIONS]
     runs = []
     for i, (file, named) in enumerate(OTHERS.items()):
         folder = tmp_path / str(i)

@@ -84,6 +84,7 @@ FAILURES = [
 ]
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(("error", "status", "sentence"), FAILURES, ids=["Ctrl-C", "full disk"])
 def test_a_half_written_motion_leaves_the_older_file(error, status, sentence, file, monkeypatch, capsys):
     whole = WRITERS[file.suffix]

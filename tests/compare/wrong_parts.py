@@ -39,6 +39,11 @@ items: Any = exudyn.itemInterface
 CAR = centred_car()
 
 
+def replaced(owner, name, wrong):
+    """Return a patch that puts ``wrong(right)`` in place of the attribute ``right`` of ``owner``."""
+    return lambda patch: patch.setattr(owner, name, wrong(getattr(owner, name)))
+
+
 def factors_on(owner, factors):
     """Return the attributes of ``owner`` multiplied by ``factors``, by name."""
     return {name: factor * getattr(owner, name) for name, factor in factors.items()}
@@ -69,17 +74,15 @@ def clutch_parts_off(**factors):
 def heat_astray(share):
     """Return a patch that withholds a share of the heat from the thermal node."""
 
-    def put(patch):
-        add = exudyn_models.add_ring_friction
-
+    def wrong(add):
         def added(*arguments, **options):
             friction = add(*arguments, **options)
             options["thermal_node"].heated_by(lambda mbs, t: -share * friction.power(mbs, t))
             return friction
 
-        patch.setattr(exudyn_models, "add_ring_friction", added)
+        return added
 
-    return put
+    return replaced(exudyn_models, "add_ring_friction", wrong)
 
 
 # ---------------------------------------------------------------- coupled clutches
@@ -113,8 +116,7 @@ def first_load_late(patch):
 def torque_late(patch):
     """Delay the torque by 0.1 ms."""
     coarsely(patch)
-    on_time = coupled_models.torque
-    patch.setattr(coupled_models, "torque", lambda time: on_time(time - 1e-4))
+    replaced(coupled_models, "torque", lambda on_time: lambda time: on_time(time - 1e-4))(patch)
 
 
 def creep_of_another_order(patch):
@@ -129,48 +131,40 @@ def creep_of_another_order(patch):
 
 def bench_off(**factors):
     """Return a patch that changes the drivetrain on the bench by ``factors``."""
-
-    def put(patch):
-        build, other = Operation.build, replace(CAR, **factors_on(CAR, factors))
-        patch.setattr(Operation, "build", lambda operation, car: build(operation, other))
-
-    return put
+    other = replace(CAR, **factors_on(CAR, factors))
+    return replaced(Operation, "build", lambda build: lambda operation, car: build(operation, other))
 
 
 def radial_damping_off(factor):
     """Return a patch that changes the drivetrain's radial damping by ``factor``."""
-
-    def put(patch):
-        build = exudyn_models.build_drivetrain
-
-        def built(car, **options):
-            return build(replace(car, radial_damping=factor * CAR.radial_damping), **options)
-
-        patch.setattr(exudyn_models, "build_drivetrain", built)
-
-    return put
+    damping = factor * CAR.radial_damping
+    return replaced(
+        exudyn_models,
+        "build_drivetrain",
+        lambda build: lambda car, **options: build(replace(car, radial_damping=damping), **options),
+    )
 
 
 def reaction_without_the_arm_of_the_force(patch):
     """Derive the engine's row of the state matrix from the disc's row."""
-    matrix = linear_matrices.state_matrix
 
-    def without_arm(mbs):
-        result = matrix(mbs)
-        result[5] = -result[9] * CAR.disc_inertia / CAR.engine_inertia
-        return result
+    def wrong(matrix):
+        def without_arm(mbs):
+            result = matrix(mbs)
+            result[5] = -result[9] * CAR.disc_inertia / CAR.engine_inertia
+            return result
 
-    patch.setattr(linear_matrices, "state_matrix", without_arm)
+        return without_arm
+
+    replaced(linear_matrices, "state_matrix", wrong)(patch)
 
 
 def whirling_car_off(**factors):
     """Return a patch that changes the whirling car by ``factors``."""
-
-    def put(patch):
-        build, other = whirls.build, replace(CAR, **factors_on(CAR, factors))
-        patch.setattr(whirls, "build", lambda car, whirl, **options: build(other, whirl, **options))
-
-    return put
+    other = replace(CAR, **factors_on(CAR, factors))
+    return replaced(
+        whirls, "build", lambda build: lambda car, whirl, **options: build(other, whirl, **options)
+    )
 
 
 def balance_that_does_not_close(patch):
@@ -187,34 +181,26 @@ def balance_that_does_not_close(patch):
 def moment_from_outside(moment):
     """Return a patch that applies a moment in N m to a planar disc."""
 
-    def put(patch):
-        add = exudyn_models.add_radial_support
-
+    def wrong(add):
         def with_moment(mbs, base, disc, **parameters):
             marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=disc, coordinate=2))
             mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=moment))
             return add(mbs, base, disc, **parameters)
 
-        patch.setattr(exudyn_models, "add_radial_support", with_moment)
+        return with_moment
 
-    return put
+    return replaced(exudyn_models, "add_radial_support", wrong)
 
 
 def shaft_of_exudyns_own_springs(patch):
     """Apply the shaft's force at the centres of both bodies, not along the line between them."""
 
-    def springs(mbs, base, disc, *, stiffness, damping, offset):
+    def added(mbs, base, disc, *, stiffness, damping, offset):
         markers = [mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node)) for node in (base, disc)]
-        mbs.AddObject(
-            items.CartesianSpringDamper(
-                markerNumbers=markers,
-                stiffness=[stiffness] * 3,
-                damping=[damping] * 3,
-                offset=[*offset, 0.0],
-            )
-        )
+        springs = {"stiffness": [stiffness] * 3, "damping": [damping] * 3, "offset": [*offset, 0.0]}
+        mbs.AddObject(items.CartesianSpringDamper(markerNumbers=markers, **springs))
 
-    patch.setattr(exudyn_models, "add_radial_support", springs)
+    patch.setattr(exudyn_models, "add_radial_support", added)
 
 
 def run_up_with(orders, until=6000.0):
@@ -224,13 +210,8 @@ def run_up_with(orders, until=6000.0):
     speed = start + (end - start) * times / times[-1]
     angle = start * times + 0.5 * (end - start) * times**2 / times[-1]
     z = sum(amplitude * np.exp(1j * order * angle) for order, amplitude in orders.items())
-    disc = np.column_stack((z.real, z.imag, angle))
-    return {
-        "times": times,
-        "engine": np.column_stack((angle, speed)),
-        "disc": disc,
-        "slip": 12.0 + 0.0 * times,
-    }
+    engine, disc = np.column_stack((angle, speed)), np.column_stack((z.real, z.imag, angle))
+    return {"times": times, "engine": engine, "disc": disc, "slip": 12.0 + 0.0 * times}
 
 
 def as_predicted(off=0.0):
@@ -260,12 +241,9 @@ def moving(data):
 
 def heat_counted_wrong(factor):
     """Return a patch that multiplies the power of friction by ``factor``."""
-
-    def put(patch):
-        power = RingFriction.power
-        patch.setattr(RingFriction, "power", lambda friction, mbs, t: factor * power(friction, mbs, t))
-
-    return put
+    return replaced(
+        RingFriction, "power", lambda power: lambda friction, mbs, t: factor * power(friction, mbs, t)
+    )
 
 
 # ---------------------------------------------------------------- Exudyn's solvers
@@ -295,27 +273,26 @@ def first_order(patch):
 def wider(factor):
     """Return a patch that changes ε of the solvers by ``factor``."""
 
-    def put(patch):
-        right = exudyn_models.simulate_fixed_step
-
+    def wrong(right):
         def wide(*arguments, **options):
             if "regularisation" in options:
                 options["regularisation"] *= factor
             return right(*arguments, **options)
 
-        patch.setattr(exudyn_models, "simulate_fixed_step", wide)
+        return wide
 
-    return put
+    return replaced(exudyn_models, "simulate_fixed_step", wrong)
 
 
 def half_order(patch):
     """Make ε decrease as the root of the requested value."""
-    right = exudyn_models.simulate
 
-    def rough(*arguments, tolerance, regularisation):
-        return right(*arguments, tolerance=tolerance, regularisation=1e-2 * regularisation**0.5)
+    def wrong(right):
+        return lambda *arguments, tolerance, regularisation: right(
+            *arguments, tolerance=tolerance, regularisation=1e-2 * regularisation**0.5
+        )
 
-    patch.setattr(exudyn_models, "simulate", rough)
+    replaced(exudyn_models, "simulate", wrong)(patch)
 
 
 # ---------------------------------------------------------------- the full disc

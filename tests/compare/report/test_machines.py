@@ -54,19 +54,6 @@ def test_results_list_studies_engines_and_versions(results):
     assert "inf" not in results["stamp"].values()
 
 
-def test_tables_restore_all_numbers_of_a_claim(reported):
-    found = read_results(reported[1])["studies"][0]["claims"]
-    claims = {one["sentence"]: claim_from_json(one) for one in found if one["engine"] == "good"}
-    for made in measure_verdicts(GOOD).claims:
-        back = claims[made.sentence]
-        np.testing.assert_array_equal(back.predicted, made.predicted)
-        np.testing.assert_array_equal(back.measured, made.measured)
-        np.testing.assert_array_equal(
-            back.budget.numerical, np.broadcast_to(made.budget.numerical, made.predicted.shape)
-        )
-        assert back.verdict is made.verdict
-
-
 def mixed(engine):
     """A claim with numbers in two units, one of them missing, that an engine makes twice."""
     parts = {"unit": "m, rad", "axes": (("a", "b"), ("x in m", "angle in rad")), "size": [1.0, np.inf]}
@@ -91,18 +78,8 @@ def test_a_table_contains_unit_and_place_of_each_number(tmp_path, monkeypatch, l
         assert table[4] == f'good,1,3,"b, angle in rad",rad,{1 / 3!r},{1 / 3!r},0.5,inf'
 
 
-FITS = Validation(
-    "Theory predicts with an error of 5.0 ± 0.5 degrees.",
-    "heading",
-    "degrees",
-    5.0,
-    0.5,
-    2.0,
-    0.1,
-    0.01,
-    0.5,
-    40,
-)
+SENTENCE = "Theory predicts with an error of 5.0 ± 0.5 degrees."
+FITS = Validation(SENTENCE, "heading", "degrees", 5.0, 0.5, 2.0, 0.1, 0.01, 0.5, 40)
 
 
 def one_validation():

@@ -4,6 +4,7 @@ import json
 from functools import lru_cache
 
 import numpy as np
+import pytest
 
 from compare.claims.error_estimates import refined
 from compare.claims.measured import Measured
@@ -15,6 +16,8 @@ from compare.cli.trajectory_files import write_csv
 from compare.engines import engines
 from compare.run.plan import planned
 from reference_model import PinOnDisc, simulate
+
+pytestmark = pytest.mark.usefixtures("in_this_process")
 
 STUDY = Study("planned", Prose("A study of all sorts"))
 START = (0.1, 0.0, 0.03, 0.0)
@@ -61,21 +64,14 @@ def of_a_disc(engine):
     return measured(lambda tolerance: radius(engine, tolerance))
 
 
-def questions(found):
-    return [json.loads(line) for line in found.motions]
-
-
-def test_only_claims_with_fixed_motions_are_planned():
-    found = planned(STUDY, ("pin",))
-    assert (found.claims, found.adaptive) == (2, 2)
-    assert [question["tolerance"] for question in questions(found)] == [1e-9, 1.25e-10]
-    assert {question["system"]["kind"] for question in questions(found)} == {"pin"}
-
-
-def test_motions_are_planned_for_the_kind_of_engine():
-    found = planned(STUDY, ("pin", "ring"))
-    assert (found.claims, found.adaptive) == (3, 2)
-    assert {question["system"]["kind"] for question in questions(found)} == {"pin", "ring"}
+@pytest.mark.parametrize(("kinds", "claims"), [(("pin",), 2), (("pin", "ring"), 3)])
+def test_only_claims_with_fixed_motions_of_the_engines_kinds_are_planned(kinds, claims):
+    found = planned(STUDY, kinds)
+    assert (found.claims, found.adaptive) == (claims, 2)
+    questions = [json.loads(line) for line in found.motions]
+    assert {question["system"]["kind"] for question in questions} == set(kinds)
+    tolerances = [one["tolerance"] for one in questions if one["system"]["kind"] == "pin"]
+    assert tolerances == [1e-9, 1.25e-10]
 
 
 def test_answers_to_the_plan_of_the_command_line_are_judged(tmp_path, monkeypatch, capsys):

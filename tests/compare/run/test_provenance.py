@@ -64,23 +64,20 @@ def test_a_processor_without_a_name_is_reported_by_its_architecture(monkeypatch)
 def test_a_users_settings_of_exudyn_are_off_and_reports_state_it(first, settings, tmp_path):
     (tmp_path / "config.json").write_text('{"version": 1, "config": {"suppressWarnings": true}}')
     code = (
-        f"import {first}, exudyn\n"
-        "import compare.run.runner\n"
-        "from compare.run.provenance import exudyn_user_settings\n"
-        "from compare.run.workers import Workers\n"
-        "from exudyn.misc.overrideSettings import Applied\n"
-        "if __name__ == '__main__':\n"
-        "    with Workers(2) as workers:\n"
-        "        workers.submit('key', Applied)\n"
-        "        in_worker = [done.value for done in workers.finished()]\n"
-        "    print(bool(Applied()), in_worker, exudyn_user_settings())\n"
+        "if __name__ == '__main__':\n"  # not in the worker
+        f"    import {first}, exudyn\n"
+        "    from compare.run.provenance import exudyn_user_settings\n"
+        "    from compare.run.workers import Workers\n"
+        "    from exudyn.misc.overrideSettings import Applied\n"
+        "    with Workers() as workers:\n"
+        "        print(bool(Applied()), workers.ask(Applied), exudyn_user_settings())\n"
     )
     (tmp_path / "script.py").write_text(code)
     variables = environment(EXUDYN_CONFIG_FILE=str(tmp_path / "config.json"))
     del variables["EXUDYN_NO_USER_SETTINGS"]
     command = [sys.executable, str(tmp_path / "script.py")]
     done = subprocess.run(command, env=variables, capture_output=True, text=True)
-    expected = f"{settings == 'on'} [[]] {settings}\n"
+    expected = f"{settings == 'on'} [] {settings}\n"
     assert done.stdout.endswith(expected), done.stdout + done.stderr
 
 

@@ -1,5 +1,6 @@
-"""Worker processes: their imports, and the reasons for their end."""
+"""Worker processes: their imports, their time limit, and the reasons for their end."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -8,38 +9,24 @@ import tempfile
 import time
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from processes import wait_until
+from processes import ended, environment, wait_for, wait_until
+from work import (
+    close_all_descriptors,
+    kill,
+    last_words,
+    leave_a_folder_and,
+    raise_it,
+    speak,
+    spoil,
+    start_a_child,
+)
 
 from compare.engines import engines
+from compare.run import workers as module
 from compare.run.workers import Failure, Workers
-
-
-def last_words(status):
-    """End this process abruptly, after two lines on its standard error."""
-    os.write(2, "what comes before\nthe last word: 1 µm\n".encode())
-    os._exit(status)
-
-
-def speak(text):
-    os.write(1, f"raw {text}\n".encode())
-    print(text, flush=True)
-    print(text, file=sys.stderr, flush=True)
-
-
-def kill(number):
-    os.kill(os.getpid(), number)
-
-
-def raise_it(error):
-    raise error
-
-
-def close_all_descriptors(then, *arguments):
-    os.closerange(0, 200)
-    then(*arguments)
-
 
 SUDDEN = "its process ended unexpectedly"
 
@@ -71,26 +58,39 @@ def test_any_end_of_a_process_is_reported_without_a_traceback(function, argument
     assert capfd.readouterr().err == ""
 
 
-def done(function, *arguments):
-    with Workers(2) as workers:
-        workers.submit("key", function, *arguments)
-        (one,) = workers.finished()
-    return one.value
-
-
-def leave_a_folder_and(end, *arguments):
-    tempfile.mkdtemp()
-    end(*arguments)
-
-
 @pytest.mark.parametrize(("end", "argument"), [(len, ""), (os._exit, 1), (time.sleep, 3600.0)])
 def test_temporary_files_of_a_process_are_removed_however_it_ends(end, argument, tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     with Workers(1, limit=3.0) as workers:
-        workers.submit("key", leave_a_folder_and, end, argument)
-        list(workers.finished())
+        workers.ask(leave_a_folder_and, end, argument)
     assert not list(tmp_path.iterdir())
+
+
+def test_work_ends_at_the_limit_and_the_rest_continues(tmp_path, monkeypatch):
+    """The clock jumps during the work, first to just before the limit, then beyond it."""
+    running, limit, wait, looks = tmp_path / "running", 1000.0, module.wait, itertools.count()
+
+    def monotonic():
+        jump = 0.0 if not running.exists() else 0.9 if next(looks) < 9 else 2.0
+        return time.monotonic() + jump * limit
+
+    monkeypatch.setattr(module, "time", SimpleNamespace(monotonic=monotonic, sleep=time.sleep))
+    monkeypatch.setattr(module, "wait", lambda connections, left: wait(connections, min(left, 0.05)))
+    with Workers(limit=limit) as workers:
+        workers.submit("file", Path.touch, running)
+        workers.submit("unending", time.sleep, 3600.0)
+        workers.submit("next", len, "next")
+        touched, late, following = workers.finished()
+    assert next(looks) > 9
+    assert late.value == Failure("not finished within 1000 s", unfinished=True)
+    assert (touched.value, late.seconds, following.value) == (None, limit, 4)
+
+
+def test_work_that_cannot_be_sent_is_reported(workers):
+    reason = workers.ask(lambda: None).reason
+    assert reason.startswith("cannot be sent to another process (Can't pickle ")
+    assert reason.endswith("use functions of a module")
 
 
 @pytest.fixture
@@ -104,31 +104,22 @@ def folder(tmp_path, monkeypatch):
     del sys.modules["engine_of_this_folder"]
 
 
-def test_a_worker_imports_from_the_folder_of_the_engine(folder):
-    assert done(folder[1]) == 42
-
-
-@pytest.mark.parametrize("stray", ["random", "socket"])
-def test_a_stray_module_does_not_replace_a_library_module(stray, folder):
-    (folder[0] / f"{stray}.py").write_text("raise SystemExit('the stray one was imported')\n")
-    assert isinstance(done(tempfile.gettempdir), str)
+def test_a_worker_imports_from_the_folder_of_the_engine_but_no_stray_library(folder):
+    for stray in ("random", "socket"):
+        (folder[0] / f"{stray}.py").write_text("raise SystemExit('the stray one was imported')\n")
+    with Workers() as workers:
+        assert isinstance(workers.ask(tempfile.gettempdir), str)
+        assert workers.ask(folder[1]) == 42
 
 
 def test_a_sudden_end_is_reported_with_the_last_line_on_standard_error(workers, capfd):
-    assert workers.ask(last_words, 3) == Failure(
-        "its process ended unexpectedly (exit status 3): the last word: 1 µm"
-    )
+    assert workers.ask(last_words, 3) == Failure(f"{SUDDEN} (exit status 3): the last word: 1 µm")
     assert capfd.readouterr().err == "what comes before\nthe last word: 1 µm\n"
 
 
 def test_output_of_a_worker_is_made_printable(workers, capfd):
     assert workers.ask(speak, "\x1b[31m \x9b") is None
     assert capfd.readouterr() == ("", "raw \\x1b[31m \\x9b\n" + 2 * "\\x1b[31m \\x9b\n")
-
-
-def spoil(module):
-    sys.modules[module] = None
-    return os.getpid()
 
 
 def test_a_process_never_works_for_two_engines(workers):
@@ -150,13 +141,39 @@ def test_child_processes_of_a_worker_end_with_it():
     wait_until(lambda: not is_alive(child))
 
 
-def start_a_child():
-    return subprocess.Popen(["sleep", "60"]).pid
-
-
 def is_alive(number):
     """Return whether a process runs; zombies do not."""
     try:
         return "Z" not in Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
         return False
+
+
+OUTLIVING = """
+import sys, time
+from pathlib import Path
+from compare.run.workers import Workers
+
+if __name__ == "__main__":
+    with Workers(2) as workers:
+        workers.submit("first", time.sleep, 3600.0)
+        workers.submit("second", Path.touch, Path(sys.argv[1]))
+        list(workers.finished())
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="groups of processes are a POSIX thing")
+def test_no_process_outlives_a_killed_one(tmp_path):
+    running, script = tmp_path / "running", tmp_path / "script.py"
+    script.write_text(OUTLIVING)
+    process = subprocess.Popen(
+        [sys.executable, str(script), str(running)],
+        env=environment(TMPDIR=str(tmp_path)),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    wait_for(process, running)
+    process.kill()
+    process.wait()
+    wait_until(lambda: ended(process.pid))

@@ -52,7 +52,7 @@ def test_the_exact_reference_confirms_every_closed_form():
     assert results["score"] == {"exact": 22, "good": 0, "fair": 0, "fails": 0, "not simulated": 0}
 
 
-def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, capsys):
+def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, capsys, in_this_process):
     (tmp_path / "stepper.py").write_text(
         inspect.getsource(stepped)
         + "\nfrom types import SimpleNamespace\nimport numpy as np\nfrom reference_model import Trajectory\n"
@@ -64,6 +64,7 @@ def test_the_command_prints_and_writes_the_benchmark(tmp_path, monkeypatch, caps
         + "simulate.step = 1e-2\n"
     )
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     options = ["--benchmark", "--engine", "reference", "--engine", "stepper:simulate", "--output", "found"]
     assert cli.status(["matrix", *options]) == 1
     printed = capsys.readouterr().out
