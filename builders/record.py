@@ -163,7 +163,8 @@ def record(name: str) -> dict[str, Any]:
             for key, case in CASES.items()
             if setting.engine.simulates(case.system)
         }
-        settings.append({"name": title, "says": setting.says, "probes": probes(setting.engine), "runs": runs})
+        about = {"name": title, "says": setting.says, "step": setting.engine.step}
+        settings.append(about | {"probes": probes(setting.engine), "runs": runs})
     return {
         "engine": INSTALLED[name].title if name in INSTALLED else PROGRAMS.get(name, name),
         "version": setting.engine.version or version(OURS[name]),

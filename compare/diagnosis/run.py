@@ -15,7 +15,7 @@ from compare.diagnosis.ladder import RUNGS, falling
 from compare.diagnosis.probes import CHECKED_FOR, first_check
 from compare.diagnosis.row import Row
 from compare.engines import Engine, UnsupportedSystemError, owner_of
-from compare.foreign import CASES, ERROR, SECONDS, TOLERANCE, Recording, estimate, recordings
+from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
 from compare.run.workers import Failure, Workers
 from reference_model.systems import DiscOnDisc, FloatArray, PinOnDisc, System
@@ -162,19 +162,22 @@ def recorded_rows() -> tuple[Row, ...]:
 
 def row_of(recording: Recording) -> Row:
     """Return the row of a recording."""
-    motions = {name: _motion(runs, name) for name, runs in recording.runs.items()}
+    step = recording.step
+    motions = {name: _motion(runs, name, by_step=step is not None) for name, runs in recording.runs.items()}
     probes = {name: from_json(PROBES[name], content) for name, content in recording.probes.items()}
     version = f"{recording.version}, recorded on {recording.recorded}"
     lacking = tuple(name for name in CASES if name not in recording.runs)
-    return Row(recording.name, version, motions=motions, not_simulated=lacking, **probes)
+    return Row(recording.name, version, step or math.nan, motions=motions, not_simulated=lacking, **probes)
 
 
-def _motion(runs: FloatArray, name: str) -> Motion:
-    ratio = float(runs[-2, TOLERANCE] / runs[-1, TOLERANCE]) if len(runs) > 1 else math.nan
+def _motion(runs: FloatArray, name: str, *, by_step: bool) -> Motion:
+    last = runs[[-min(len(runs), 3), -1]]  # two refinements, because the last may be small
+    sizes = 1.0 / last[:, STEPS] if by_step else last[:, TOLERANCE]
+    ratio = float(sizes[0] / sizes[1]) if len(runs) > 1 else math.nan
     return Motion(
         tuple(runs[-RUNGS:, ERROR].tolist()),
         estimate(runs) + ROUNDING * max(map(abs, CASES[name].start)),
-        falling(runs[-2:, ERROR], ratio),
+        falling(last[:, ERROR], ratio),
         CASES[name].resolution,
         float(runs[-1, SECONDS]),
     )

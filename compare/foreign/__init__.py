@@ -177,6 +177,7 @@ class Recording:
     platform: str
     setting: str  # name; "" for one of our own engines
     says: str
+    step: float | None  # in s at the usual tolerance; None if the engine has a tolerance
     runs: Mapping[str, FloatArray]
     probes: Mapping[str, Any]  # parts ``compare.diagnosis.findings.PROBES`` as JSON; empty if not recorded
 
@@ -199,8 +200,8 @@ def recordings() -> tuple[Recording, ...]:
         about = {key: file[key] for key in ("engine", "version", "recorded", "platform")}
         for setting in file["settings"]:
             runs = {case: np.array(rows, dtype=float) for case, rows in setting["runs"].items()}
-            own = {"setting": setting["name"], "says": setting["says"], "probes": setting.get("probes", {})}
-            found.append(Recording(**about, **own, runs=runs))
+            own = {"setting": setting["name"], "says": setting["says"], "step": setting.get("step")}
+            found.append(Recording(**about, **own, runs=runs, probes=setting.get("probes", {})))
     return tuple(sorted(found, key=lambda it: (it.setting != "", it.engine != "reference", it.engine)))
 
 

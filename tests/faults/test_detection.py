@@ -7,10 +7,18 @@ import pytest
 from compare.claims.claim import Verdict
 from compare.engines import EVERY_KIND, BadTrajectoryError, Engine
 from compare.studies.engines.trajectories import STUDY
+from compare.studies.engines.trajectories.study import NAMES
+from compare.studies.engines.trajectories.theory import ONE_OF_EACH_KIND
 from faults import FAULTS, SOUND
 from reference_model.trajectory import SimulationError
 
 OF_ENGINES = [one for one in STUDY.declared if one.of_engine]
+
+MOTIONS = sorted(
+    {case: None for one in OF_ENGINES for case, _ in one.cases()},
+    key=lambda case: (case not in [NAMES[one] for one in ONE_OF_EACH_KIND], case not in NAMES.values()),
+)
+"""One motion of each kind first, and random ones last, because they take longest."""
 
 
 def caught(engine):
@@ -18,7 +26,7 @@ def caught(engine):
 
     If the engine fails, no claim can pass, so the kinds are those of all claims.
     """
-    for motion in dict.fromkeys(case for one in OF_ENGINES for case, _ in one.cases()):
+    for motion in MOTIONS:
         parts = {one.part(case) for one in OF_ENGINES for case, _ in one.cases() if case == motion}
         try:
             claims = STUDY.measure(engine, only=parts).claims
@@ -44,10 +52,9 @@ def test_two_kinds_of_claims_catch_every_fault(fault):
     assert caught_twice(fault)
 
 
-@pytest.mark.parametrize("engine", SOUND, ids=lambda engine: engine.name)
-def test_no_claim_accuses_a_sound_engine(engine):
+def test_no_claim_accuses_a_sound_engine():
     """The engine gets a new name, like a fault, so the test above cannot pass because of a name."""
-    assert not any(sentences for sentences, _ in caught(replace(engine, name="harmless")))
+    assert not any(sentences for sentences, _ in caught(replace(SOUND[1], name="harmless")))
 
 
 def test_engine_that_fails_is_caught_by_all_kinds_of_claims():

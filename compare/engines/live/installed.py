@@ -63,6 +63,12 @@ INSTALLED = {
         "Linux, macOS and Windows",
         ("friction-joint", "shipped"),
     ),
+    "ode": Installed(
+        "ODE",
+        "Py3ODE",
+        "no platform, but Debian and Ubuntu have the package python3-pyode",
+        ("along-slip", "shipped"),
+    ),
     "newton": Installed(
         "Newton",
         "newton",

@@ -280,6 +280,8 @@ def test_recorded_engines_have_rows_like_the_others(tmp_path):
     assert by_name["MuJoCo, pyramidal cone"].sentences[0].startswith(nearest)
     assert by_name["MuJoCo, elliptic cone"].sentences[0].startswith("Coulomb friction, accurate to ")
     assert not by_name["Drake, TAMSI"].wrong
+    assert "Errors are of order 0.9 to 1.0 in the step." in by_name["Drake, TAMSI"].sentences
+    assert "Errors are of order 0.3 to 0.5 in the tolerance." in by_name["Drake, cenic"].sentences
     assert set(by_name["Drake, TAMSI"].motions) <= set(MOTIONS)
     mine = Row("mine", motions={"slip": Motion((1e-2, 5e-3, 2e-3, 1e-3), 3e-3, 1.0, 0.025, 0.1)})
     write_rows([*rows, mine], tmp_path)

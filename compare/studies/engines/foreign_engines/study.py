@@ -240,10 +240,10 @@ def creeps() -> Measured:
 
 
 ROWS = (
-    *(("Bullet",), ("DART",), ("Drake",), ("MuJoCo",)),
+    *(("Bullet", "ODE"), ("DART",), ("Drake",), ("MuJoCo",)),
     *(("Box2D", "Chipmunk", "planck"), ("Jolt", "Rapier", "cannon-es")),
 )
-"""Engines of the rows; those of the last two rows have two settings each."""
+"""Engines of the rows, each with up to six settings."""
 
 LOOKS = tuple(zip((BLUE, ORANGE, GREEN, PURPLE, SKY, BLACK), "os^Dvx", strict=True))
 

@@ -28,6 +28,7 @@ FIRST_ORDER = (
     "Drake, lagged",
     "DART, NSGS",
     "DART, FBF",
+    "ODE, along the slip",
     "Bullet, our force",
     "DART, our force",
     "Chipmunk, pivot joint",
@@ -45,7 +46,7 @@ OFF_FOR_DISCS = ("Bullet, cone", "Chipmunk, pivot joint")
 
 BOXES, PYRAMIDS = ("Bullet, box", "DART, Dantzig", "DART, PGS"), ("MuJoCo, pyramidal cone",)
 
-BY_AXIS = PYRAMIDS + BOXES
+BY_AXIS = (*PYRAMIDS, *BOXES, "ODE, as shipped")
 """Settings whose friction depends on two axes of the world instead of the direction of slip."""
 
 STICKING = (
@@ -57,7 +58,7 @@ STICKING = (
 
 TANGENTS = (
     *("Bullet, cone", "Bullet, box", "DART, NSGS", "DART, FBF", "DART, Dantzig", "DART, PGS"),
-    *("Chipmunk, pivot joint", "Box2D, friction joint"),
+    *("Chipmunk, pivot joint", "Box2D, friction joint", "ODE, as shipped"),
 )
 """Settings without slip at the end of a step during stick, and with negligible rounding."""
 

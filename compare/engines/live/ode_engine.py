@@ -1,0 +1,79 @@
+"""ODE as an engine: friction along the slip, or its default box along the axes of the world.
+
+Written for ODE 0.16 by Py3ODE, in double precision. Contact joints are at the height of the centre of mass, so
+friction does not tip the body. The plate is a kinematic body that turns at ω.
+
+- By default, ODE bounds friction in each of two directions by a constant, here μN/n, whatever the load. A direction
+  along the slip, and none across it, give the cone. A bound across the slip would hold the body on its course.
+- Steps are semi-implicit, so friction opposes the slip at their end. Springs, dampers and shaft are forces.
+"""
+
+from __future__ import annotations
+
+import cmath
+from importlib.metadata import version
+
+import numpy as np
+import ode
+
+from compare.engines.live.setting import Model, Setting, inertia_of, shaft_torque, support_force
+from reference_model.systems import FloatArray
+
+
+class _World(Model):
+    engine = "ODE"
+
+    def build(self, state: FloatArray, tolerance: float, *, along_slip: bool) -> None:
+        system, self.along_slip, self.turn = self.system, along_slip, 0.0
+        self.method = f"ODE by Py3ODE {version('Py3ODE')}, semi-implicit Euler"
+        self.world, self.contacts = ode.World(), ode.JointGroup()
+        self.plate, self.body, mass = ode.Body(self.world), ode.Body(self.world), ode.Mass()
+        mass.setParameters(system.mass, 0.0, 0.0, 0.0, *[inertia_of(system)] * 3, 0.0, 0.0, 0.0)
+        self.body.setMass(mass)
+        self.plate.setKinematic()
+        self.plate.setAngularVel((0.0, 0.0, system.disc_speed))
+        places, speeds = state.reshape(2, -1).tolist()
+        self.body.setPosition((*places[:2], 0.0))
+        self.body.setLinearVel((*speeds[:2], 0.0))
+        if self.half > 2:
+            self.turn = places[2]
+            self.body.setAngularVel((0.0, 0.0, speeds[2]))
+
+    def advance(self, h: float, number: int) -> FloatArray:
+        body = self.body
+        for _ in range(number):
+            z, v, spin = complex(*body.getPosition()[:2]), complex(*body.getLinearVel()[:2]), self._spin()
+            force = support_force(self.system, z, v)
+            body.addForce((force.real, force.imag, 0.0))
+            body.addTorque((0.0, 0.0, shaft_torque(self.system, spin)))
+            for unturned in self.arms:
+                arm = unturned * cmath.rect(1.0, self.turn)
+                self._touch(z + arm, v + 1j * (spin * arm - self.system.disc_speed * (z + arm)))
+            self.world.step(h)
+            self.contacts.empty()
+            self.turn += h * self._spin()
+        places = (*body.getPosition()[:2], self.turn)[: self.half]
+        return np.array([*places, *(*body.getLinearVel()[:2], self._spin())[: self.half]])
+
+    def _spin(self) -> float:
+        return float(self.body.getAngularVel()[2])
+
+    def _touch(self, place: complex, slip: complex) -> None:
+        contact = ode.Contact()
+        contact.setContactGeomParams((place.real, place.imag, 0.0), (0.0, 0.0, 1.0), 0.0)
+        contact.setMu(self.system.friction_force / len(self.arms))
+        if self.along_slip and slip:
+            contact.setMode(ode.ContactFDir1 | ode.ContactMu2)
+            contact.setFDir1((slip.real / abs(slip), slip.imag / abs(slip), 0.0))
+            contact.setMu2(0.0)
+        ode.ContactJoint(self.world, self.contacts, contact).attach(self.body, self.plate)
+
+
+along_slip = Setting(
+    "along the slip",
+    "with friction along the slip alone, by fdir1 and a mu2 of 0, which is Coulomb's cone with steps of order 1.",
+    _World,
+    {"along_slip": True},
+    linear=False,
+)
+shipped = Setting("as shipped", "with its default box.", _World, {"along_slip": False}, linear=False)
