@@ -125,4 +125,4 @@ def _renew_locks(mbs: Any, contact: Contact, stick: AxialStick, numbers: dict[st
             "delete the contact as well, or keep the objects that add_ring_friction has added"
         )
     else:
-        stick.locks = found
+        stick.use(found)
