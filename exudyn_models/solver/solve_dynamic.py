@@ -26,6 +26,7 @@ import exudyn as exu
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
+from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
@@ -86,6 +87,7 @@ def solve_dynamic(
         mbs.Assemble()
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
+    find_again(mbs)
     contacts, changes = sticking_contacts(mbs, simulationSettings.timeIntegration.startTime), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
         modes: list[Mode] = []

@@ -328,6 +328,8 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
         for contact in contacts:
             contact.stick.running = False
             contact.restore_user_functions(mbs)
+            for lock in contact.stick.locks:  # it must not hold after the contact is deleted
+                mbs.SetObjectParameter(lock, "activeConnector", False)
 
 
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:

@@ -10,12 +10,13 @@ from test_orientations import ACROSS, AXES, REVERSED
 from exudyn_models import add_ring_friction, solve_dynamic
 from exudyn_models.forces.laws.places import ring_places
 from exudyn_models.solver.items import IN_MEMORY
-from exudyn_models.solver.solve_dynamic import IMPLICIT
 from reference_model import Points
 from reference_model.contact import largest_wrench
 
 SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
+GENERALISED = exu.DynamicSolverType.GeneralizedAlpha
 FEET = [(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)]
+TWO_FEET = [(0.06, 0.0, 0.7), (0.0, 0.02, 0.3)]
 MASS, INERTIA, FRICTION = 1.0, 2e-3, 2.0
 LAW = {"friction_coefficient": 0.2, "contact_points": FEET}
 SENSORS = "transmitted_moment", "radial_force", "power", "mode", "capacity_share", "centre_slip"
@@ -113,23 +114,9 @@ def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_d
     np.testing.assert_allclose(*ends, rtol=0.0, atol=1e-8)
 
 
-def test_points_of_a_body_that_a_joint_holds_on_its_axis_share_the_moment():
-    mbs = new_model()
-    node = planar_body(mbs, MASS, INERTIA, REST, [0.0, 0.0, 10.0])
-    ground = coordinate(mbs, None)
-    for place in (0, 1):
-        mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=[ground, coordinate(mbs, node, place)]))
-    law = {"contact_radius": 0.1, "contact_points": 3, "friction_coefficient": 0.2}
-    contact = add_ring_friction(mbs, None, node, normal_load=10.0, **law)
-    push(mbs, node, [0.0, 0.0, 1.0], lambda t: max(0.0, t - 0.2))
-    changes = run(mbs, 0.45)
-    stop, release = np.unique([change.time for change in changes])
-    assert [stop, release] == pytest.approx([10.0 * INERTIA / 0.2, 0.4], abs=1e-9)
-    assert {int(change.contact) for change in changes} == {int(contact.item)}
-
-
-@pytest.mark.parametrize("feet", [ring_places(0.05, 3), FEET, [(0.06, 0.0, 0.7), (0.0, 0.02, 0.3)]])
-@pytest.mark.parametrize("solver", IMPLICIT)
+@pytest.mark.parametrize(
+    ("feet", "solver"), [(ring_places(0.05, 3), SOLVER), (FEET, SOLVER), (TWO_FEET, GENERALISED)]
+)
 def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_together(feet, solver):
     """Their net force loads the joint, which loads them; all of them slide at the capacity."""
     weight, coefficient, inertia, spin, rate = 40.0, 0.4, 0.02, 3.0, 3.0
