@@ -31,6 +31,9 @@ from reference_model.systems import FloatArray
 FREE = 1e-12
 """Least capacity in one direction, relative to the other, so that rounding does not release a one-way clutch."""
 
+ROUNDING = 1e-12
+"""Friction, relative to the largest in a run, that a slack spring may show as the load of an open contact."""
+
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
 """``Kinds`` of bodies that turn about one axis."""
 
@@ -154,7 +157,7 @@ class AxialStick:
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
     axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
-    ``on_axis`` is False if the bodies can slide sideways.
+    ``on_axis`` is False if the bodies can slide sideways. ``largest`` is the largest friction in the run.
     """
 
     kinds: Kinds
@@ -167,6 +170,7 @@ class AxialStick:
     idle: bool = False
     point: int | None = None
     on_axis: bool = True
+    largest: float = 0.0
 
     @property
     def parts(self) -> Sequence[AxialStick]:
@@ -227,6 +231,11 @@ class AxialStick:
         if not self.factors.depends_on_direction:
             return forward, forward
         return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
+
+    def without_rounding(self, friction: float) -> float:
+        """Return ``friction``, or zero if it is a rounding error."""
+        self.largest = max(self.largest, friction)
+        return friction if friction > ROUNDING * self.largest else 0.0
 
     @property
     def constant_forces(self) -> FloatArray | None:

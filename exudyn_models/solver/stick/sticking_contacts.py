@@ -103,7 +103,7 @@ class StickingContact:
 
     def holding(self, t: float) -> float:
         """Return the static friction, a moment in N m."""
-        return max(self.stick.limits(t))
+        return self.stick.without_rounding(max(self.stick.limits(t)))
 
     def opens_or_closes(self, holding: float) -> bool:
         """Return whether static friction has vanished, or acts on an open contact."""
@@ -160,7 +160,7 @@ class StickingContact:
         """
         stick, mode = self.stick, self.mode
         limits = stick.limits(t)
-        if self.opens_or_closes(max(limits)):
+        if self.opens_or_closes(stick.without_rounding(max(limits))):
             return -1.0
         if mode == Mode.OPEN or stick.idle:
             return 1.0
@@ -227,7 +227,7 @@ class PlanarContact(StickingContact):
 
     def holding(self, t: float) -> float:
         """Return the static friction in N."""
-        return self.planar.holding_force(t)
+        return self.planar.without_rounding(self.planar.holding_force(t))
 
     def driven(self, mbs: Any) -> Mode:
         """Return the mode into which the load drives a locked contact, and store the direction."""
@@ -319,7 +319,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
     """Give contacts the modes of load and slip at the start of a run."""
     try:
         for contact in contacts:
-            contact.stick.running = True
+            contact.stick.running, contact.stick.largest = True, 0.0
             contact.omit_user_functions(mbs)
         for contact in contacts:
             contact.enter_first(mbs, t)
