@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property, partial
 from operator import mul
-from typing import Any, cast
+from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -25,11 +25,14 @@ from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
 from exudyn_models.forces.jit import compiled, taking_lists
 from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
 from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds, slip_and_place_of_nodes
+from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
 """Least capacity in one direction, relative to the other, so that rounding does not release a one-way clutch."""
+
+ROUNDING = 1e-12
+"""Friction, relative to the largest in a run, that a slack spring may show as the load of an open contact."""
 
 ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
 """``Kinds`` of bodies that turn about one axis."""
@@ -145,10 +148,6 @@ class Mode(IntEnum):
 SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 
 
-WHOLE = 0
-"""In place of the number of a point: all points together."""
-
-
 @dataclass(eq=False)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
@@ -157,8 +156,8 @@ class AxialStick:
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
-    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points, or
-    ``WHOLE``.
+    axis it is all that they can hold. ``point`` is the number of a point, from 1, of a contact at several points.
+    ``on_axis`` is False if the bodies can slide sideways. ``largest`` is the largest friction in the run.
     """
 
     kinds: Kinds
@@ -170,10 +169,22 @@ class AxialStick:
     running: bool = False
     idle: bool = False
     point: int | None = None
+    on_axis: bool = True
+    largest: float = 0.0
 
+    @property
     def parts(self) -> Sequence[AxialStick]:
-        """Return the laws that stick by themselves: this one, or those of the points."""
+        """Laws with own locks: this one, or those of several points."""
         return (self,)
+
+    @property
+    def active(self) -> Sequence[AxialStick]:
+        """Parts that stick and slide in this model."""
+        return self.parts
+
+    def use(self, locks: Sequence[int]) -> None:
+        """Stick by the constraints with these object numbers."""
+        self.locks = tuple(locks)
 
     def renew(self) -> None:
         """Use the present load and coefficient from now on, which this class asks the factors for each time."""
@@ -183,25 +194,17 @@ class AxialStick:
         """Mode that a sensor shows."""
         return Mode.LOCKED if self.idle or self.mode is None else self.mode
 
-    @cached_property
-    def _rotors(self) -> Sequence[float] | None:
-        """Constant gradient of the slip between rotors; None for other bodies."""
-        if self.kinds not in ON_ONE_AXIS:
-            return None
-        return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
-
     def gradient(self, q: Floats | FloatArray) -> Floats:
         """Return the derivatives of S by the nodes' velocities, at coordinates without reference values."""
-        if self._rotors is not None:
-            return self._rotors
-        return self._gradient_at(self.reference + q)
-
-    def _gradient_at(self, coordinates: FloatArray) -> list[float]:
-        return cast(list[float], slip_and_place_of_nodes(self.kinds, coordinates)[0][2].tolist())
+        return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradient of the locked slip, shape (1, n), at ``coordinates`` with reference values."""
-        return np.array([self._rotors or self._gradient_at(coordinates)])
+        return np.array([self.gradient(coordinates)])
+
+    def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
+        """Return the rates of the locked slips without accelerations, shape (k,)."""
+        return np.zeros(1)
 
     def slip(self, q: Floats | FloatArray, q_t: Floats | FloatArray) -> float:
         """Return S = φ̇ − ω in rad/s."""
@@ -229,12 +232,17 @@ class AxialStick:
             return forward, forward
         return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
 
+    def without_rounding(self, friction: float) -> float:
+        """Return ``friction``, or zero if it is a rounding error."""
+        self.largest = max(self.largest, friction)
+        return friction if friction > ROUNDING * self.largest else 0.0
+
     @property
     def constant_forces(self) -> FloatArray | None:
         """Moments on the nodes in N m in the present mode, or None if they vary."""
-        if self.factors.contact is None or self._rotors is None:
+        if self.factors.contact is None:
             return None
-        return self.moment(0.0, 0.0) * np.array(self._rotors)
+        return self.moment(0.0, 0.0) * np.array(self.gradient([]))
 
     @property
     def slides(self) -> bool:

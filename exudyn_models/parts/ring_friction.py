@@ -168,7 +168,7 @@ def _add_friction(
     )
     item = add_friction_connector(mbs, nodes, contact)
     if contact.stick is not None:
-        contact.stick.locks = _add_locks(mbs, nodes, contact, contact.stick)
+        contact.stick.use(_add_locks(mbs, nodes, contact, contact.stick))
     friction = RingFriction(mbs, item, nodes, contact, thermal)
     if thermal is not None:
         thermal.heated_by(friction.power)
@@ -211,7 +211,7 @@ def _sticking(
 
 
 def _add_locks(mbs: Any, nodes: Sequence[Any], contact: Contact, stick: AxialStick) -> tuple[int, ...]:
-    parts = [part for part in stick.parts() if isinstance(part, PlanarStick)]
+    parts = [part for part in stick.parts if isinstance(part, PlanarStick)]
     if not parts:
         lock = items.ObjectConnectorCoordinate(
             name=contact.lock_name(0),

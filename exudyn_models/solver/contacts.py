@@ -83,22 +83,37 @@ def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
 
 
 def contacts_of(mbs: Any) -> dict[int, Contact]:
-    """Return the contacts of a model by the present object numbers of their connectors.
-
-    Updates the locks, and deactivates those of deleted contacts. Raises ``ValueError`` if a contact has lost its
-    locks.
-    """
-    for support in mbs.sys.get(_SUPPORTS, []):
-        support.places = None  # other objects may have been deleted
+    """Return the contacts of a model by the present object numbers of their connectors."""
     known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
-    if not known:
-        return {}
-    numbers = {mbs.GetObject(item)["name"]: item for item in range(mbs.systemData.NumberOfObjects())}
-    for contact in known.values():
-        contact.power = contact.places = None
-        if contact.stick is not None:
-            _renew_locks(mbs, contact, contact.stick, numbers)
+    numbers = _numbers(mbs) if known else {}
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
+
+
+def find_again(mbs: Any) -> None:
+    """Find the locks of all contacts again, and forget places, because objects may have been deleted.
+
+    Raises ``ValueError`` if a contact has lost its locks.
+    """
+    contacts: list[Contact] = list(mbs.sys.get(_CONTACTS, {}).values())
+    for connector in (*mbs.sys.get(_SUPPORTS, []), *contacts):
+        connector.places = None
+    numbers = _numbers(mbs) if contacts else {}
+    for contact in contacts:
+        contact.power = None
+        if contact.stick is None or contact.name not in numbers:
+            continue
+        names = [contact.lock_name(direction) for direction in range(len(contact.stick.locks))]
+        if not numbers.keys() >= set(names):
+            raise ValueError(
+                f"object {numbers[contact.name]}, {contact.name!r}: constraints that let it stick exactly were "
+                "deleted; delete the contact as well, or keep the objects that add_ring_friction has added"
+            )
+        contact.stick.use([numbers[name] for name in names])
+
+
+def _numbers(mbs: Any) -> dict[str, int]:
+    objects = range(mbs.systemData.NumberOfObjects())
+    return {mbs.GetObjectParameter(item, "name"): item for item in objects}
 
 
 def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
@@ -111,18 +126,3 @@ def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
         if int(number) < count and mbs.GetObjectParameter(number, "name") == connector.name:
             return number
     raise ValueError(f"{connector.name!r} was deleted: it cannot be changed or measured")
-
-
-def _renew_locks(mbs: Any, contact: Contact, stick: AxialStick, numbers: dict[str, int]) -> None:
-    names = [contact.lock_name(direction) for direction in range(len(stick.locks))]
-    found = tuple(numbers[name] for name in names if name in numbers)
-    if contact.name not in numbers:
-        for lock in found:
-            mbs.SetObjectParameter(lock, "activeConnector", False)
-    elif len(found) < len(names):
-        raise ValueError(
-            f"object {numbers[contact.name]}, {contact.name!r}: constraints that let it stick exactly were deleted; "
-            "delete the contact as well, or keep the objects that add_ring_friction has added"
-        )
-    else:
-        stick.locks = found

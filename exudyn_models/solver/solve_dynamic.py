@@ -18,14 +18,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from typing import Any
 
 import exudyn as exu
 
-from exudyn_models.forces.axial_pairs import AxialStick, Mode
+from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
+from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
@@ -86,12 +87,13 @@ def solve_dynamic(
         mbs.Assemble()
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
-    contacts, changes = sticking_contacts(mbs), []
+    find_again(mbs)
+    contacts, changes = sticking_contacts(mbs, simulationSettings.timeIntegration.startTime), []
     with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
-        modes: dict[AxialStick, Mode] = {}
+        modes: list[Mode] = []
         for goes_on in parts:
             changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
-            modes = {contact.stick: contact.stick.visible_mode for contact in contacts}
+            modes = [contact.stick.visible_mode for contact in contacts]
     return changes
 
 
@@ -147,7 +149,7 @@ def _solve(
     solver: Any,
     updateInitialValues: bool,
     contacts: list[StickingContact],
-    modes: Mapping[AxialStick, Mode],
+    modes: list[Mode],
 ) -> list[ModeChange]:
     options = simulationSettings.timeIntegration
     look = _Look(mbs, solver, options)
@@ -155,15 +157,12 @@ def _solve(
     try:
         with ExitStack() as repairs:
             repairs.enter_context(after_every_step(mbs, look))
-            contacts = repairs.enter_context(first_modes(mbs, contacts, options.startTime))
+            repairs.enter_context(first_modes(mbs, contacts, options.startTime))
             if solver in IMPLICIT:
                 _repair_implicit(repairs, mbs, solver, options)
             look.start()
             if contacts:
-                before = [modes[contact.stick] for contact in contacts] if modes else []
-                changes = run_switching(
-                    mbs, simulationSettings, solver, contacts, updateInitialValues, before
-                )
+                changes = run_switching(mbs, simulationSettings, solver, contacts, updateInitialValues, modes)
             else:
                 mbs.SolveDynamic(simulationSettings, solver, updateInitialValues)
     except exu.ExudynError as error:

@@ -14,14 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode
-from exudyn_models.forces.laws.places import places_in
+from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.slip_kinematics import slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.solver.stick.slip_motion import (
@@ -45,12 +43,11 @@ SPIN = np.array([[0.0], [0.0], [1.0]])
 class PlanarStick(AxialStick):
     """Friction between two bodies that sticks exactly; joints may hold them on one axis.
 
-    If ``on_axis`` it is an ``AxialStick``. Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``,
-    shape (3, k); joints leave those in ``allowed`` free. ``direction``, shape (3,), is the slip at its release,
-    normal to the limit surface, with P = 1 m/s.
+    Its locks hold the directions of slip (m/s, m/s, rad/s) in ``basis``, shape (3, k); joints leave those in
+    ``allowed`` free. ``direction``, shape (3,), is the slip at its release, normal to the limit surface, with P = 1
+    m/s.
     """
 
-    on_axis: bool = True
     basis: FloatArray = field(default_factory=lambda: SPIN)
     allowed: FloatArray = field(default_factory=lambda: SPIN)
     direction: FloatArray = field(default_factory=lambda: np.zeros(3))
@@ -78,18 +75,7 @@ class PlanarStick(AxialStick):
     @property
     def most_locks(self) -> int:
         """Largest number of constraints that hold the contact."""
-        if self.point == WHOLE:
-            return 1  # its points stick one by one unless it is on one axis
         return 3 if self.mean_radius > 0.0 else 2
-
-    @cached_property
-    def turns_without_force(self) -> bool:
-        """True if friction of the disc that turns in place is a moment without a force."""
-        if self.point != WHOLE:
-            return True
-        x, y, shares = places_in(self.factors.geometry[-1]).T
-        arms = x + 1j * y
-        return bool(abs(shares @ (arms / np.where(arms == 0.0, 1.0, abs(arms)))) < NEGLIGIBLE)
 
     def span(self, slips: FloatArray) -> FloatArray:
         """Return a basis of ``slips``, shape (3, n); a pin does not resist spin."""
@@ -110,7 +96,21 @@ class PlanarStick(AxialStick):
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
         """Return the gradients of the locked slips, shape (k, n)."""
-        return np.asarray(self._to_basis @ self.slip_map(coordinates))
+        return np.asarray(self.to_locked(coordinates) @ self.slip_map(coordinates))
+
+    def to_locked(self, coordinates: FloatArray) -> FloatArray:
+        """Return the map from the slip to the slips that locks hold, shape (k, 3)."""
+        return np.asarray(self._to_basis)
+
+    def gradient(self, q: Any) -> list[float]:
+        """Return the gradient of the slip on one axis, at coordinates without reference values."""
+        row: list[float] = self.rows(self.reference + q)[0].tolist()
+        return row
+
+    @property
+    def constant_forces(self) -> None:
+        """None, because the forces turn with the bodies."""
+        return
 
     def slip_map(self, coordinates: FloatArray) -> FloatArray:
         """Return J, the map from the nodes' velocities to the slip, shape (3, n)."""
@@ -122,7 +122,7 @@ class PlanarStick(AxialStick):
 
     def bias(self, state: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return the rates of the locked slips without accelerations, shape (k,)."""
-        return np.asarray(self._to_basis @ self.motion(*state).bias)
+        return np.asarray(self.to_locked(self.reference + state[0]) @ self.motion(*state).bias)
 
     def potential_of(self, slip: FloatArray) -> float:
         """Return P in m/s."""

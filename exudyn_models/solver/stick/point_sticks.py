@@ -1,33 +1,71 @@
 """Exact stick of a contact at several points, which stick and slide one by one.
 
-Every point is a pin with its share of the load. If one sticks, the disc pivots about it. If joints allow only spin
-and the friction of all points is a moment without a force, they stick and slide together, because locks of single
-points would load the joints.
+Every point is a pin with its share of the load. If one sticks, the disc pivots about it. If joints allow only spin,
+the points stick and slide together.
 """
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import scipy.linalg
 
-from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode
+from exudyn_models.forces.axial_pairs import AxialStick, Mode
 from exudyn_models.forces.laws.places import places_in, slip_maps
 from exudyn_models.forces.load_and_coefficient import Coefficient, LoadAndCoefficient, NumberOrFunction
-from exudyn_models.forces.slip_kinematics import Kinds
+from exudyn_models.forces.slip_kinematics import Kinds, slip_and_place_of_nodes
 from exudyn_models.solver.stick.locked_contacts import least_maximum
 from exudyn_models.solver.stick.planar_stick import PlanarStick
 from reference_model.systems import FloatArray
+
+
+@dataclass(eq=False)
+class PointsOnAxis(PlanarStick):
+    """Friction at all points of a disc that joints hold on the axis of the contact.
+
+    The joints carry an undetermined share of the points' forces. As at the start of sliding, each point holds the
+    same share of its capacity. So the moment M comes with the force f·M, and f·u + S takes the place of the slip S.
+    """
+
+    @property
+    def most_locks(self) -> int:
+        """Largest number of constraints that hold the contact."""
+        return 1
+
+    @cached_property
+    def _force_per_moment(self) -> complex:
+        """F, in 1/m in the disc's axes."""
+        x, y, shares = places_in(self.factors.geometry[-1]).T
+        arms = x + 1j * y
+        return complex(shares @ (1j * arms / np.where(arms == 0.0, 1.0, abs(arms)))) / self.mean_radius
+
+    def _wrench_per_moment(self, angle: float) -> FloatArray:
+        force = self._force_per_moment * cmath.exp(1j * angle)
+        return np.array([force.real, force.imag, 1.0])
+
+    def to_locked(self, coordinates: FloatArray) -> FloatArray:
+        """Return the map from (u, S) to f·u + S, shape (1, 3)."""
+        cosine, sine = slip_and_place_of_nodes(self.kinds, coordinates)[2]
+        return self._wrench_per_moment(math.atan2(sine, cosine))[None]
+
+    def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
+        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
+        moment: float = super().wrench(mbs, t, slip, radius, angle)[2]
+        return moment * self._wrench_per_moment(angle)
 
 
 @dataclass(eq=False, kw_only=True)
 class PointSticks(AxialStick):
     """Friction at ``points`` that stick exactly, one by one, or as a ``whole`` if joints allow only spin."""
 
-    whole: PlanarStick
+    whole: PointsOnAxis
     points: tuple[PlanarStick, ...]
 
     @classmethod
@@ -48,23 +86,27 @@ class PointSticks(AxialStick):
             PlanarStick(pin, reference, load, ratio, point=1 + i)
             for i, (pin, load) in enumerate(zip(pins, loads, strict=True))
         )
-        whole = PlanarStick(kinds, reference, factors, ratio, point=WHOLE)
+        whole = PointsOnAxis(kinds, reference, factors, ratio)
         stick = cls(kinds, reference, factors, ratio, whole=whole, points=points)
         stick.check(factors.friction_coefficient, factors.normal_load)
         return stick
 
-    def parts(self) -> Sequence[AxialStick]:
-        """Return the whole and the points, which know the present numbers of their locks."""
-        start, parts = 0, (self.whole, *self.points)
-        for part in parts:
-            part.locks = self.locks[start : start + part.most_locks]
-            start += part.most_locks
-        return parts
+    @property
+    def parts(self) -> Sequence[PlanarStick]:
+        """The whole and the points."""
+        return self.whole, *self.points
 
     @property
     def active(self) -> Sequence[PlanarStick]:
-        """Return the parts that stick and slide in this model."""
-        return (self.whole,) if self.whole.on_axis else self.points
+        """The whole or the points."""
+        return self.parts[:1] if self.whole.on_axis else self.points
+
+    def use(self, locks: Sequence[int]) -> None:
+        """Stick by the constraints with these object numbers, in the order of the parts."""
+        super().use(locks)
+        rest = iter(locks)
+        for part in self.parts:
+            part.use(tuple(islice(rest, part.most_locks)))
 
     def check(self, friction_coefficient: Coefficient, normal_load: NumberOrFunction) -> None:
         """Raise ``ValueError`` unless each point can evaluate coefficient and load alone."""

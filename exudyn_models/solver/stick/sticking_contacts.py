@@ -11,7 +11,7 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import NDArray
 
-from exudyn_models.forces.axial_pairs import WHOLE, AxialStick, Mode, spanned
+from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
 from exudyn_models.solver.contacts import contacts_of
 from exudyn_models.solver.starting_rates import initialised_solver
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
@@ -103,7 +103,7 @@ class StickingContact:
 
     def holding(self, t: float) -> float:
         """Return the static friction, a moment in N m."""
-        return max(self.stick.limits(t))
+        return self.stick.without_rounding(max(self.stick.limits(t)))
 
     def opens_or_closes(self, holding: float) -> bool:
         """Return whether static friction has vanished, or acts on an open contact."""
@@ -131,8 +131,6 @@ class StickingContact:
 
     def bias(self, mbs: Any) -> FloatArray:
         """Return the rates of the locked slips without accelerations, shape (k,), in m/s² or rad/s²."""
-        if not isinstance(self.stick, PlanarStick):
-            return np.zeros(1)
         return self.stick.bias(self._state(mbs))
 
     def _state(self, mbs: Any, configuration: Any = CURRENT) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -162,7 +160,7 @@ class StickingContact:
         """
         stick, mode = self.stick, self.mode
         limits = stick.limits(t)
-        if self.opens_or_closes(max(limits)):
+        if self.opens_or_closes(stick.without_rounding(max(limits))):
             return -1.0
         if mode == Mode.OPEN or stick.idle:
             return 1.0
@@ -229,7 +227,7 @@ class PlanarContact(StickingContact):
 
     def holding(self, t: float) -> float:
         """Return the static friction in N."""
-        return self.planar.holding_force(t)
+        return self.planar.without_rounding(self.planar.holding_force(t))
 
     def driven(self, mbs: Any) -> Mode:
         """Return the mode into which the load drives a locked contact, and store the direction."""
@@ -285,56 +283,53 @@ def _sliding_mode(slip: FloatArray) -> Mode:
     return Mode.BACKWARD if slip[2] < 0.0 else Mode.FORWARD
 
 
-def sticking_contacts(mbs: Any) -> list[StickingContact]:
-    """Return the contacts of a model that stick exactly."""
-    return [
-        StickingContact(item, part, np.array(mbs.systemData.GetObjectLTGODE2(item)))
+def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:
+    """Return the contacts of a model that stick exactly, on one axis or in the plane at its initial values."""
+    contacts = [
+        StickingContact(item, contact.stick, np.array(mbs.systemData.GetObjectLTGODE2(item)))
         for item, contact in contacts_of(mbs).items()
         if contact.stick is not None
-        for part in contact.stick.parts()
+    ]
+    _locate(mbs, t, contacts)
+    return [
+        (StickingContact if part.on_axis else PlanarContact)(contact.item, part, contact.places)
+        for contact in contacts
+        for part in contact.stick.active
     ]
 
 
+def _locate(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:
+    """Find the parts of contacts that joints hold on one axis."""
+    parts = [
+        PlanarContact(contact.item, part, contact.places)
+        for contact in contacts
+        for part in contact.stick.parts
+        if isinstance(part, PlanarStick)
+    ]
+    joints = joints_and_mass(mbs, t, contacts)[0] if parts else np.empty(0)
+    for part in parts:
+        across = part.slip_rows(mbs)[:2]
+        across[np.abs(across) < NEGLIGIBLE] = 0.0
+        part.planar.on_axis = part.planar.mean_radius > 0.0 and spanned(across, joints)
+        part.planar.set_basis(SPIN)
+
+
 @contextmanager
-def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[list[StickingContact]]:
-    """Give contacts the modes of load and slip at the start of a run; yield them on one axis or in the plane."""
+def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iterator[None]:
+    """Give contacts the modes of load and slip at the start of a run."""
     try:
         for contact in contacts:
-            contact.stick.running = True
+            contact.stick.running, contact.stick.largest = True, 0.0
             contact.omit_user_functions(mbs)
-        found = list(contacts)
-        if any(isinstance(contact.stick, PlanarStick) for contact in contacts):
-            joints, _ = joints_and_mass(mbs, t, contacts)
-            found = _active([_located(mbs, contact, joints) for contact in contacts])
-        for contact in found:
+        for contact in contacts:
             contact.enter_first(mbs, t)
-        yield found
+        yield
     finally:
         for contact in contacts:
             contact.stick.running = False
             contact.restore_user_functions(mbs)
-
-
-def _active(contacts: Sequence[StickingContact]) -> list[StickingContact]:
-    """Omit the points of contacts on one axis, and the whole of others."""
-    wholes = {one.item for one in contacts if one.stick.point == WHOLE and not isinstance(one, PlanarContact)}
-    return [
-        one
-        for one in contacts
-        if one.stick.point is None or (one.stick.point == WHOLE) == (one.item in wholes)
-    ]
-
-
-def _located(mbs: Any, contact: StickingContact, joints: FloatArray) -> StickingContact:
-    stick = contact.stick
-    if not isinstance(stick, PlanarStick):
-        return contact
-    planar = PlanarContact(contact.item, stick, contact.places)
-    across = planar.slip_rows(mbs)[:2]
-    across[np.abs(across) < NEGLIGIBLE] = 0.0
-    stick.on_axis = stick.mean_radius > 0.0 and stick.turns_without_force and spanned(across, joints)
-    stick.set_basis(SPIN)
-    return contact if stick.on_axis else planar
+            for lock in contact.stick.locks:  # it must not hold after the contact is deleted
+                mbs.SetObjectParameter(lock, "activeConnector", False)
 
 
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:

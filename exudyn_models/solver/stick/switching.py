@@ -298,9 +298,7 @@ class _Run:
         for contact, mode in zip(self._contacts, before, strict=bool(before)):
             after = contact.stick.visible_mode
             if after != mode:
-                self.changes.append(
-                    ModeChange(self._reached, contact.item, mode, after, contact.stick.point or None)
-                )
+                self.changes.append(ModeChange(self._reached, contact.item, mode, after, contact.stick.point))
         latest = self.changes[-MOST_CHANGES:]
         if len(latest) == MOST_CHANGES and self._reached - latest[0].time < ON_GRID * self._step:
             raise SimulationError(

@@ -74,8 +74,7 @@ def test_an_unbalanced_disc_and_both_rotors_gain_the_impulse_of_the_engine():
     assert found == pytest.approx(car.engine_inertia * ENGINE_SPEED + TORQUE * 0.7, rel=1e-9)
 
 
-@pytest.mark.parametrize("epsilon", [0.1, 0.4])
-@pytest.mark.parametrize("resistance", [0.0, 60.0])
+@pytest.mark.parametrize(("epsilon", "resistance"), [(0.1, 60.0), (0.4, 0.0)])
 def test_a_clutch_that_holds_creeps_in_proportion_to_the_torque_it_transmits(epsilon, resistance):
     """Below ε the moment is capacity·(R·slip/ε), and engine, disc and vehicle speed up as one body."""
     ring = replace(CENTRED, inner_radius=0.1, outer_radius=0.1, torsional_damping=20.0)

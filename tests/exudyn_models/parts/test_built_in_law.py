@@ -39,7 +39,7 @@ def end_of(load, grounded, solver, **contact):
     mbs, disc, friction = braked(load, grounded, -20.0 if grounded else 20.0, **contact)
     drive(mbs, disc, 3.0)
     heat = friction.add_sensor("heat")
-    settings = settings_of(1.2, 3000, newton=1e-12)
+    settings = settings_of(1.2, 1000, newton=1e-12)
     settings.timeIntegration.absoluteTolerance, settings.timeIntegration.relativeTolerance = 1e-9, 0.0
     solve_dynamic(mbs, settings, solver)
     return np.append(mbs.systemData.GetODE2Coordinates_t(), mbs.GetSensorValues(heat)), kind_of(friction)

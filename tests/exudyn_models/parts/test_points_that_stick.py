@@ -4,14 +4,19 @@ import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import ball, coordinate, items, new_model, planar_body, settings_of
+from scipy.integrate import solve_ivp
 from test_orientations import ACROSS, AXES, REVERSED
 
 from exudyn_models import add_ring_friction, solve_dynamic
+from exudyn_models.forces.laws.places import ring_places
+from exudyn_models.solver.items import IN_MEMORY
 from reference_model import Points
 from reference_model.contact import largest_wrench
 
 SOLVER = exu.DynamicSolverType.TrapezoidalIndex2
+GENERALISED = exu.DynamicSolverType.GeneralizedAlpha
 FEET = [(0.05, 0.0, 0.5), (-0.03, 0.04, 0.2), (-0.02, -0.05, 0.3)]
+TWO_FEET = [(0.06, 0.0, 0.7), (0.0, 0.02, 0.3)]
 MASS, INERTIA, FRICTION = 1.0, 2e-3, 2.0
 LAW = {"friction_coefficient": 0.2, "contact_points": FEET}
 SENSORS = "transmitted_moment", "radial_force", "power", "mode", "capacity_share", "centre_slip"
@@ -109,56 +114,62 @@ def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_d
     np.testing.assert_allclose(*ends, rtol=0.0, atol=1e-8)
 
 
-def test_points_of_a_body_that_a_joint_holds_on_its_axis_share_the_moment():
+@pytest.mark.parametrize(
+    ("feet", "solver"), [(ring_places(0.05, 3), SOLVER), (FEET, SOLVER), (TWO_FEET, GENERALISED)]
+)
+def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_together(feet, solver):
+    """Their net force loads the joint, which loads them; all of them slide at the capacity."""
+    weight, coefficient, inertia, spin, rate = 40.0, 0.4, 0.02, 3.0, 3.0
+    arms, shares = np.array([complex(x, y) for x, y, _ in feet]), np.array([share for *_, share in feet])
     mbs = new_model()
-    node = planar_body(mbs, MASS, INERTIA, REST, [0.0, 0.0, 10.0])
-    ground = coordinate(mbs, None)
-    for place in (0, 1):
-        mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=[ground, coordinate(mbs, node, place)]))
-    law = {"contact_radius": 0.1, "contact_points": 3, "friction_coefficient": 0.2}
-    contact = add_ring_friction(mbs, None, node, normal_load=10.0, **law)
-    push(mbs, node, [0.0, 0.0, 1.0], lambda t: max(0.0, t - 0.2))
-    changes = run(mbs, 0.45)
-    stop, release = np.unique([change.time for change in changes])
-    assert [stop, release] == pytest.approx([10.0 * INERTIA / 0.2, 0.4], abs=1e-9)
-    assert {int(change.contact) for change in changes} == {int(contact.item)}
-
-
-def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_like_a_circle():
-    """Locks of single points changed the reaction, so the contact slid too early and the run did not go on."""
-    radius, coefficient, weight = 0.05, 0.1, 40.0
-    mbs = new_model()
-    node = planar_body(mbs, 4.0, 0.02, REST, [0.0, 0.0, 0.5])
+    node = planar_body(mbs, 4.0, inertia, REST, [0.0, 0.0, spin])
     ends = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
         for body in (mbs.AddObject(items.ObjectGround()), exu.ObjectIndex(0))
     ]
     joint = mbs.AddObject(items.GenericJoint(markerNumbers=ends, constrainedAxes=[1, 1, 0, 0, 0, 0]))
-    reaction = mbs.AddSensor(
-        items.SensorObject(
-            objectNumber=joint, outputVariableType=exu.OutputVariableType.ForceLocal, writeToFile=False
-        )
-    )
+    force = exu.OutputVariableType.ForceLocal
+    reaction = mbs.AddSensor(items.SensorObject(objectNumber=joint, outputVariableType=force, **IN_MEMORY))
     contact = add_ring_friction(
         mbs,
         *ends,
-        contact_radius=radius,
-        contact_points=3,
+        contact_points=feet,
         friction_coefficient=coefficient,
         normal_load=lambda: float(np.linalg.norm(mbs.GetSensorValues(reaction))),
     )
-    moment = contact.add_sensor("transmitted_moment", writeToFile=False)
-    push(mbs, node, [0.0, -weight, 0.0], lambda t: 1.0)
-    push(mbs, node, [0.0, 0.0, 1.0], lambda t: 0.5 * max(0.0, t - 0.2))
-    mbs.Assemble()
-    changes = run(mbs, 0.7, 700)
-    largest = coefficient * weight * radius
-    times = [0.5 * 0.02 / largest, 0.2 + largest / 0.5]
+    shown = [contact.add_sensor(one) for one in ("transmitted_moment", "radial_force", "capacity_share")]
+    push(mbs, node, [weight, 0.0, 0.0], lambda t: 1.0)
+    push(mbs, node, [0.0, 0.0, rate], lambda t: max(0.0, t - 0.5))
+
+    def friction(angle):
+        """Return force and moment under the load N = |W − μN·q|, with q the mean direction of slip."""
+        slip = shares @ (1j * arms / abs(arms)) * np.exp(1j * angle)
+        squares = 1.0 - abs(coefficient * slip) ** 2, 2.0 * weight * coefficient * slip.real, -(weight**2)
+        return -coefficient * max(np.roots(squares)) * np.array([slip.real, slip.imag, shares @ abs(arms)])
+
+    def stop(t, motion):
+        return motion[1]
+
+    stop.terminal = True
+    motion = solve_ivp(
+        lambda t, motion: [motion[1], friction(motion[0])[2] / inertia],
+        (0.0, 0.5),
+        [0.0, spin],
+        rtol=1e-10,
+        atol=1e-12,
+        events=stop,
+    )
+    largest = friction(motion.y[0, -1])
+    changes = solve_dynamic(mbs, settings_of(0.49, 490), solver, updateInitialValues=True)
+    assert mbs.GetSensorValues(shown[2]) == pytest.approx(0.0, abs=1e-9)
+    end = 0.5 - largest[2] / rate
+    changes += solve_dynamic(mbs, settings_of(end + 1e-3, 490, start=0.49), solver)
     assert [(change.time, change.after, change.point) for change in changes] == [
-        (pytest.approx(times[0], abs=1e-6), 0, None),
-        (pytest.approx(times[1], abs=1e-6), 1, None),
+        (pytest.approx(motion.t[-1], abs=1e-6), 0, None),
+        (pytest.approx(end, abs=1e-6), 1, None),
     ]
-    assert mbs.GetSensorValues(moment) == pytest.approx(-largest)
+    moment, force = (mbs.GetSensorValues(sensor) for sensor in shown[:2])
+    assert [*force[:2], float(moment)] == pytest.approx(largest, rel=1e-4)
 
 
 def test_a_deleted_contact_lets_all_its_points_go():

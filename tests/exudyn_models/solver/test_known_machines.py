@@ -288,6 +288,22 @@ def test_a_brake_of_modelica_is_exact(sliding_mass):
     assert mbs.systemData.GetODE2Coordinates()[0] == pytest.approx(0.6, abs=1e-9)
 
 
+@pytest.mark.parametrize("planar", [False, True])
+def test_rounding_errors_of_the_load_do_not_close_a_contact(planar):
+    mbs = new_model()
+    node = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [1.0, 0.0, 0.0]) if planar else rotor(mbs, 1.0, 1.0)
+    law = {"contact_radius": 0.1, "friction_coefficient": 0.3}
+    loads = [(0.1, 1.0), (0.2, 0.0), (0.3, 1e-14), (0.4, 1e-3)]  # ends in s, N
+    load = lambda time: next(size for end, size in loads if time < end)  # noqa: E731
+    add_ring_friction(mbs, None, node, normal_load=load, **law)
+    mbs.Assemble()
+    changes = changes_of(mbs, 0.399, 1e-3)
+    assert [(pytest.approx(time, abs=1e-9), *modes) for time, _, *modes in changes] == [
+        (0.1, 1, 2),
+        (0.3, 2, 1),
+    ]
+
+
 def overrun():
     """Return when (s) a driven rotor starts to overrun its driver, and when the one-way clutch engages again.
 

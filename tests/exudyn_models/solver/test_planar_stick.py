@@ -173,9 +173,9 @@ def test_a_held_disc_does_not_creep_within_an_hour():
     push(mbs, node, 0, lambda t: 0.8 * COEFFICIENT * LOAD)
     push(mbs, node, 2, lambda t: 0.3 * COEFFICIENT * LOAD * RADIUS)
     mbs.Assemble()
-    solve_dynamic(mbs, settings_of(1.0, 1000), TRAPEZOIDAL, updateInitialValues=True)
+    solve_dynamic(mbs, settings_of(0.4, 400), TRAPEZOIDAL, updateInitialValues=True)
     before = np.array(mbs.systemData.GetODE2Coordinates())
-    assert run(mbs, 3600.0, 1.0) == []
+    assert run(mbs, 3600.0, 10.0) == []
     assert np.abs(mbs.systemData.GetODE2Coordinates() - before).max() <= 1e-12
     assert 0.8 < mbs.GetSensorValues(share) < 1.0
 

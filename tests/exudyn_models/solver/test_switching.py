@@ -46,7 +46,7 @@ def test_nothing_creeps_within_an_hour():
     mbs, _ = braked(2.0, lambda t: -0.999 * RATIO * SLIDING)
     run(mbs, 0.1, 1e-3, updateInitialValues=True)
     before = angle(mbs)
-    assert run(mbs, 3600.0, 1.0) == []
+    assert run(mbs, 3600.0, 10.0) == []
     assert abs(angle(mbs) - before) <= 1e-12
 
 
@@ -83,7 +83,7 @@ def coupled_clutches(step, solver=SOLVERS.TrapezoidalIndex2):
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_switching_times_of_coupled_clutches_converge_with_the_second_order(solver):
-    coarse, fine, finest = (coupled_clutches(step, solver) for step in (2e-3, 1e-3, 1.25e-4))
+    coarse, fine, finest = (coupled_clutches(step, solver) for step in (2e-3, 1e-3, 2e-4))
     assert [change[1:] for change in coarse] == [change[1:] for change in finest]
     assert [change[1:] for change in finest] == [
         (1, 2, -1), (1, -1, 0), (0, -1, 0), (0, 0, -1), (2, 2, -1), (0, -1, 0), (0, 0, -1), (2, -1, 0), (0, -1, 2),
@@ -117,7 +117,7 @@ def test_two_brakes_on_one_rotor_hold_together(load):
     assert all((mbs.GetSensorStoredData(mode)[rest, 1] == 0.0).all() for mode in modes)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 @pytest.mark.filterwarnings("ignore:the energy balance is off")  # the test asserts how far
 def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
     """Loops of contacts between five rotors and the ground, all with static friction, under alternating moments."""
@@ -152,7 +152,7 @@ def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
         name: [contact.add_sensor(name) for contact in contacts]
         for name in ("mode", "transmitted_moment", "relative_spin")
     }
-    changes = run(mbs, 3.0, 1e-3)
+    changes = run(mbs, 2.0, 1e-3)
     assert len(changes) > 10
     modes, transmitted, spins = (
         np.array([mbs.GetSensorStoredData(sensor)[:, 1] for sensor in sensors[name]]) for name in sensors
