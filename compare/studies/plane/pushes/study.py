@@ -114,7 +114,7 @@ def simulated(every: int = EVERY) -> list[Push]:
 @cache
 def quasi_static(steps: int = 5, hand: float = forward.HAND, every: int = EVERY) -> FloatArray:
     """Return displacements x, y and turns times ``theory.PUSHER`` (m) without inertia, shape (n, 3)."""
-    return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated(every)])
+    return _components([forward.quasi_static(push, steps, hand) for push in simulated(every)])
 
 
 def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:

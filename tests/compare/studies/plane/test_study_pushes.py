@@ -1,6 +1,5 @@
 """The theory and the simulations of measured pushes."""
 
-import cmath
 import math
 from dataclasses import replace
 from functools import partial
@@ -94,9 +93,7 @@ def test_data_uncertainties_are_the_effect_of_errors_of_that_size():
 def test_equal_pushes_scatter_by_the_errors_of_each():
     push = obeying(theory.by_series()["patch"][0], 4.2)
     quantiles = norm.ppf((np.arange(200) + 0.5) / 200)  # in degrees
-    turned = [
-        cmath.rect(1.0, math.radians(angle)) * complex(push.force_x, push.force_y) for angle in quantiles
-    ]
+    turned = [np.exp(1j * math.radians(angle)) * complex(push.force_x, push.force_y) for angle in quantiles]
     pushes = [replace(push, force_x=force.real, force_y=force.imag) for force in turned]
     found, pairs = theory.scatter([*pushes, replace(push, start_x=push.start_x + 6.0)])
     assert pairs == 200 * 199 / 2
@@ -109,37 +106,13 @@ def test_the_theory_claims_feel_a_wrong_moment(monkeypatch):
     assert set(theory_of(STUDY, "sums", "on_limit_surface").values()) == {DIFFERS}
 
 
-def straight(x):
-    """Return a push of the patch upwards against its lower leg at ``x`` in mm, from a gap of 2 to 12 mm."""
-    ends = {"start_x": x, "start_y": -2.0, "end_x": x, "end_y": 0.0}
-    return Push(**vars(theory.by_series()["patch"][0]) | {"x": 0.0, "y": 10.0, "turn": 0.0} | ends)
-
-
 def test_a_push_through_the_centre_of_mass_only_moves_the_body():
-    position, angle = forward.QuasiStatic(straight(50.0)).motion()
+    """The hand pushes the lower leg upwards from a gap of 2 mm to 10 mm, seen from the first pose."""
+    ends = {"start_x": 50.0, "start_y": -2.0, "end_x": 50.0, "end_y": 0.0, "x": 0.0, "y": 10.0, "turn": 0.0}
+    push = replace(theory.by_series()["patch"][0], **ends)
+    position, angle = forward.quasi_static(push)
     assert position == pytest.approx(0.01j, abs=1e-7)
     assert angle == pytest.approx(0.0, abs=1e-6)
-    position, angle = forward.by_exudyn(straight(50.0), 1e-5)
+    position, angle = forward.by_exudyn(push, 1e-5)
     assert position == pytest.approx(0.01j - 4.2j / forward.STIFFNESS, abs=1e-6)
     assert angle == pytest.approx(0.0, abs=1e-4)
-
-
-@pytest.mark.parametrize("hand", [0.0, 0.3])
-def test_the_hand_pushes_within_its_cone_and_the_body_follows_it(hand):
-    motion = forward.QuasiStatic(straight(80.0), hand)
-    slip, spin = motion._rates(0.2, 0.0j, 0.0)
-    arm = motion.path.start + 0.2 * motion.path.way
-    touching = slip + 1j * spin * arm
-    assert touching.imag == pytest.approx(motion.path.way.imag)  # along the normal
-    wrench = theory.predicted(theory.Motion(slip, spin), theory.contact_of("patch"), 1.0)
-    assert wrench.moment == pytest.approx((arm.conjugate() * wrench.force).imag, abs=1e-7)
-    lean = math.tan(cmath.phase(wrench.force / 1j))
-    assert abs(lean) <= hand + 1e-5
-    assert abs(lean) == pytest.approx(hand, abs=1e-5) or touching.real == pytest.approx(0.0, abs=1e-9)
-
-
-def test_midpoint_steps_converge_with_the_second_order():
-    motion = forward.QuasiStatic(straight(100.0))
-    fine, *coarse = (np.array([*(m := motion.motion(steps))[:1], m[1]]) for steps in (64, 4, 8))
-    errors = [abs(one - fine).max() for one in coarse]
-    assert 3.0 < errors[0] / errors[1] < 5.0
