@@ -2,7 +2,6 @@
 
 import cmath
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -89,7 +88,6 @@ def test_a_foot_that_sticks_to_the_hand_draws_the_other_along_a_tractrix():
     """The other foot slips towards or away from the hand, so tan(φ/2) grows like exp(s/L)."""
     start, way, touched = 0.4, 0.03, 0.004
 
-    @cache
     def error(steps):
         push = cmath.exp(
             1j * (math.pi + start)

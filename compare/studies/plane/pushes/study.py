@@ -267,16 +267,9 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
 
 
 def account(pushes: Sequence[Push]) -> list[str]:
-    series = dict.fromkeys(push.series for push in pushes)
     return [
-        f"{name}: "
-        + "; ".join(
-            f"{column} {cell}"
-            for column, cell in zip(
-                COLUMNS, _errors_of(tuple(push for push in pushes if push.series == name)), strict=True
-            )
-        )
-        for name in series
+        f"{name}: " + "; ".join(map(" ".join, zip(COLUMNS, _errors_of(own), strict=True)))
+        for name, own in theory.grouped(pushes).items()
     ]
 
 

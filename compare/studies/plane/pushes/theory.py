@@ -6,10 +6,10 @@ against d. All parameters are the authors' values; nothing is fitted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass, replace
 from functools import cache, partial
-from itertools import combinations
+from itertools import combinations, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -271,12 +271,14 @@ def _edges(count: int = 60) -> NDArray[np.complex128]:
     return np.asarray((np.interp(along, reached, corners) - CENTRE) * MM)
 
 
+def grouped(pushes: Iterable[Push]) -> dict[str, tuple[Push, ...]]:
+    """Return the pushes of each series, which must follow each other."""
+    return {series: tuple(group) for series, group in groupby(pushes, lambda push: push.series)}
+
+
 @cache
 def by_series() -> dict[str, tuple[Push, ...]]:
-    found: dict[str, tuple[Push, ...]] = {}
-    for push in reduced_pushes():
-        found[push.series] = (*found.get(push.series, ()), push)
-    return found
+    return grouped(reduced_pushes())
 
 
 def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = coulomb) -> FloatArray:

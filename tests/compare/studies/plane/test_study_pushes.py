@@ -10,7 +10,7 @@ from scipy.stats import norm
 from studies_under_test import DIFFERS, theory_of
 
 from compare.studies.plane.pushes import forward, theory
-from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from compare.studies.plane.pushes.reduction import reduced_pushes
 from compare.studies.plane.pushes.study import GROUPS, STUDY, chosen, validations
 
 SERIES = "10_90_10_10_30_130"
@@ -22,13 +22,8 @@ def obeying(push, load):
     """Return the push with the force and the place of the hand that Coulomb's law predicts."""
     wrench = theory.predicted(theory.Motion.of(push), theory.contact_of(push.series), load)
     arm = -1j * wrench.moment / wrench.force.conjugate() / theory.MM + theory.CENTRE
-    changed = {
-        "force_x": wrench.force.real,
-        "force_y": wrench.force.imag,
-        "end_x": arm.real,
-        "end_y": arm.imag,
-    }
-    return Push(**vars(push) | changed)
+    force_x, force_y = wrench.force.real, wrench.force.imag
+    return replace(push, force_x=force_x, force_y=force_y, end_x=arm.real, end_y=arm.imag)
 
 
 @pytest.mark.parametrize("series", ["patch", "wood_30_90_30_30_30_90", SERIES])
