@@ -3,6 +3,7 @@
 - ``plain``: the paper's equations as printed, integrated by SciPy; read it first;
 - ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
+- ``pushing``: the quasi-static motion of a body that a hand pushes over a plane;
 - ``contact``: friction laws and their limit surfaces;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
 - ``motion``: the event-driven simulation of slip and stick;
@@ -21,6 +22,7 @@ from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_bra
 from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
 from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
 from reference_model.orbits.shock import Shock, smallest_shock
+from reference_model.pushing import Pushing
 from reference_model.simulation import simulate
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (
@@ -49,6 +51,7 @@ __all__ = [
     "Points",
     "PointsOnRing",
     "PowerBalance",
+    "Pushing",
     "Ring",
     "SelfCentredEquilibrium",
     "Shock",

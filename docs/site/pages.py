@@ -19,7 +19,7 @@ PAPER = ROOT / "docs" / "paper" / "paper.pdf"
 TASKS = {
     "Describe a system": ("PinOnDisc", "DiscOnDisc"),
     "Simulate a motion": (
-        *("simulate", "Trajectory", "Phase", "Solution", "SimulationError"),
+        *("simulate", "Trajectory", "Phase", "Solution", "SimulationError", "Pushing"),
         *("exudyn_models.simulate", "exudyn_models.simulate_fixed_step"),
     ),
     "Simulate many motions": ("ensemble.simulate_ensemble", "ensemble.Ensemble", "ensemble.EndState"),

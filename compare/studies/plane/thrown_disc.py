@@ -138,23 +138,14 @@ def by_part(throw: Throw, times: FloatArray, tolerance: float) -> FloatArray:
     return np.array(states)
 
 
-@dataclass(frozen=True)
-class Way:
-    """An engine's function for full discs, and the quadrature error of its friction over μN."""
+Follow = Callable[[Throw, FloatArray, float], FloatArray]
+"""Function of a throw, times and a tolerance that returns states."""
 
-    follow: Callable[[Throw, FloatArray, float], FloatArray]
-    quadrature: float
-
-
-WAYS: Mapping[str, Way] = {"reference": Way(by_contact_law, 1e-12), "exudyn": Way(by_part, 4e-10)}
-"""``Annulus`` and ``exudyn_models.forces.slip_potential`` document the quadrature errors."""
-
-
-def way_of(engine: Engine) -> Way:
-    """Return the function for full discs; raise ``UnsupportedSystemError`` if the engine has none."""
-    if engine.name not in WAYS:
-        raise UnsupportedSystemError(f"{engine.name} has no model of a full disc")
-    return WAYS[engine.name]
+FULL_DISCS: Mapping[str, tuple[Follow, float]] = {
+    "reference": (by_contact_law, 1e-12),
+    "exudyn": (by_part, 4e-10),
+}
+"""Function of each engine, and the quadrature error of its friction over μN, which the contact's module documents."""
 
 
 STUDY = Study.beside(__file__, "thrown-disc", source=SOURCE, seconds=1.0, quick=True, contact=True)
@@ -167,9 +158,6 @@ SEEN = (
     "speed across in m/s",
     "speed of the rim in m/s",
 )
-
-Follow = Callable[[Throw, FloatArray, float], FloatArray]
-"""Function of a throw, times and a tolerance that returns states."""
 
 
 def in_engine(engine: Engine, points: int | None = None) -> Follow:
@@ -192,12 +180,11 @@ def compared(
 
     ``name`` is the key in the figure's data, and ``error`` the error of friction over μN.
     """
-
-    def states(tolerance: float) -> FloatArray:
-        found = [seen(follow(throw, throw.time * shares, tolerance)[1:]) for throw in throws]
-        return np.array(found)
-
-    found = refined(states)
+    found = refined(
+        lambda tolerance: np.array(
+            [seen(follow(throw, throw.time * shares, tolerance)[1:]) for throw in throws]
+        )
+    )
     return Measured(
         predicted=[throw.seen_at(shares[1:]) for throw in throws],
         value=found.value,
@@ -252,8 +239,10 @@ def on_points(engine: Engine, points: int) -> Measured:
     swept=("polar_inertia",),
 )
 def on_full_disc(engine: Engine) -> Measured:
-    way = way_of(engine)
-    return compared(way.follow, FULL, WHILE_SLIDING, "full disc", error=way.quadrature)
+    if engine.name not in FULL_DISCS:
+        raise UnsupportedSystemError(f"{engine.name} has no model of a full disc")
+    follow, quadrature = FULL_DISCS[engine.name]
+    return compared(follow, FULL, WHILE_SLIDING, "full disc", error=quadrature)
 
 
 TAKEN = {

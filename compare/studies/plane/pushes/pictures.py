@@ -33,21 +33,12 @@ def _forces() -> Figure:
     for panel, series in zip(panels, SHOWN, strict=False):
         corners = np.array([0.0, LEGS, 1j * LEGS, 0.0])
         panel.plot(corners.real, corners.imag, color=GREY, linewidth=1.0)
-        panel.plot(
-            *np.array([[foot.real, foot.imag] for foot in feet(series)] or np.empty((0, 2))).T,
-            "o",
-            color=GREY,
-        )
+        places = np.array(feet(series), dtype=complex)
+        panel.plot(places.real, places.imag, "o", color=GREY)
         for push in by_series()[series]:
-            theory = coulomb(push).force
-            for force, colour in ((theory, "tab:orange"), (measured(push).force, BLACK)):
-                way = LENGTH * force
-                panel.plot(
-                    [push.end_x - way.real, push.end_x],
-                    [push.end_y - way.imag, push.end_y],
-                    color=colour,
-                    linewidth=0.9,
-                )
+            for wrench, colour in ((coulomb(push), "tab:orange"), (measured(push), BLACK)):
+                arrow = complex(push.end_x, push.end_y) - LENGTH * wrench.force * np.array([1.0, 0.0])
+                panel.plot(arrow.real, arrow.imag, color=colour, linewidth=0.9)
         panel.set(xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", title=_title(series))
     panels[0].plot([], [], color=BLACK, label="measured")
     panels[0].plot([], [], color="tab:orange", label="Coulomb's law")
@@ -64,8 +55,7 @@ def _limit_surface(panel: Axes, series: str) -> None:
     load = SLIDING_FORCES[surface(series)]
     directions = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False).tolist()
     draw_limit_surface(panel, contact_of(series), directions, color="tab:orange", linewidth=0.5)
-    for push in by_series()[series]:
-        wrench = measured(push)
+    for wrench in map(measured, by_series()[series]):
         panel.plot(abs(wrench.force) / load, wrench.moment / load, ".", color=BLACK)
     panel.set(xlim=(0.0, None), title="Limit surface of the feet on the left")
 
@@ -75,18 +65,10 @@ def _errors() -> Figure:
     for series, pushes in by_series().items():
         dashes = "--" if surface(series) == "wood" else "-"
         sizes = np.sort(errors(pushes, force_error))
-        panels[0].step(
-            sizes,
-            (np.arange(len(sizes)) + 1.0) / len(sizes),
-            where="post",
-            label=_title(series),
-            linestyle=dashes,
-        )
-        theory = [abs(coulomb(push).force) for push in pushes]
-        found = [abs(measured(push).force) for push in pushes]
-        panels[1].plot(
-            theory, found, "." if surface(series) == "board" else "x", markersize=4, label=_title(series)
-        )
+        shares = (np.arange(len(sizes)) + 1.0) / len(sizes)
+        panels[0].step(sizes, shares, where="post", label=_title(series), linestyle=dashes)
+        theory, found = ([abs(law(push).force) for push in pushes] for law in (coulomb, measured))
+        panels[1].plot(theory, found, "x" if dashes == "--" else ".", markersize=4, label=_title(series))
     panels[0].set(
         xlabel="error of the force's direction in degrees", ylabel="share of the pushes", xlim=(0.0, 45.0)
     )
@@ -97,9 +79,6 @@ def _errors() -> Figure:
 
 
 def _title(series: str) -> str:
-    contact = (
-        "whole face"
-        if not feet(series)
-        else "feet " + ", ".join(f"({p.real:.0f}, {p.imag:.0f})" for p in feet(series))
-    )
+    places = ", ".join(f"({place.real:.0f}, {place.imag:.0f})" for place in feet(series))
+    contact = f"feet {places}" if places else "whole face"
     return f"{contact} on {'wood' if surface(series) == 'wood' else 'the board'}"

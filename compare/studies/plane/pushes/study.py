@@ -7,16 +7,16 @@ from functools import cache, partial
 
 import numpy as np
 
-import compare.studies.plane.pushes.forward as forward
-import compare.studies.plane.pushes.theory as theory
 from compare.claims import Measured, Study
 from compare.claims.prose import Table
 from compare.claims.validation import Validation
 from compare.engines import Engine
-from compare.studies.plane.pushes.reduction import Push, reduced_pushes
+from compare.studies.plane.pushes import forward, theory
+from compare.studies.plane.pushes.reduction import Push
 from compare.studies.plane.pushes.theory import (
     CENTRE,
     Motion,
+    Uncertainties,
     contact_of,
     coulomb,
     errors,
@@ -64,8 +64,9 @@ LIMIT = 1e-9
 """Relative error of a point on the limit surface, whose slip minimises a convex function."""
 
 
-def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
-    return np.array([law(push).components for push in pushes])
+def chosen(every: int) -> list[Push]:
+    """Return each push whose place in its series is a multiple of ``every``."""
+    return [push for pushes in theory.by_series().values() for push in pushes[::every]]
 
 
 @STUDY.claim(
@@ -74,11 +75,10 @@ def _wrenches(pushes: Sequence[Push], law: theory.Law) -> FloatArray:
     resolution=1e-9,
     note="The reference's contact against a sum of this study. Moments are divided by 50 mm.",
 )
-def sums() -> Measured:
-    pushes = reduced_pushes()
+def sums(every: int = 1) -> Measured:
     return Measured(
-        predicted=_wrenches(pushes, summed),
-        value=_wrenches(pushes, coulomb),
+        predicted=[summed(push).components for push in chosen(every)],
+        value=[coulomb(push).components for push in chosen(every)],
         error=ROUNDING * max(theory.SLIDING_FORCES.values()),
     )
 
@@ -88,9 +88,9 @@ def sums() -> Measured:
     resolution=1e-6,
     note="Largest multiple of the wrench that friction can hold at rest, by minimising over all slips.",
 )
-def on_limit_surface() -> Measured:
+def on_limit_surface(every: int = 1) -> Measured:
     found = []
-    for push in reduced_pushes():
+    for push in chosen(every):
         contact = contact_of(push.series)
         wrench = theory.predicted(Motion.of(push), contact, 1.0)
         largest, _ = largest_wrench(contact, wrench.force, wrench.moment)
@@ -101,20 +101,16 @@ def on_limit_surface() -> Measured:
 # --- Pushes simulated forward
 
 EVERY = 10
-"""Stride of the simulated pushes of a series."""
+"""Stride of the simulated pushes in a series."""
 
 EPSILON = 2e-5
 """Regularisation in m/s; the hand moves at 2.45 mm/s."""
 
 
-def simulated(every: int = EVERY) -> list[Push]:
-    return [push for pushes in theory.by_series().values() for push in pushes[::every]]
-
-
 @cache
 def quasi_static(steps: int = 5, hand: float = forward.HAND, every: int = EVERY) -> FloatArray:
     """Return displacements x, y and turns times ``theory.PUSHER`` (m) without inertia, shape (n, 3)."""
-    return _components([forward.QuasiStatic(push, hand).motion(steps) for push in simulated(every)])
+    return _components([forward.quasi_static(push, steps, hand) for push in chosen(every)])
 
 
 def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
@@ -132,7 +128,7 @@ def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
 def final_poses(engine: Engine, every: int = EVERY) -> Measured:
     predicted = quasi_static(10, every=every)
     fine, coarse = (
-        _components([forward.by_exudyn(push, epsilon) for push in simulated(every)])
+        _components([forward.by_exudyn(push, epsilon) for push in chosen(every)])
         for epsilon in (EPSILON, 2.0 * EPSILON)
     )
     deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
@@ -140,7 +136,7 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
         predicted=predicted,
         value=2.0 * fine - coarse,  # the error is of first order
         error=np.abs(fine - coarse) + np.abs(predicted - quasi_static(every=every)) + deformed,
-        at={"push": [f"{push.series} {push.number}" for push in simulated(every)]},
+        at={"push": [f"{push.series} {push.number}" for push in chosen(every)]},
         components=("x in m", "y in m", "turn times 50 mm in m"),
     )
 
@@ -156,9 +152,9 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
             _of(
                 series,
                 force_error,
-                "Coulomb's law with the authors' parameters predicts the direction of the force with a median "
-                f"error of {{}} degrees for {name}.",
-                "direction of the force",
+                "Coulomb's law with the authors' parameters predicts the direction of the force with a median error "
+                f"of {{}} degrees for {name}.",
+                quantity="direction of the force",
             )
             for name, series in GROUPS.items()
         ),
@@ -167,68 +163,66 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
             wrench_difference,
             "Coulomb's law predicts the direction of the wrench, with moments over 50 mm, with a median error of {} "
             "degrees.",
-            "direction of the wrench",
+            quantity="direction of the wrench",
         ),
         _of(
             everything,
             work_error,
             "Coulomb's law with the authors' sliding forces predicts the work of a push with a median error of {} %.",
-            "work",
+            quantity="work",
             unit="%",
         ),
         _of_final_positions(every),
     )
 
 
-def _of(
-    series: Sequence[str], of: theory.Difference, sentence: str, quantity: str, unit: str = "degrees"
-) -> Validation:
+def _of(series: Sequence[str], of: theory.Difference, sentence: str, **names: str) -> Validation:
     groups = [theory.by_series()[one] for one in series]
     found = np.array([np.linalg.norm(of(push, coulomb)) for pushes in groups for push in pushes])
-    sources = [uncertainties(pushes, of) for pushes in groups]
-    median, uncertainty = median_with_error(found)
-    total = np.concatenate([one.total for one in sources])
-
-    def middle(kind: str) -> float:
-        found = float(np.median(np.concatenate([getattr(one, kind) for one in sources])))
-        return found if found > ROUNDING else 0.0
-
-    return Validation(
-        sentence=sentence.format(f"{median:.1f} ± {uncertainty:.1f}"),
-        quantity=quantity,
-        unit=unit,
-        error=median,
-        error_uncertainty=uncertainty,
-        data=middle("data"),
-        input=middle("input"),
-        numerical=middle("numerical"),
-        explained=float(np.mean(found <= 2.0 * total)),
-        count=len(found),
-    )
+    uncertain = Uncertainties.joined([uncertainties(pushes, of) for pushes in groups])
+    return _validation(found, uncertain, sentence, **names)
 
 
 def _of_final_positions(every: int) -> Validation:
-    pushes, predicted = simulated(every), quasi_static(every=every)
-    found = (predicted - _components([forward.measured_motion(push) for push in pushes]))[:, :2]
-    sizes = np.linalg.norm(found, axis=1) / theory.MM
-    median, uncertainty = median_with_error(sizes)
-    slippery, rough = (quasi_static(hand=forward.HAND + change, every=every)[:, :2] for change in (-0.1, 0.1))
-    inputs = 0.5 * np.linalg.norm(rough - slippery, axis=1) / theory.MM
-    data = np.array(
-        [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
-    )
-    numerical = np.linalg.norm((quasi_static(10, every=every) - predicted)[:, :2], axis=1) / theory.MM
-    return Validation(
-        sentence="Coulomb's law predicts the final position of the pushed body with a median error of "
-        f"{median:.1f} ± {uncertainty:.1f} mm.",
+    predicted = quasi_static(every=every)
+
+    def apart(other: FloatArray) -> FloatArray:
+        return np.asarray(np.linalg.norm((predicted - other)[:, :2], axis=1) / theory.MM)
+
+    slippery, rough = (quasi_static(hand=forward.HAND + change, every=every) for change in (-0.1, 0.1))
+    poses = [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
+    return _validation(
+        apart(_components([forward.measured_motion(push) for push in chosen(every)])),
+        Uncertainties(
+            data=np.array(poses),
+            input=0.5 * apart(predicted + rough - slippery),
+            numerical=apart(quasi_static(10, every=every)),
+        ),
+        "Coulomb's law predicts the final position of the pushed body with a median error of {} mm.",
         quantity="final position",
         unit="mm",
+    )
+
+
+def _validation(
+    sizes: FloatArray, uncertain: Uncertainties, sentence: str, quantity: str, unit: str = "degrees"
+) -> Validation:
+    median, scatter = median_with_error(sizes)
+
+    def middle(values: FloatArray) -> float:
+        found = float(np.median(values))
+        return found if found > ROUNDING else 0.0
+
+    return Validation(
+        sentence=sentence.format(f"{median:.1f} ± {scatter:.1f}"),
+        quantity=quantity,
+        unit=unit,
         error=median,
-        error_uncertainty=uncertainty,
-        data=float(np.median(data)),
-        input=float(np.median(inputs)),
-        numerical=float(np.median(numerical)),
-        explained=float(np.mean(sizes <= 2.0 * np.sqrt(data**2 + inputs**2 + numerical**2))),
+        error_uncertainty=scatter,
+        data=middle(uncertain.data),
+        input=middle(uncertain.input),
+        numerical=middle(uncertain.numerical),
+        explained=uncertain.share_explained(sizes),
         count=len(sizes),
     )
 
@@ -265,7 +259,7 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
         f"{np.percentile(force, 90):.1f}",
         f"{np.median(uncertain.data):.1f}",
         f"{np.median(uncertain.input):.1f}",
-        f"{100.0 * np.mean(force <= 2.0 * uncertain.total):.0f}",
+        f"{100.0 * uncertain.share_explained(force):.0f}",
         "{:.1f} ({})".format(*theory.scatter(pushes)),
         _text(errors(pushes, wrench_error)),
         _text(errors(pushes, work_ratio), digits=3),
@@ -273,16 +267,9 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
 
 
 def account(pushes: Sequence[Push]) -> list[str]:
-    series = dict.fromkeys(push.series for push in pushes)
     return [
-        f"{name}: "
-        + "; ".join(
-            f"{column} {cell}"
-            for column, cell in zip(
-                COLUMNS, _errors_of(tuple(push for push in pushes if push.series == name)), strict=True
-            )
-        )
-        for name in series
+        f"{name}: " + "; ".join(map(" ".join, zip(COLUMNS, _errors_of(own), strict=True)))
+        for name, own in theory.grouped(pushes).items()
     ]
 
 

@@ -6,10 +6,10 @@ against d. All parameters are the authors' values; nothing is fitted.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import astuple, dataclass, replace
 from functools import cache, partial
-from itertools import combinations
+from itertools import combinations, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,20 +55,14 @@ def feet(series: str) -> list[complex]:
 def contact_of(series: str, centre: complex = CENTRE, divisions: int = DIVISIONS) -> Points:
     """Return the contact of a series, relative to the centre of mass.
 
-    The centre of pressure ``centre`` (mm) determines the shares of three feet. A patch has uniform pressure.
+    ``centre`` (mm) is the centre of pressure, which tilts the load linearly, and ``divisions`` refines a patch.
     """
-    places = feet(series)
-    if not places:
-        corners = [
-            ((x - CENTRE.real) * MM, (y - CENTRE.imag) * MM) for x, y in ((0, 0), (LEGS, 0), (0, LEGS))
-        ]
-        return polygon_patch(corners, divisions)
-    rows = np.array([[1.0, place.real, place.imag] for place in places]).T
-    shares = np.linalg.solve(rows, [1.0, centre.real, centre.imag])
-    arms = [(place - CENTRE) * MM for place in places]
-    return Points(
-        [(arm.real, arm.imag, float(share)) for arm, share in zip(arms, shares / shares.sum(), strict=True)]
-    )
+    arms = np.array([(place - CENTRE) * MM for place in feet(series) or (0.0, LEGS, 1j * LEGS)])
+    if not feet(series):  # all points represent equal areas
+        arms = np.array(polygon_patch(np.column_stack((arms.real, arms.imag)), divisions).arms(0.0))
+    rows, middle = np.array([np.ones(len(arms)), arms.real, arms.imag]), (centre - CENTRE) * MM
+    shares = np.linalg.solve(rows @ rows.T, [1.0, middle.real, middle.imag]) @ rows
+    return Points(np.column_stack((arms.real, arms.imag, shares / shares.sum())).tolist())
 
 
 @dataclass(frozen=True)
@@ -118,8 +112,7 @@ def coulomb(
 ) -> Wrench:
     """Return the wrench of Coulomb friction with the authors' parameters.
 
-    ``centre`` (mm) moves the centre of pressure of three feet, ``factor`` multiplies the sliding force, and
-    ``divisions`` refines the patch.
+    ``factor`` multiplies the sliding force; for the others see ``contact_of``.
     """
     contact = contact_of(push.series, centre, divisions)
     return predicted(Motion.of(push), contact, factor * SLIDING_FORCES[surface(push.series)])
@@ -178,10 +171,15 @@ class Uncertainties:
     input: FloatArray
     numerical: FloatArray
 
-    @property
-    def total(self) -> FloatArray:
-        """Root of the sum of squares."""
-        return np.sqrt(self.data**2 + self.input**2 + self.numerical**2)
+    @classmethod
+    def joined(cls, several: Sequence[Uncertainties]) -> Uncertainties:
+        """Return the uncertainties of several differences."""
+        return cls(*(np.concatenate(kind) for kind in zip(*map(astuple, several), strict=True)))
+
+    def share_explained(self, errors: FloatArray) -> float:
+        """Return the share of ``errors`` (n,) that are at most twice their total uncertainty."""
+        total = np.sqrt(self.data**2 + self.input**2 + self.numerical**2)
+        return float(np.mean(errors <= 2.0 * total))
 
 
 def pose_errors(pushes: Sequence[Push]) -> tuple[float, float]:
@@ -211,10 +209,9 @@ def uncertainties(pushes: tuple[Push, ...], of: Difference = force_error) -> Unc
         moved = [replace(push, **{name: getattr(push, name) + change}) for name, change in changes.items()]
         data.append(_size([of(other, coulomb) - base for other in moved]))
         laws = [
-            partial(coulomb, factor=1.0 + SLIDING_FORCE_TO * ROUNDED / SLIDING_FORCES[surface(push.series)])
+            partial(coulomb, factor=1.0 + SLIDING_FORCE_TO * ROUNDED / SLIDING_FORCES[surface(push.series)]),
+            *(partial(coulomb, centre=CENTRE + step * CENTRE_TO * ROUNDED) for step in (1.0, 1.0j)),
         ]
-        if feet(push.series):
-            laws += [partial(coulomb, centre=CENTRE + step * CENTRE_TO * ROUNDED) for step in (1.0, 1.0j)]
         inputs.append(_size([of(push, law) - base for law in laws]))
         finer = partial(coulomb, divisions=2 * DIVISIONS)
         numerical.append(0.0 if feet(push.series) else _size([of(push, finer) - base]))
@@ -244,7 +241,7 @@ def scatter(pushes: Sequence[Push], of: Difference = force_error) -> tuple[float
 
 
 def pushed_above(push: Push, height: float) -> Wrench:
-    """Return Coulomb's wrench for a pusher ``height`` mm above the surface, which moves the centre of pressure."""
+    """Return Coulomb's wrench for a pusher ``height`` mm above the surface, whose moment tilts the load."""
     return coulomb(push, centre=CENTRE + measured(push).force * height / (MASS * GRAVITY))
 
 
@@ -274,12 +271,14 @@ def _edges(count: int = 60) -> NDArray[np.complex128]:
     return np.asarray((np.interp(along, reached, corners) - CENTRE) * MM)
 
 
+def grouped(pushes: Iterable[Push]) -> dict[str, tuple[Push, ...]]:
+    """Return the pushes of each series, which must follow each other."""
+    return {series: tuple(group) for series, group in groupby(pushes, lambda push: push.series)}
+
+
 @cache
 def by_series() -> dict[str, tuple[Push, ...]]:
-    found: dict[str, tuple[Push, ...]] = {}
-    for push in reduced_pushes():
-        found[push.series] = (*found.get(push.series, ()), push)
-    return found
+    return grouped(reduced_pushes())
 
 
 def errors(pushes: Sequence[Push], of: Callable[[Push, Law], float], law: Law = coulomb) -> FloatArray:

@@ -79,18 +79,6 @@ def test_a_push_is_seen_in_the_axes_of_the_body_halfway(tmp_path, name, series):
     assert (push.noise, push.tilt_x, push.tilt_y) == pytest.approx((NOISE / 2, 0.0, 0.0))
 
 
-def test_turning_the_laboratory_changes_nothing(tmp_path, monkeypatch):
-    (before,) = reduce_log(written(tmp_path, lines()))
-    quarter = cmath.exp(2.5j)
-    for name in ("START", "END"):
-        place, angle = globals()[name]
-        monkeypatch.setitem(globals(), name, (quarter * place, angle + 2.5))
-    monkeypatch.setitem(globals(), "HAND", HAND + 2.5)
-    (after,) = reduce_log(written(tmp_path, lines()))
-    for name in reduction.HEADINGS[1:]:
-        assert getattr(after, name) == pytest.approx(getattr(before, name), abs=1e-12)
-
-
 @pytest.mark.parametrize(
     ("line", "text", "message"),
     [
