@@ -100,15 +100,21 @@ def worst(claim: Claim) -> Element:
 
 
 def _element(claim: Claim, index: int) -> Element:
-    numbers = (claim.predicted, claim.measured, claim.difference, _numerical(claim))
+    predicted, measured, difference, numerical = (
+        float(array.flat[index])
+        for array in (claim.predicted, claim.measured, claim.difference, _numerical(claim))
+    )
     name = claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
     return Element(
         index,
         claim.predicted.size,
         name if claim.predicted.size > 1 else "",
         claim.units[index % len(claim.units)],
-        *(float(array.flat[index]) for array in numbers),
-        model=claim.budget.model,
+        predicted,
+        measured,
+        difference,
+        numerical,
+        claim.budget.model,
     )
 
 
