@@ -176,7 +176,7 @@ CLUTCH = {
 }
 CLUTCH |= {"regularisation": 0.1, "static_ratio": 1.2, "plates": 3.0}
 CASES = {
-    "pin slips": lambda instance: started(instance, replace(FIG5, hardening=3.0), WHIRL),
+    "pin slips": lambda instance: started(instance, replace(FIG5, hardening=3.0), (0.3, -0.2, 0.03, 0.1)),
     "pin sticks": lambda instance: inside(started(instance, FIG5, WHIRL), STICKS),
     "pin leaves": lambda instance: inside(started(instance, FIG5, WHIRL), LEAVES),
     "disc slips": lambda instance: instance(

@@ -72,10 +72,14 @@ def test_parabola_of_pressure_may_touch_zero(instance):
 
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", MODELS)
-def test_model_description_contains_the_range_of_each_variable(unit, name, fmi):
+def test_model_description_contains_the_range_of_each_variable_and_the_state_of_each_derivative(
+    unit, name, fmi
+):
     fmpy = pytest.importorskip("fmpy")
     described = {one.name: one for one in fmpy.read_model_description(str(unit(name, fmi))).modelVariables}
     for one in MODELS[name].variables:
+        state = described[one.name].derivative
+        assert (state.name if state else "") == one.derivative_of
         bounds = described[one.name].min, described[one.name].max
         if one.settable and one.type != "boolean":
             assert tuple(map(float, bounds)) == (one.least, one.most)

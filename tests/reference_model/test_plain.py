@@ -20,7 +20,7 @@ MOTIONS = {
     "a ring that comes to stick": (STUCK_DISC, [0.3, 0.0, 0.0, 0.0, 0.1, 0.5]),
     "points that come to stick": (replace(STUCK_DISC, contact_points=6), [0.3, 0.0, 0.0, 0.0, 0.1, 0.5]),
 }
-TIMES = np.linspace(0.0, 12.0, 9)
+TIMES = np.linspace(0.0, 8.0, 9)
 
 
 @pytest.mark.parametrize("motion", MOTIONS)

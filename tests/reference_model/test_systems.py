@@ -31,9 +31,8 @@ def refusal(function, *args, **kwargs):
     message = str(caught.value)
     assert "\n" not in message
     assert len(message) < 250
-    assert (
-        caught.value.__suppress_context__ or caught.value.__context__ is None
-    )  # the traceback shows one error only
+    # The traceback shows one error only.
+    assert caught.value.__suppress_context__ or caught.value.__context__ is None
     return message
 
 

@@ -287,53 +287,26 @@ WITHOUT_A_WHIRL = (
     ({"friction_force": 0.0}, "friction_force = 0"),
     ({"stiffness": 0.0}, "stiffness = 0"),
 )
+NEED_A_WHIRL = (
+    "whirl_radius", "whirl_frequency", "whirl_shift", "first_order_whirl_shift", "whirl_shift_error_limit",
+    "third_order_of_whirl_shift",
+)  # fmt: skip
+NEED_A_RATIO = (
+    "variational_matrix", "characteristic_coefficients", "coefficient_margins", "lower_branch_margin",
+    "upper_branch_margin",
+)  # fmt: skip
 REFUSED = [
-    (
-        formulas.equilibrium_radius,
-        {"friction_force": 0.102},
-        r"friction_force = 0\.102 N.* = 0\.1 N \(eq\. 5\)",
-    ),
-    (formulas.equilibrium_angle, {"disc_speed": 0.0}, "disc_speed = 0 rad/s"),
-    (formulas.equilibrium_angle, {"stiffness": 0.0}, "stiffness = 0 N/m"),
-    (formulas.equilibrium_angle, {"offset": 0.0, "friction_force": 0.0}, "offset = 0 m"),
-    (lambda pin: formulas.turn_until_release(pin, -0.1, 0.0), {}, r"radius = -0\.1 m"),
-    *(
-        (
-            formulas.sticking_radius,
-            {"friction_force": load, "offset": offset},
-            rf"friction_force = {load:g} N.* = 0\.1 N \(eq\. 9\)",
-        )
-        for load, offset in ((0.0, 0.1), (0.05, -0.1), (0.1, 0.1))
-    ),
-    *(
-        (
-            formulas.resonant_disc_speed,
-            {"damping": damping, "stiffness": 2.0},
-            f"damping = {damping:g} N s/m.* = 2 N s/m",
-        )
-        for damping in (2.0, 3.0)
-    ),
-    *(
-        (formula, changes, message)
-        for formula in (
-            formulas.whirl_radius,
-            formulas.whirl_frequency,
-            formulas.whirl_shift,
-            formulas.first_order_whirl_shift,
-            formulas.whirl_shift_error_limit,
-            formulas.third_order_of_whirl_shift,
-        )
-        for changes, message in WITHOUT_A_WHIRL
-    ),
+    ("equilibrium_radius", {"friction_force": 0.102}, r"friction_force = 0\.102 N.* = 0\.1 N \(eq\. 5\)"),
+    ("equilibrium_angle", {"disc_speed": 0.0}, "disc_speed = 0 rad/s"),
+    ("equilibrium_angle", {"stiffness": 0.0}, "stiffness = 0 N/m"),
+    ("equilibrium_angle", {"offset": 0.0, "friction_force": 0.0}, "offset = 0 m"),
+    ("sticking_radius", {"friction_force": 0.05, "offset": -0.1}, r"force = 0\.05 N.* = 0\.1 N \(eq\. 9\)"),
+    ("sticking_radius", {"friction_force": 0.1}, r"friction_force = 0\.1 N.* = 0\.1 N \(eq\. 9\)"),
+    ("resonant_disc_speed", {"damping": 2.0, "stiffness": 2.0}, r"damping = 2 N s/m.* = 2 N s/m"),
+    *((formula, *case) for formula in NEED_A_WHIRL for case in WITHOUT_A_WHIRL),
     *(
         (formula, {"disc_speed": speed}, f"disc_speed = {speed:g} rad/s: ω/")
-        for formula in (
-            formulas.variational_matrix,
-            formulas.characteristic_coefficients,
-            formulas.coefficient_margins,
-            formulas.lower_branch_margin,
-            formulas.upper_branch_margin,
-        )
+        for formula in NEED_A_RATIO
         for speed in (1.0, -1.0)
     ),
 ]
@@ -342,4 +315,9 @@ REFUSED = [
 @pytest.mark.parametrize(("formula", "changes", "message"), REFUSED)
 def test_pin_outside_the_domain_of_a_formula_is_refused(formula, changes, message):
     with pytest.raises(ValueError, match=message):
-        formula(replace(FIG_5, **changes))
+        getattr(formulas, formula)(replace(FIG_5, **changes))
+
+
+def test_negative_radius_is_refused():
+    with pytest.raises(ValueError, match=r"radius = -0\.1 m"):
+        formulas.turn_until_release(FIG_5, -0.1, 0.0)

@@ -171,6 +171,15 @@ OUT_OF_REACH = {"stop_gap": 10.0, "stop_stiffness": 1.0}
 """A stop that the pin never meets. The release is then searched for and not computed in closed form."""
 
 
+def test_slip_that_begins_with_too_large_a_pull_is_the_same_by_series_and_by_collocation():
+    start, times = stuck_state(FIG_6, 0.4, 0.3), np.linspace(0.0, 1.0, 21)
+    assert math.hypot(*pull_on_stuck_pin(FIG_6, start)) > 1.1 * FIG_6.friction_force
+    by_series, by_collocation = (
+        simulate(pin, start, times, tolerance=1e-11).states for pin in (FIG_6, replace(FIG_6, **OUT_OF_REACH))
+    )
+    assert np.abs(by_series - by_collocation).max() < 1e-10
+
+
 @pytest.mark.parametrize(
     ("excess", "support"),
     [

@@ -87,9 +87,8 @@ def test_centred_rotation_on_a_slow_master_disc_is_stable_at_every_load(speed, s
     disc = replace(FIG11, disc_speed=speed, shaft_speed=speed - 0.25)
     with pytest.raises(ValueError, match=f"disc_speed = {speed:g} rad/s.*natural frequency 1 rad/s"):
         onset_load(disc)
-    disc = replace(
-        disc, friction_force=share * 0.015 * 0.25 / 0.12
-    )  # share of the load at which the disc sticks
+    sticking = 0.015 * 0.25 / 0.12
+    disc = replace(disc, friction_force=share * sticking)
     assert self_centred_equilibria(disc)[0].stable
 
 
