@@ -30,8 +30,8 @@ def test_a_disc_on_the_predicted_lines_agrees():
 @pytest.mark.parametrize(
     ("move", "windows"),
     [
-        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # follows its unbalance all the way
-        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # whirls from the beginning
+        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # only unbalance
+        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # only whirl
         (as_predicted(off=1.5 / TURNS), "above"),
     ],
 )
