@@ -25,7 +25,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 def test_a_disc_on_the_predicted_lines_agrees():
     (claim,) = RUN_UP.claims_of_fault(Patched(moving(as_predicted())), ("lines",))
     assert np.max(claim.difference) < 0.5 / TURNS
-    # Half of the errors would exceed this without interpolation between the lines of the spectrum.
+    # Without interpolation, half of the errors exceed this.
     assert np.median(claim.difference) < 0.125 / TURNS
 
 
