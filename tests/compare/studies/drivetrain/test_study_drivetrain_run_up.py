@@ -25,7 +25,7 @@ from compare.studies.toolkit.drivetrain_bench import (
 def test_a_disc_on_the_predicted_lines_agrees():
     (claim,) = RUN_UP.claims_of_fault(Patched(moving(as_predicted())), ("lines",))
     assert np.max(claim.difference) < 0.5 / TURNS
-    # Without interpolation, half of the errors exceed this.
+    # Half of the errors exceed this if interpolation is wrong.
     assert np.median(claim.difference) < 0.125 / TURNS
 
 
@@ -33,7 +33,7 @@ def test_a_disc_on_the_predicted_lines_agrees():
     ("move", "windows"),
     [
         (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # only unbalance
-        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # only whirl
+        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),
         (as_predicted(off=1.5 / TURNS), "above"),
     ],
 )
