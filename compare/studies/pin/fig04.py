@@ -15,14 +15,8 @@ from compare.engines import Engine
 from compare.output.figures import BLACK, GREY, Axes, axis, curve, engines_in, new_figure, points
 from compare.studies.toolkit.pins import whirl_of
 from reference_model import Orbit, PinOnDisc
-from reference_model.formulas.pin import (
-    first_order_whirl_response,
-    first_order_whirl_shift,
-    third_order_of_whirl_shift,
-    whirl_radius,
-    whirl_shift,
-    whirl_shift_error_limit,
-)
+from reference_model.formulas import pin as formulas
+from reference_model.formulas.pin import first_order_whirl_response, first_order_whirl_shift, whirl_shift
 from reference_model.systems import FloatArray
 
 SPEEDS = (1.15, 1.2, 1.25, 1.3, 1.4, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0)
@@ -57,9 +51,10 @@ def error_of_eq18(pin: PinOnDisc) -> float:
 
     Successive orders have the ratio (X0·w/ρ_c)² with w = ω/(ω − k).
     """
-    turn = pin.offset / whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
-    higher = abs(third_order_of_whirl_shift(pin)) / (1.0 - turn**2)
-    return float(np.hypot(*first_order_whirl_shift(pin))) * (abs(whirl_shift_error_limit(pin)) + higher)
+    turn = pin.offset / formulas.whirl_radius(pin) * pin.disc_speed / (pin.disc_speed - pin.natural_frequency)
+    higher = abs(formulas.third_order_of_whirl_shift(pin)) / (1.0 - turn**2)
+    share = abs(formulas.whirl_shift_error_limit(pin)) + higher
+    return float(np.hypot(*first_order_whirl_shift(pin))) * share
 
 
 STUDY = Study.beside(__file__, "fig04", source=SOURCE, seconds=1.5, quick=True)
@@ -162,7 +157,7 @@ def limit(engine: Engine, speed: float) -> Measured:
     shifts = [complex(*whirl_shift(pin_at(speed, offset))) for offset in OFFSETS]
     relative = np.array([shift / mean - 1.0 for shift, mean in zip(shifts, measured.tolist(), strict=True)])
     coarser, extrapolated = towards_zero(relative)
-    predicted = whirl_shift_error_limit(pin)
+    predicted = formulas.whirl_shift_error_limit(pin)
     return Measured(
         predicted=[predicted.real, predicted.imag],
         value=[extrapolated.real, extrapolated.imag],

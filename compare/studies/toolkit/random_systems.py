@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from dataclasses import asdict
 
 import numpy as np
 from numpy.random import Generator
@@ -56,12 +57,7 @@ def any_disc(random: Generator, points: int | None) -> DiscOnDisc:
     radius = abs(pin.offset) * between(random, 0.5, 5.0)
     inertia = pin.mass * radius**2 * between(random, 0.3, 3.0)
     return DiscOnDisc(
-        mass=pin.mass,
-        stiffness=pin.stiffness,
-        damping=pin.damping,
-        friction_force=pin.friction_force,
-        disc_speed=pin.disc_speed,
-        offset=pin.offset,
+        **asdict(pin),
         polar_inertia=inertia,
         contact_radius=radius,
         shaft_damping=inertia * pin.natural_frequency * between(random, 0.03, 1.0),

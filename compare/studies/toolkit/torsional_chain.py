@@ -176,10 +176,8 @@ class Phase:
             ends = np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))
             if ends.size == 0:
                 continue
-            k = int(ends[0])
-            time = float(
-                brentq(lambda t, margin=margin: margin(np.array([t]))[0], times[k], times[k + 1], xtol=1e-16)
-            )
+            span = times[ends[0] : ends[0] + 2]
+            time = float(brentq(lambda t, margin=margin: margin(np.array([t]))[0], *span, xtol=1e-16))
             if time < first:
                 first, which = time, np.zeros(len(self.modes), dtype=bool)
             which[i] |= time == first

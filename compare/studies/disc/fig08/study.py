@@ -66,12 +66,9 @@ def place_and_spin(disc: DiscOnDisc, contact: IsotropicContact | None = None) ->
 
 
 def grid() -> list[DiscOnDisc]:
-    fractions = np.linspace(0.0, 1.0, 13)[1:-1]
-    return [
-        with_load(disc, fraction * last_load(disc, PAPER_LAW))
-        for disc in (replace(RING, offset=offset) for offset in OFFSETS)
-        for fraction in fractions
-    ]
+    discs = [replace(RING, offset=offset) for offset in OFFSETS]
+    shares = np.linspace(0.0, 1.0, 13)[1:-1]
+    return [with_load(disc, share * last_load(disc, PAPER_LAW)) for disc in discs for share in shares]
 
 
 def by_26(disc: DiscOnDisc) -> FloatArray:

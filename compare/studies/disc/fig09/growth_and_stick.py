@@ -11,18 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 import compare.studies.disc.fig09.theory as theory
-from compare.claims import (
-    COARSENING,
-    ROUNDING,
-    TIGHTEST,
-    Measured,
-    Measurement,
-    answers_of,
-    asked,
-    extrapolated_order,
-    refined,
-)
+from compare.claims import COARSENING, ROUNDING, TIGHTEST, Measured, Measurement, refined
+from compare.claims.error_estimates import extrapolated_order
 from compare.claims.linearised_flow import real_and_imaginary, rotated
+from compare.claims.measured import answers_of, asked
 from compare.engines import Engine, reference
 from compare.studies.disc.fig09.steady_motions import means, steady_motions
 from compare.studies.disc.fig09.theory import STUDY, last_stable_load, weak_damping_load

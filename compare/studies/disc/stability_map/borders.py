@@ -290,10 +290,9 @@ def _side(law: str, sign: float) -> Measured:
     swept=("disc_speed", "damping"),
 )
 def pin_is_stable() -> Measured:
+    dampings = np.linspace(LOW, HIGH, 20).tolist()
     pins = [
-        replace(pin_of(DISC), damping=damping, disc_speed=speed)
-        for speed in SPEEDS.tolist()
-        for damping in np.linspace(LOW, HIGH, 20).tolist()
+        pin_of(DISC, damping=damping, disc_speed=speed) for speed in SPEEDS.tolist() for damping in dampings
     ]
     return answers_of([(upper_branch_margin(pin), -whirl_eigenvalues(pin)[1].real) for pin in pins])
 

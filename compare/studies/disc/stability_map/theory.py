@@ -19,12 +19,8 @@ from compare.engines import Simulate
 from compare.studies.toolkit.fig11 import KINDS, LAWS, PLANES, curves_in
 from reference_model.contact.contact_law import IsotropicContact
 from reference_model.formulas.disc import whirl_at
+from reference_model.steady import stability
 from reference_model.steady.bifurcation_curves import Boundary, Kind
-from reference_model.steady.stability import (
-    equilibrium_eigenvalues,
-    turning_frame_jacobian,
-    whirl_eigenvalues,
-)
 from reference_model.steady.steady_states import whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
@@ -65,10 +61,10 @@ def critical_eigenvalues(
     # The spin computed from α has a relative rounding error of about 4 eps.
     neighbour = state * (1.0 + 4.0 * np.finfo(float).eps * (np.arange(6) == 5))
     values, shifted = (
-        np.array(sorted(whirl_eigenvalues(disc, which, law)[1:], key=lambda value: abs(value.real)))
+        np.array(sorted(stability.whirl_eigenvalues(disc, which, law)[1:], key=lambda value: abs(value.real)))
         for which in (state, neighbour)
     )
-    found, rounding = eigenvalues_with_rounding(turning_frame_jacobian(disc, state, law))
+    found, rounding = eigenvalues_with_rounding(stability.turning_frame_jacobian(disc, state, law))
     error = rounding[np.argmin(np.abs(found - values[0]))]
     return values, float(error + np.min(np.abs(shifted - values[0])))
 
@@ -100,7 +96,7 @@ def growth_of_rotation(disc: DiscOnDisc, law: IsotropicContact = LAWS["ring"]) -
     # The shaft overcomes friction.
     slip = against - math.copysign(disc.friction_force * disc.contact_radius / disc.shaft_damping, against)
     state = np.array([0.0, 0.0, 0.0, 0.0, 0.0, disc.disc_speed - slip])
-    return equilibrium_eigenvalues(disc, state, law)[0].real
+    return stability.equilibrium_eigenvalues(disc, state, law)[0].real
 
 
 def change_of_stability(name: str, near: float, law: IsotropicContact) -> tuple[float, float]:
@@ -143,7 +139,8 @@ def section() -> Data:
         for alpha in alphas.tolist():
             load, radius, _ = whirl_at(DISC, alpha, law)
             disc = at(friction_force=load)
-            rows.append((load, radius, whirl_eigenvalues(disc, state_at(disc, alpha, law), law)[1].real))
+            values = stability.whirl_eigenvalues(disc, state_at(disc, alpha, law), law)
+            rows.append((load, radius, values[1].real))
         data[f"section/{name}"] = np.array(rows)
     return data
 

@@ -10,15 +10,7 @@ from scipy.linalg import expm
 
 from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import BLACK, GREY, Figure, axis, curve, engines_in, new_figure, points
-from compare.studies.drivetrain.frozen.theory import (
-    MODULATED,
-    PUSH,
-    SPEED,
-    SURPLUS,
-    in_turning_axes,
-    state_matrix_of,
-    whirls_of,
-)
+from compare.studies.drivetrain.frozen import theory as frozen
 from compare.studies.toolkit.drivetrain_bench import passenger_car
 
 MM = 1e3
@@ -96,8 +88,8 @@ def draw_maps(theory: Data) -> Figure:
         panel.patch.set(facecolor=NO_WHIRL, hatch="///", edgecolor="white")
         panel.grid(visible=False)
     left.set(xlabel="engine speed in rpm", ylabel="torque in N m")
-    left.set(title=f"Load {100.0 * SURPLUS:.0f} % more than the torque needs")
-    right.set(xscale="log", xlabel="relative surplus of the load", title=f"{SPEED:.0f} rpm")
+    left.set(title=f"Load {100.0 * frozen.SURPLUS:.0f} % more than the torque needs")
+    right.set(xscale="log", xlabel="relative surplus of the load", title=f"{frozen.SPEED:.0f} rpm")
     for panel, words, where, colour in (
         (left, "no whirl: the clutch locks up", (0.05, 0.62), BLACK),
         (left, "on the stop", (0.62, 0.42), "white"),
@@ -108,7 +100,7 @@ def draw_maps(theory: Data) -> Figure:
         (right, "within the play, modulated", (0.12, 0.25), BLACK),
     ):
         panel.annotate(words, where, xycoords="axes fraction", color=colour)
-    speed, torque, surplus = MODULATED
+    speed, torque, surplus = frozen.MODULATED
     left.plot(speed, torque, "*", color=BLACK, markersize=10.0)
     right.plot(surplus, torque, "*", color=BLACK, markersize=10.0)
     bar = figure.colorbar(mesh, ax=[left, right], label="growth rate of the modulation in 1/s")
@@ -127,9 +119,9 @@ def draw_modulated(data: ByEngine) -> Figure:
         shade: Any = {"where": distance > car.stop_gap, "color": GREY, "alpha": 0.25}
         for panel in (radius, slip):
             panel.fill_between(times, 0.0, 1.0, transform=panel.get_xaxis_transform(), **shade)
-    whirl = whirls_of(car)[0]
-    matrix = in_turning_axes(state_matrix_of(car, whirl), whirl.frequency)
-    start = PUSH * whirl.radius * np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, whirl.frequency, 0.0])
+    whirl = frozen.whirls_of(car)[0]
+    matrix = frozen.in_turning_axes(frozen.state_matrix_of(car, whirl), whirl.frequency)
+    start = frozen.PUSH * whirl.radius * np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, whirl.frequency, 0.0])
     early = np.linspace(0.0, 1.6, 81)
     step, states = expm(matrix * early[1]), [start]
     for _ in early[1:]:

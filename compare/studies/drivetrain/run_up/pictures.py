@@ -96,18 +96,17 @@ def draw_waterfall(data: ByEngine) -> Figure:
     panel.plot(across, across / 60.0, ls="--", **light)
     panel.plot(across, across / 30.0, ls=":", **light)
     panel.axhline(own, ls="-.", **light)
-    lines = [
-        ("engine, order 1", (2450.0, 24.0), "white"),
-        ("engine, order 2: firing", (2150.0, 107.0), "white"),
-        (r"natural frequency $k/2\pi$", (4900.0, own - 12.0), "white"),
-        ("at rest in space", (1700.0, 5.0), "white"),
-    ]
+    for words, where in (
+        ("engine, order 1", (2450.0, 24.0)),
+        ("engine, order 2: firing", (2150.0, 107.0)),
+        (r"natural frequency $k/2\pi$", (4900.0, own - 12.0)),
+        ("at rest in space", (1700.0, 5.0)),
+    ):
+        panel.annotate(words, where, color="white")
     if "theory" in data:
         turns, _, whirl = data["theory"]["whirl"].T
         panel.plot(turns / RPM, whirl / (2.0 * math.pi), color=CYAN, lw=1.2)
-        lines.append(("whirl of the reference", (3000.0, 75.0), CYAN))
-    for words, where, colour in lines:
-        panel.annotate(words, where, color=colour)
+        panel.annotate("whirl of the reference", (3000.0, 75.0), color=CYAN)
     panel.set(xlabel="engine speed in rpm", xlim=across)
     panel.set(ylabel="frequency in Hz (negative: backwards)", ylim=(-130.0, 200.0))
     panel.grid(visible=False)

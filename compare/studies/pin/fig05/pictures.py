@@ -7,19 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.parameters import FIG5
-from compare.output.figures import (
-    BLACK,
-    GREEN,
-    PURPLE,
-    Axes,
-    axis,
-    engine_style,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Axes, axis, engine_style, engines_in, new_figure, points
 from reference_model.systems import FloatArray
 
 if TYPE_CHECKING:
@@ -27,8 +18,8 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 LOOKS: dict[str, dict[str, Any]] = {
-    "equilibrium": {"color": BLACK},
-    "whirl": {"color": GREEN, "linestyle": (0.0, (5.0, 1.5))},
+    "equilibrium": {"color": plots.BLACK},
+    "whirl": {"color": plots.GREEN, "linestyle": (0.0, (5.0, 1.5))},
 }
 """As in the paper."""
 
@@ -42,7 +33,7 @@ BARS: dict[str, dict[str, Any]] = {
 }
 """Styles of the errors of event times, and of their error bars."""
 
-STUCK = PURPLE
+STUCK = plots.PURPLE
 
 
 def draw(data: ByEngine) -> Figures:
@@ -63,7 +54,7 @@ def draw(data: ByEngine) -> Figures:
             _draw_errors(errors, data[engine], name, engine)
     for panel in (plane, near):
         panel.set(xlabel=axis("x", "m"), ylabel=axis("y", "m"), aspect="equal")
-        panel.plot(0.0, 0.0, marker="+", color=BLACK, markersize=8.0)
+        panel.plot(0.0, 0.0, marker="+", color=plots.BLACK, markersize=8.0)
     plane.set_title("Both motions")
     near.set_title("Approach to the equilibrium")
     history.plot([], [], color=STUCK, linewidth=4.0, label="stick phases")
@@ -109,12 +100,13 @@ def _draw_errors(errors: Axes, found: Data, name: str, engine: str) -> None:
 def _legend_of_errors(engines: tuple[str, ...]) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
-    colours = {engine: engine_style(engine).colour for engine in engines}
-    return [
-        *(Line2D([], [], color=colour, linewidth=4.0, label=engine) for engine, colour in colours.items()),
-        *(Line2D([], [], color=BLACK, label=f"to the {name}", **look) for name, look in SERIES.items()),
-        *(Line2D([], [], color=BLACK, label=f"error bar, {name}", **look) for name, look in BARS.items()),
-    ]
+    styles: dict[str, dict[str, Any]] = {
+        engine: {"color": engine_style(engine).colour, "linewidth": 4.0} for engine in engines
+    }
+    black = {"color": plots.BLACK}
+    styles |= {f"to the {name}": black | look for name, look in SERIES.items()}
+    styles |= {f"error bar, {name}": black | look for name, look in BARS.items()}
+    return [Line2D([], [], label=label, **style) for label, style in styles.items()]
 
 
 def animate(data: ByEngine, until: float = 80.0) -> dict[str, bytes]:
@@ -150,7 +142,7 @@ class _View:
         panel.grid(False)
         self.spokes = [panel.plot([], [], color="#cccccc", linewidth=1.0)[0] for _ in range(6)]
         (self.trail,) = panel.plot([], [], color=engine_style("reference").colour, linewidth=1.0)
-        (self.pin,) = panel.plot([], [], marker="o", color=BLACK, markersize=7.0)
+        (self.pin,) = panel.plot([], [], marker="o", color=plots.BLACK, markersize=7.0)
 
     @property
     def moving(self) -> tuple[Artist, ...]:
@@ -165,5 +157,5 @@ class _View:
         self.trail.set_data(past[:, 0], past[:, 1])
         self.pin.set_data(past[-1:, 0], past[-1:, 1])
         stuck = bool(np.any((self.sticks[:, 0] <= t) & (t <= self.sticks[:, 1])))
-        self.pin.set_color(STUCK if stuck else BLACK)
+        self.pin.set_color(STUCK if stuck else plots.BLACK)
         self.title.set_text(f"to the {self.name}, t = {t:5.1f} s, {'sticks' if stuck else 'slides'}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -181,11 +182,10 @@ def lets_go(engine: Engine, speeds: Sequence[float] = SPEEDS) -> Measured:
 
     def turns(tolerance: float) -> FloatArray:
         motions = []
-        for pin in map(pin_at, speeds):
-            for share in OUTSIDE:
-                radius, angle = share * sticking_radius(pin), safest_angle(pin)
-                release = turn_until_release(pin, radius, angle) / pin.disc_speed
-                motions.append((pin, stuck(pin, radius, angle), [0.0, LATEST * release]))
+        for pin, share in itertools.product(map(pin_at, speeds), OUTSIDE):
+            radius, angle = share * sticking_radius(pin), safest_angle(pin)
+            release = turn_until_release(pin, radius, angle) / pin.disc_speed
+            motions.append((pin, stuck(pin, radius, angle), [0.0, LATEST * release]))
         runs = engine.simulate_many(motions, tolerance=tolerance)
         found = [run.system.disc_speed * first_release(run) for run in runs]
         return np.array(found).reshape(len(speeds), len(OUTSIDE))

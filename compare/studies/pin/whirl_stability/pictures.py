@@ -6,21 +6,11 @@ from typing import Any
 
 import numpy as np
 
+import compare.output.figures as plots
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.parameters import CENTRED
-from compare.output.figures import (
-    BLUE,
-    GREY,
-    ORANGE,
-    Axes,
-    Figure,
-    axis,
-    curve,
-    engines_in,
-    new_figure,
-    points,
-)
+from compare.output.figures import Axes, Figure, axis, curve, engines_in, new_figure, points
 from compare.studies.pin.whirl_stability import study
 from compare.studies.pin.whirl_stability.study import DAMPINGS, DEVIATION_TIMES, RATIOS, K
 from reference_model.formulas.pin import variational_matrix
@@ -90,7 +80,7 @@ def _draw_decay(panel: Axes, data: ByEngine) -> None:
     real = np.abs(values.imag) == 0.0
     middle = shares[real] * np.exp(values[real].real * times[:, np.newaxis])
     width = np.sum(shares[~real] * np.exp(values[~real].real * times[:, np.newaxis]), axis=1)
-    envelope: dict[str, Any] = {"color": GREY, "linewidth": 1.0}
+    envelope: dict[str, Any] = {"color": plots.GREY, "linewidth": 1.0}
     label = rf"real eigenvalue: $\propto \exp({values[real][0].real:.3f}\,t)$"
     panel.plot(times, middle, **envelope, linestyle="--", label=label)
     label = rf"pair of eigenvalues: $\propto \exp({values[~real][0].real:.3f}\,t)$"
@@ -142,8 +132,8 @@ def draw_map(theory: Data) -> Figure:
     fine = np.geomspace(damping[0], damping[-1], 400)
     q = (2.0 / fine) ** 2
     bound = q / (1.0 + q + np.hypot(1.0, q))  # (16): ω/(ω − k) = −bound
-    panel.plot(bound / (1.0 + bound), fine, color=ORANGE, linewidth=2.2, label="boundary (16)")
-    panel.axvline(1.0, color=BLUE, linewidth=2.2, linestyle="--", label=r"$\omega = k$")
+    panel.plot(bound / (1.0 + bound), fine, color=plots.ORANGE, linewidth=2.2, label="boundary (16)")
+    panel.axvline(1.0, color=plots.BLUE, linewidth=2.2, linestyle="--", label=r"$\omega = k$")
     box = {"boxstyle": "round", "facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.25}
     panel.annotate("the whirl exists\nand is stable", (2.0, 0.5), ha="center", fontsize=10, bbox=box)
     panel.annotate("only roots of (13):\nno whirl exists", (0.5, 0.06), ha="center", fontsize=10, bbox=box)

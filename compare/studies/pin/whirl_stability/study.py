@@ -16,14 +16,8 @@ from compare.claims.parameters import CENTRED
 from compare.engines import Engine
 from compare.studies.toolkit.deviations import PARTS, Rates, measured_rates, settled
 from compare.studies.toolkit.measuring import compared
-from reference_model.formulas.pin import (
-    characteristic_coefficients,
-    coefficient_margins,
-    lower_branch_margin,
-    upper_branch_margin,
-    variational_matrix,
-    whirl_radius,
-)
+from reference_model.formulas import pin as formulas
+from reference_model.formulas.pin import characteristic_coefficients, upper_branch_margin, whirl_radius
 from reference_model.steady.stability import turning_frame_jacobian, whirl_eigenvalues
 from reference_model.systems import FloatArray, PinOnDisc
 from reference_model.trajectory import Trajectory
@@ -64,7 +58,7 @@ def on_circle(pin: PinOnDisc, scale: float = 1.0) -> FloatArray:
 
 def linear_deviation(times: FloatArray) -> FloatArray:
     """Return ξ/a by (12), shape (n,), from the start ξ = a, ξ̇ = ka, η = 0."""
-    step = expm(variational_matrix(CENTRED) * (times[1] - times[0]))
+    step = expm(formulas.variational_matrix(CENTRED) * (times[1] - times[0]))
     states = [np.array([1.0, K, 0.0])]
     for _ in times[1:]:
         states.append(step @ states[-1])
@@ -79,7 +73,7 @@ def grid() -> tuple[PinOnDisc, ...]:
 @functools.cache
 def largest_real_parts() -> tuple[FloatArray, FloatArray]:
     """Return the largest real part (1/s) of the roots of (13) at each point of the grid, and its rounding error."""
-    values, rounding = eigenvalues_with_rounding([variational_matrix(pin) for pin in grid()])
+    values, rounding = eigenvalues_with_rounding([formulas.variational_matrix(pin) for pin in grid()])
     at = np.arange(len(values)), np.argmax(values.real, axis=1)
     return values.real[at], rounding[at]
 
@@ -108,7 +102,7 @@ def same_eigenvalues() -> Measured:
     companion[:, 1:, :2] = np.eye(2)
     companion[:, :, 2] = [[-value for value in characteristic_coefficients(pin)[:0:-1]] for pin in pins]
     roots, roots_error = eigenvalues_with_rounding(companion)
-    of_12, of_12_error = eigenvalues_with_rounding([variational_matrix(pin) for pin in pins])
+    of_12, of_12_error = eigenvalues_with_rounding([formulas.variational_matrix(pin) for pin in pins])
     of_1, of_1_error = eigenvalues_with_rounding([turning_frame_jacobian(pin) for pin in pins])
     predicted = [[*own, *matched([0.0, *own], to=of)] for own, of in zip(roots, of_1, strict=True)]
     measured = [[*matched(one, to=own), *of] for one, own, of in zip(of_12, roots, of_1, strict=True)]
@@ -139,7 +133,7 @@ def holds(margin: Callable[[PinOnDisc], float]) -> NDArray[np.bool_]:
 
 
 def margin_of_14(pin: PinOnDisc) -> float:
-    return min(coefficient_margins(pin))
+    return min(formulas.coefficient_margins(pin))
 
 
 @STUDY.claim(
@@ -173,7 +167,7 @@ def implied() -> Measured:
     swept=("disc_speed", "damping"),
 )
 def incompatible() -> Measured:
-    return counted(~(holds(margin_of_14) & holds(lower_branch_margin)))
+    return counted(~(holds(margin_of_14) & holds(formulas.lower_branch_margin)))
 
 
 SETTLING = (

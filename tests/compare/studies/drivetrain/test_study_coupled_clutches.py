@@ -23,7 +23,7 @@ NATIVE = replace(engine_named("exudyn-native"), contact_only=False)
     ],
 )
 def test_only_a_right_built_in_connector_agrees(fault, verdict):
-    engine = replace(NATIVE, name=f"bristles {id(fault)}")  # a new name, because results are cached
+    engine = replace(NATIVE, name=f"bristles {id(fault)}")  # results are cached
     with pytest.MonkeyPatch.context() as patch:
         fault(patch)
         (claim,) = STUDY.measure(engine, {}, ("moves",)).claims

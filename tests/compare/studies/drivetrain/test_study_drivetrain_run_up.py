@@ -25,13 +25,15 @@ from compare.studies.toolkit.drivetrain_bench import (
 def test_a_disc_on_the_predicted_lines_agrees():
     (claim,) = RUN_UP.claims_of_fault(Patched(moving(as_predicted())), ("lines",))
     assert np.max(claim.difference) < 0.5 / TURNS
+    # Half of the errors exceed this if interpolation is wrong.
+    assert np.median(claim.difference) < 0.125 / TURNS
 
 
 @pytest.mark.parametrize(
     ("move", "windows"),
     [
-        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # follows its unbalance all the way
-        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),  # whirls from the beginning
+        (run_up_with({0.98: 3e-4, 0.0: 1e-4}), "above"),  # only unbalance
+        (run_up_with({0.88: 3e-4, 0.0: 1e-4}), "below"),
         (as_predicted(off=1.5 / TURNS), "above"),
     ],
 )

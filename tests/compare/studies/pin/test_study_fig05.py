@@ -8,8 +8,7 @@ import numpy as np
 import PIL.Image
 import pytest
 from faults.reference import simulate
-from studies_under_test import GROSS
-from tested_studies import FIG05
+from studies_under_test import GROSS, engine_named
 
 from compare.claims.claim import Verdict
 from compare.claims.parameters import FIG5_STARTS
@@ -55,8 +54,12 @@ def test_stick_times_without_change_may_deviate_by_1e_5_of_the_resolution(shift,
     assert claim.verdict is verdict
 
 
-def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times():
-    right = FIG05.found("reference").data
+@pytest.fixture(scope="module")
+def right():
+    return STUDY.measure(engine_named("reference"), only=("all_sticks",)).data
+
+
+def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times(right):
     more = {f"{name}: sticks": np.append(right[f"{name}: sticks"], [90.0, 91.0]) for name in FIG5_STARTS}
     (figure,) = STUDY.draw({"reference": right, "exudyn": right, "broken": right | more}).values()
     labels = [line.get_label() for line in figure.axes[3].lines]
@@ -64,8 +67,8 @@ def test_an_engine_that_sticks_too_often_is_drawn_without_errors_of_times():
     assert "broken" not in labels
 
 
-def test_the_animation_is_a_gif_of_frames_that_move():
-    (content,) = animate({"reference": FIG05.found("reference").data}, until=4.0).values()
+def test_the_animation_is_a_gif_of_frames_that_move(right):
+    (content,) = animate({"reference": right}, until=4.0).values()
     with PIL.Image.open(io.BytesIO(content)) as picture:
         assert (picture.format, picture.n_frames, picture.info["loop"]) == ("GIF", 11, 0)
         pixels = []
