@@ -32,6 +32,7 @@ SMALLER = (
     (r"^(friction-discs sweep map .*):64 (.*):64$", r"\1:2 \2:2"),
     (r"^(friction-discs sweep uncertainty .*)$", r"\1 --samples 256"),
     (r"^(friction-discs sweep continuation .*):100$", r"\1:2 --samples 4"),
+    (r"^(friction-discs simulate .*)--until 100", r"\1--until 5"),
     (r"^friction-discs plan .*$", "friction-discs plan fig03 --output motions"),
     (r"^friction-discs report .*$", "friction-discs report --claim fig03/rests --engine reference --jobs 1"),
     (r"^friction-discs matrix .*$", "friction-discs matrix --engine mypackage.mymodule:simulate --recorded"),
