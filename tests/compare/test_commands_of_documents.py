@@ -42,7 +42,6 @@ SMALLER = (
 
 
 def blocks(page):
-    """Yield the commands of each block of a page, with the lines that the page shows as their output."""
     commands, shown = [], []
     for language, block in BLOCK.findall(page.read_text(encoding="utf-8")):
         lines = [line.strip() for line in block.splitlines() if not language and line.strip()]
@@ -80,7 +79,6 @@ def run_of_ours(words, capsys):
 
 
 def run_of_pytest(words, capsys, fully):
-    """Collect the tests, or run them if a page shows their output."""
     options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:zarr", "-q"] + ["--collect-only"] * (
         not fully
     )
@@ -99,7 +97,6 @@ def check_target(words):
 
 
 def check_installation(words):
-    """Accept the checkout with extras that exist; no index has the project."""
     extras = re.fullmatch(r"\.(?:\[([\w,]+)\])?", words[-1])
     assert words[0] == "install"
     assert extras, f"{words[-1]} is not in a package index: install . or .[EXTRA]"

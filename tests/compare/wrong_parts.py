@@ -45,7 +45,6 @@ def replaced(owner, name, wrong):
 
 
 def factors_on(owner, factors):
-    """Return the attributes of ``owner`` multiplied by ``factors``, by name."""
     return {name: factor * getattr(owner, name) for name, factor in factors.items()}
 
 
