@@ -1,8 +1,8 @@
 """``pytest --pyargs compare --engine mypackage.mymodule:simulate``: every claim is a test of that engine.
 
-A separate process measures the claims. A test fails if the claim differs or the engine has no answer. A claim is "not
-attempted" if the engine does not support it or its study has no time left, "inconclusive" if errors are too large,
-and "not finished" beyond the time limit. None of these is a pass.
+A separate process measures the claims. A test fails if the claim differs or the engine has no answer. A claim
+without a verdict is "not attempted" (unsupported, or no time is left), "inconclusive" (errors are too large) or "not
+finished" (beyond the time limit).
 
 Without ``--pyargs compare`` or a file of this package the plugin is inactive.
 """

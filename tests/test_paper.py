@@ -14,7 +14,6 @@ TEXT = (PAPER / "paper.typ").read_text(encoding="utf-8")
 
 
 def claims(text):
-    """Return the names of all claims in a source of the paper."""
     return [
         name for listed in re.findall(r"#c\(([^)]*)\)", text) for name in re.findall(r'"([^"]*)"', listed)
     ]

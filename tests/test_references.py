@@ -42,7 +42,6 @@ OF_OTHERS = {
 
 
 def spans(page):
-    """Return what stands as code in the running text; what is to be typed may not be there yet."""
     text = re.sub(r"```.*?```", "", page.read_text("utf-8"), flags=re.DOTALL)
     return re.findall(r"`([^`\n]+)`", text)
 
@@ -89,7 +88,6 @@ def test_a_dotted_name_in_a_document_can_be_imported():
 
 
 def options(command):
-    """Yield the options of a command and of all its subcommands."""
     for parameter in command.params:
         yield from parameter.opts
     for subcommand in getattr(command, "commands", {}).values():

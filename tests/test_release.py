@@ -16,7 +16,6 @@ PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 
 
 def tracked():
-    """Return the files under version control, or skip where there is none, as in a source archive."""
     if not (ROOT / ".git").exists():
         pytest.skip("this is no checkout")
     out = subprocess.run(
@@ -48,7 +47,6 @@ def lower_ends(requirements):
 
 
 def short(version):
-    """Return a version without zeros at its end: 1.25.0 is 1.25."""
     return re.sub(r"(\.0)+$", "", version)
 
 

@@ -102,7 +102,7 @@ class ErrorBudget:
 class Claim:
     """One statement about one engine (or about the theory alone).
 
-    - ``sentence``: statement, the same for every engine; it names the row of the matrix.
+    - ``sentence``: statement, the same for every engine.
     - ``equation``: equation of the paper, such as "(3)"; "" if the statement is ours.
     - ``engine``: name of the engine, or "theory" without a simulation.
     - ``predicted``, ``measured``, of the same shape, and ``budget``: numbers and their errors in ``unit``.
@@ -112,9 +112,9 @@ class Claim:
     - ``implied_by``: sentence of a claim of the same study that implies this one for the same engine, or "".
     - ``answers``: True if the numbers count yes-or-no answers, see ``compare.claims.measured.answers_of``.
     - ``named``: names for quotes of an element (its flat index), or of all (None), see ``compare.report.quotes``.
-    - ``identity``: permanent id, such as "fig06/rests"; "" for a claim made by hand.
+    - ``identity``: permanent id, such as "fig06/rests".
     - ``size``: scale of a relative error, broadcastable, required if the prediction is zero.
-    - ``axes``: names of the elements along each axis, () for an axis without names; () for none at all.
+    - ``axes``: names of the elements along each axis, () for an axis without names.
     """
 
     sentence: str

@@ -22,8 +22,7 @@ class Declared:
     - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
     - ``swept``: parameters of the system that the claim varies.
     - ``each``: names and values of the members of a family; empty for a single claim.
-    - ``duration``: total duration in s of a long claim's motions, weighted for finer steps, else 0. The quick level
-      skips claims that would take too long.
+    - ``duration``: total duration in s of a long claim's motions, weighted for finer steps, for the quick level.
 
     All others are those of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the
     member's name.

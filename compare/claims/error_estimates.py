@@ -31,8 +31,8 @@ SAFETY = 8.0
 """Ratio of the error estimate to the change at the smaller tolerance.
 
 If errors are proportional to the tolerance, the estimate is 8·(1 − 1/8) = 7 times the error. It also covers errors
-that fall slowly or irregularly, unless both agree by chance to within an eighth. The change against a *larger*
-tolerance is too small for one number in twenty of the reference and one in fifty of Exudyn.
+that fall slowly or irregularly. The change against a *larger* tolerance is too small for one number in twenty of the
+reference and one in fifty of Exudyn.
 """
 
 COARSE = 1e-4

@@ -41,8 +41,8 @@ Measure = TypeVar("Measure", bound=Callable[..., "Measured | None"])
 class Findings:
     """Results of one study for one engine: measured claims, and arrays for the figures.
 
-    ``not_simulated`` says in a sentence why claims are missing, see ``Engine.lacking``. ``gaps`` contains the failure
-    of each claim that failed, or the reason of each claim that was not attempted, by its sentence.
+    ``not_simulated`` says why claims are missing, see ``Engine.lacking``. ``gaps`` contains, by its sentence, the
+    failure of each claim that failed, or the reason for not attempting it.
     """
 
     claims: tuple[Claim, ...] = ()
@@ -63,9 +63,8 @@ class Findings:
 class Recorded:
     """Recorded results for one setting of an engine, not measured in a run.
 
-    - ``engine``, ``setting``, ``version``, ``date``: engine, its setting ("" if it has only one), its version and the
-      date of the recording.
-    - ``own``: True if the friction is the engine's own, False if it is a user-defined force.
+    - ``setting``, ``date``: name of the setting ("" if there is only one), and date of the recording.
+    - ``own``: False if the friction is a user-defined force.
     - ``cases``: name of the motion and "slip" or "stick", by the sentence of each claim.
     - ``law``, ``says``, ``adapter``: shape of the friction law, description of the setting, and file of the adapter.
     - ``advice``: refinement for a small error, or the error of the finest run, as a clause.
@@ -98,8 +97,8 @@ class Study:
     - ``system``, ``source``: system whose parameters repeat the measurements, and their origin.
     - ``seconds``: approximate time in s for one engine; the longest work starts first.
     - ``quick``: True for the quick level, which takes seconds and covers every kind of claim.
-    - ``contact``: True if the study tests an engine's contact code. For engines with ``Engine.contact_only``, its
-      claims leave out cases that depend on other code.
+    - ``contact``: True if the study tests an engine's contact code. With ``Engine.contact_only``, its claims leave
+      out cases that depend on other code.
     - ``declared``: claims in the order of the report.
     - ``provided``: additional functions, see ``provides``.
     """
@@ -196,9 +195,8 @@ class Study:
     ) -> Callable[[Measure], Measure]:
         """Declare that the decorated function measures ``sentence``; the function is unchanged.
 
-        Its first argument is ``engine``, except for a claim of the theory. The parameters are those of
-        :class:`Declared`; ``implied_by`` is the function of another claim of this study, and ``each`` may be a
-        sequence of names.
+        The parameters are those of :class:`Declared`; ``implied_by`` is the function of another claim of this study,
+        and ``each`` may be a sequence of names.
         """
 
         def declare(function: Measure) -> Measure:
@@ -241,9 +239,8 @@ class Study:
     def measure(self, engine: Engine | None, few: Few | None = None, only: Collection[str] = ()) -> Findings:
         """Measure all claims on ``engine``, or the claims of the theory if it is None.
 
-        Findings say why they leave out claims that the engine does not support. ``few`` contains arguments of claims'
-        functions by their names, to measure fewer cases. ``only`` selects functions by name, or members of a family
-        by "function/case".
+        ``few`` contains arguments of claims' functions by their names, to measure fewer cases. ``only`` selects
+        functions by name, or members of a family by "function/case".
         """
         claims: list[Claim] = []
         data: Data = {}

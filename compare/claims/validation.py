@@ -1,7 +1,7 @@
 """A validation: a prediction of theory against a measured experiment.
 
-It is not a verdict, because a friction law describes a real contact only to some extent. A validation states how far,
-and how much of the difference the known uncertainties explain (ASME V&V 20-2009).
+It is not a verdict, because a friction law describes a real contact only to some extent. A validation states how much
+of the difference the known uncertainties explain (ASME V&V 20-2009).
 """
 
 from __future__ import annotations

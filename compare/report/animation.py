@@ -27,8 +27,8 @@ def gif(
 ) -> bytes:
     """Return an endless GIF of ``frames`` pictures.
 
-    ``update(i)`` changes the artists of ``figure`` for frame i. If it changes only the artists ``moving``, pass them;
-    the others are then drawn once, below them.
+    ``update(i)`` changes the artists of ``figure`` for frame i. If it changes only the artists ``moving``, the others
+    are drawn once, below them.
     """
     import PIL.Image
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
+from compare.claims.declared import Declared
 from compare.claims.prose import slug
 from compare.claims.study import Findings, Recorded, Study
 from compare.claims.validation import Validation
@@ -99,7 +100,7 @@ class Cell:
 class Row:
     """One claim of a study, with a cell for each column that has a verdict or a reason for its absence.
 
-    ``identity`` is the permanent name of the claim, "fig06/rests".
+    ``identity`` is the permanent name of the claim, "fig06/rests"; ``declared`` is None for a claim made by hand.
     """
 
     study: Study
@@ -107,6 +108,7 @@ class Row:
     sentence: str
     equation: str
     cells: dict[str, Cell]
+    declared: Declared | None = None
 
     @property
     def claims(self) -> tuple[Claim, ...]:
@@ -269,12 +271,12 @@ def _rows(run: Run, study: Study) -> list[Row]:
             for column in columns
             if column in by_column or column in fillers
         }
-        if sentence in known:
-            declared, case = known[sentence]
+        declared, case = known.get(sentence, (None, ""))
+        if declared is not None:
             identity = declared.identity(study.name, case)
         else:
             identity = _identity(study, next(iter(by_column.values())).claims[0], rows)
-        rows.append(Row(study, identity, sentence, equation, shown))
+        rows.append(Row(study, identity, sentence, equation, shown, declared))
     rows = [
         replace(row, cells={column: _cell_with_evidence(row, column, rows, study) for column in row.cells})
         for row in rows

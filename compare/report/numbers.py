@@ -100,20 +100,16 @@ def worst(claim: Claim) -> Element:
 
 
 def _element(claim: Claim, index: int) -> Element:
-    predicted, measured, difference, numerical = (
-        float(array.flat[index])
-        for array in (claim.predicted, claim.measured, claim.difference, _numerical(claim))
-    )
     name = claim.element(index) or f"no. {index + 1} of {claim.predicted.size}"
     return Element(
         index,
         claim.predicted.size,
         name if claim.predicted.size > 1 else "",
         claim.units[index % len(claim.units)],
-        predicted,
-        measured,
-        difference,
-        numerical,
+        float(claim.predicted.flat[index]),
+        float(claim.measured.flat[index]),
+        float(claim.difference.flat[index]),
+        float(_numerical(claim).flat[index]),
         claim.budget.model,
     )
 

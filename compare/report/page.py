@@ -175,13 +175,12 @@ def _exceptions(matrix: Matrix) -> list[tuple[State, str, str]]:
 
 def _measuring(row: Row) -> tuple[str, str] | None:
     """Return file and line of the function that measures a claim, and its web address; None if unknown."""
-    for declared in row.study.declared:
-        if row.identity in (declared.identity(row.study.name, case) for case, _ in declared.cases()):
-            file, line = declared.place
-            inside = file.is_relative_to(ROOT)
-            path = file.relative_to(ROOT).as_posix() if inside else file.name
-            return f"{path}:{line}", address_of(path, line) if inside else ""
-    return None
+    if row.declared is None:
+        return None
+    file, line = row.declared.place
+    inside = file.is_relative_to(ROOT)
+    path = file.relative_to(ROOT).as_posix() if inside else file.name
+    return f"{path}:{line}", address_of(path, line) if inside else ""
 
 
 def _particular(row: Row, claim: Claim) -> str:

@@ -31,15 +31,13 @@ from compare.report.at_a_glance import Glance
 from compare.report.matrix import (
     VERDICTS,
     WORST_FIRST,
-    Cell,
     Matrix,
-    RecordedMatrix,
     Row,
     State,
     gap_of,
     single_gap,
 )
-from compare.report.numbers import worst
+from compare.report.numbers import Element, worst
 from compare.report.quotes import filled
 from compare.run.runner import Run
 from compare.run.store import Drawing
@@ -241,7 +239,9 @@ def results(
                 "setting": setting.setting,
                 "version": setting.version,
                 "date": setting.date,
-                "claims": [_recorded(recorded, claim) for claim in setting.claims],
+                "claims": [
+                    _claim(f"{recorded.study.name}/{slug(claim.sentence)}", claim) for claim in setting.claims
+                ],
             }
             for recorded in matrix.recorded
             for setting in recorded.settings
@@ -271,7 +271,14 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
         "figures": sorted(drawing.figures) if isinstance(drawing, Drawing) else [],
         "figures_failed": drawing.reason if isinstance(drawing, Failure) else "",
         "claims": [
-            _verdict(claim, cell, i, row.identity, paths[row.identity])
+            _claim(
+                row.identity,
+                claim,
+                measurement=i,
+                evidence=cell.evidence,
+                follows_from=cell.implied_by,
+                arrays=paths[row.identity],
+            )
             for row in own.rows
             for cell in row.cells.values()
             for i, claim in enumerate(cell.claims, 1)
@@ -279,47 +286,36 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
     }
 
 
-def _verdict(claim: Claim, cell: Cell, measurement: int, identity: str, path: str) -> dict[str, Any]:
-    said = _without_arrays(claim)
-    more = {
-        "measurement": measurement,
-        "evidence": cell.evidence,
-        "follows_from": cell.implied_by,
-        "arrays": path,
-    }
-    return {"id": identity} | said | more | _deciding(claim)
+LEFT_OUT = ("id", "predicted", "measured", "difference", "numerical_error", "size", "axes")
+"""Parts of a claim that ``results.json`` contains elsewhere."""
 
 
-def _recorded(recorded: RecordedMatrix, claim: Claim) -> dict[str, Any]:
-    return {"id": f"{recorded.study.name}/{slug(claim.sentence)}"} | _without_arrays(claim) | _deciding(claim)
-
-
-def _without_arrays(claim: Claim) -> dict[str, Any]:
-    content = claim_as_json(claim)
-    for name in ("predicted", "measured", "difference", "numerical_error", "size", "axes", "id"):
-        del content[name]
-    return content | {"shape": list(claim.predicted.shape)}
-
-
-def _deciding(claim: Claim) -> dict[str, Any]:
+def _claim(identity: str, claim: Claim, **more: Any) -> dict[str, Any]:
+    """Return a claim without its arrays, with ``more`` and the numbers that decide its verdict."""
+    content = {name: value for name, value in claim_as_json(claim).items() if name not in LEFT_OUT}
     element = worst(claim)
+    decides = _number(element) | {
+        "predicted": element.predicted,
+        "measured": element.measured,
+        "numerical_error": element.numerical,
+        "allowed": element.total,
+    }
     return {
-        "decided_by": as_json(
-            {
-                "element": element.index,
-                "name": element.name,
-                "unit": element.unit,
-                "predicted": element.predicted,
-                "measured": element.measured,
-                "difference": element.difference,
-                "numerical_error": element.numerical,
-                "allowed": element.total,
-            }
-        ),
-        "largest": [
-            {"element": one.index, "name": one.name, "unit": one.unit, "difference": as_json(one.difference)}
-            for one in element.largest
-        ],
+        "id": identity,
+        **content,
+        "shape": list(claim.predicted.shape),
+        **more,
+        "decided_by": as_json(decides),
+        "largest": [as_json(_number(one)) for one in element.largest],
+    }
+
+
+def _number(element: Element) -> dict[str, Any]:
+    return {
+        "element": element.index,
+        "name": element.name,
+        "unit": element.unit,
+        "difference": element.difference,
     }
 
 

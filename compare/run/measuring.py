@@ -29,8 +29,8 @@ Work = tuple[tuple[Any, ...], float]
 class Course:
     """Measurements of single claims about one engine, within the time that the other claims of the study leave.
 
-    At the quick level, a claim that would take too long is not attempted. One process should measure all claims,
-    because later claims then reuse the motions of earlier claims. ``ready`` is True if it has imported the engine.
+    One process should measure all claims, because later claims then reuse earlier motions. ``ready`` is True if it
+    has imported the engine.
     """
 
     study: Study
@@ -106,9 +106,9 @@ def measured(
 ) -> Findings | Failure:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
-    An engine given by name is imported here, in a process that may hang or crash; ``seed`` is for its units. ``only``
-    selects claims as in ``Study.measure``; empty selects all. An exception costs only the claim that raised it, and a
-    claim that would take longer than ``within`` (in s) at the engine's pace is not attempted: see ``Findings.gaps``.
+    An engine given by name is imported here; ``seed`` is for its units. ``only`` selects claims as in
+    ``Study.measure``. An exception costs only the claim that raised it, and a claim that would take longer than
+    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``.
     """
     if isinstance(engine, str):
         engine = replace(engines([engine])[0], seed=seed)

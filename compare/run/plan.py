@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,7 @@ from compare.engines import Engine, reference
 from compare.engines.outside.json_lines import question
 from compare.engines.outside.motion_files import FORMAT, INDEX, name_of
 from compare.output.text_files import replacing, write_text
-from reference_model.systems import System
+from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 OFF_BY = 1e-4
@@ -30,12 +30,7 @@ OFF_BY = 1e-4
 
 @dataclass(frozen=True)
 class Planned:
-    """The motions that a study requests.
-
-    - ``motions``: the questions, as lines for a program.
-    - ``claims``: number of claims that need no other motions.
-    - ``adaptive``: number of omitted claims, whose motions depend on the answers.
-    """
+    """The motions of a study as lines for a program, and the numbers of claims with and without fixed motions."""
 
     motions: tuple[bytes, ...]
     claims: int
@@ -44,12 +39,13 @@ class Planned:
 
 @dataclass(eq=False)
 class _Recorder:
-    """The ``simulate`` of an engine that records its questions.
+    """The ``simulate`` of an engine that records its questions; its answers are exact, or wrong by ``OFF_BY``.
 
-    No two instances are equal, so a study never reuses results of another one.
+    No two instances are equal, so a study never reuses results of another one. ``known`` contains the exact motions.
     """
 
-    answer: Callable[..., Trajectory]
+    known: dict[bytes, Trajectory]
+    exact: bool
     asked: dict[bytes, None] = field(default_factory=dict)
 
     def __call__(
@@ -57,59 +53,37 @@ class _Recorder:
     ) -> Trajectory:
         line = question(system, initial_state, times, {"tolerance": tolerance})
         self.asked[line] = None
-        return self.answer(line, system, initial_state, times, tolerance)
+        if line not in self.known:
+            motion = reference.function(system, initial_state, times, tolerance=tolerance)
+            self.known[line] = Trajectory(system, motion.times, motion.states)
+        found = self.known[line]
+        return found if self.exact else replace(found, states=found.states + _errors(line, found.states))
+
+
+def _errors(line: bytes, states: FloatArray) -> FloatArray:
+    """Return reproducible random errors."""
+    draw = np.random.default_rng(int(hashlib.sha256(line).hexdigest()[:16], 16))
+    size: FloatArray = OFF_BY * np.max(np.abs(states), axis=0)
+    return size * draw.uniform(-1.0, 1.0, states.shape)
 
 
 def planned(study: Study, kinds: tuple[str, ...], seed: int | None = None) -> Planned:
-    """Return the motions that ``study`` requests from an engine of ``kinds`` that reports no phases.
-
-    ``seed`` is that of their units, see ``Engine.seed``.
-    """
-    truth = _Truth()
+    """Return the motions that ``study`` requests from an engine of ``kinds`` without phases, in units of ``seed``."""
+    known: dict[bytes, Trajectory] = {}
     motions: dict[bytes, None] = {}
     claims = adaptive = 0
     for part in study.sentences().values():
-        exact, off = _Recorder(truth.exact), _Recorder(truth.off)
-        found = _measured(study, Engine("plan", exact, kinds, phases=False, seed=seed), part)
+        exact, off = _Recorder(known, exact=True), _Recorder(known, exact=False)
+        plan = Engine("plan", exact, kinds, phases=False, seed=seed)
+        found = len(study.measure(plan, only=(part,)).claims)
         with suppress(Exception):  # a study may raise anything for wrong answers
-            _measured(study, Engine("plan", off, kinds, phases=False, seed=seed), part)
+            study.measure(replace(plan, function=off), only=(part,))
         if list(exact.asked) != list(off.asked):
             adaptive += found
         elif found > 0:  # no claims if the system is of another kind
             claims += found
             motions |= exact.asked
     return Planned(tuple(motions), claims, adaptive)
-
-
-def _measured(study: Study, engine: Engine, part: str) -> int:
-    return len(study.measure(engine, only=(part,)).claims)
-
-
-class _Truth:
-    """Cached answers of the reference, without phases."""
-
-    def __init__(self) -> None:
-        self._known: dict[bytes, Trajectory] = {}
-
-    def exact(
-        self, line: bytes, system: System, state: ArrayLike, times: ArrayLike, tolerance: float
-    ) -> Trajectory:
-        """Return the motion."""
-        if line not in self._known:
-            found = reference.function(system, state, times, tolerance=tolerance)
-            self._known[line] = Trajectory(system, found.times, found.states)
-        return self._known[line]
-
-    def off(
-        self, line: bytes, system: System, state: ArrayLike, times: ArrayLike, tolerance: float
-    ) -> Trajectory:
-        """Return the motion with reproducible random errors."""
-        found = self.exact(line, system, state, times, tolerance)
-        draw = np.random.default_rng(int(hashlib.sha256(line).hexdigest()[:16], 16))
-        size = OFF_BY * np.max(np.abs(found.states), axis=0)
-        return Trajectory(
-            system, found.times, found.states + size * draw.uniform(-1.0, 1.0, found.states.shape)
-        )
 
 
 def write_plan(folder: Path, kinds: Sequence[str], motions: Iterable[bytes]) -> None:

@@ -123,7 +123,7 @@ SITES = {"site-packages", "dist-packages"}
 def files_of(function: Callable[..., Any]) -> list[Path] | None:
     """Return the files of an engine's function and of the modules next to it, sorted.
 
-    The list is empty for functions of this project and of Python itself, and None if no files are found.
+    The list is empty for functions of this project and of Python, and None if no files are found.
     """
     if (files := getattr(function, "files", None)) is not None:
         return sorted(files) or None

@@ -27,12 +27,9 @@ class Run:
     """The requested measurements and their results so far.
 
     - ``studies``, ``engines``: requested studies, and names of the requested engines without "theory".
-    - ``contact_only``: names of the engines that are measured only in studies of the contact (``Study.contact``).
-    - ``about``, ``versions``: descriptions and versions of the engines.
-    - ``outcomes``: findings or failure for each finished (study, engine or "theory").
-    - ``seconds``: duration of each measurement in s.
-    - ``drawings``: drawing or failure for each study.
-    - ``evidence``: evidence or failure for each of the requested ``errata``, by index.
+    - ``contact_only``: names of the engines that take part only in studies of the contact (``Study.contact``).
+    - ``outcomes``, ``seconds``: findings or failure, and duration in s, for each (study, engine or "theory").
+    - ``drawings``, ``evidence``: drawing or failure for each study; evidence or failure for ``errata`` by index.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
     - ``interrupted``: True if Ctrl-C ended the run early.
     """
@@ -98,10 +95,9 @@ def run(
 ) -> Run:
     """Measure every study with every engine, keep the findings in ``folder``, and draw the figures.
 
-    Findings and drawings are written as they arrive; drawings of equal data are reused. A piece of work that takes
-    longer than ``limit`` (s) fails. If ``quick``, claims that would take a foreign engine too long are not attempted.
-    ``resume`` reuses findings with the same digest of code and libraries. ``expected`` are the durations of an
-    earlier run. After Ctrl-C the results are incomplete, with ``interrupted`` set.
+    Drawings of equal data are reused. Work that takes longer than ``limit`` (s) fails. If ``quick``, claims that
+    would take a foreign engine too long are not attempted. ``resume`` reuses findings of the same code and libraries.
+    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete.
     """
     result = Run(
         studies,
@@ -239,7 +235,6 @@ def _name_of(key: Any) -> str:
 def loaded(names: Iterable[str], workers: Workers, seed: int | None = None) -> tuple[Engine, ...]:
     """Return the engines of the given names, loaded by the ``workers``.
 
-    ``seed`` is that of their units, see ``Engine.seed``.
     Raises ``ValueError`` for a name that is unknown or that the process could not load.
     """
     names = [known_name(name) for name in dict.fromkeys(names)]

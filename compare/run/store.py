@@ -91,7 +91,7 @@ class Store(_Archives):
     ) -> tuple[Findings, float] | None:
         """Return the findings and their duration in s; None if they are missing, damaged or have another stamp.
 
-        Claims must have one of the ``identities`` or none, because these become file names.
+        Claims must have one of the ``identities`` or none, because they become file names.
         """
 
         def restored(files: dict[str, bytes]) -> tuple[Findings, float] | None:

@@ -102,8 +102,8 @@ class Workers:
     ) -> None:
         """Append ``function(*arguments)`` to the queue, or prepend it if ``first``; ``limit`` replaces the usual one.
 
-        A process that has worked for an ``owner``, such as a foreign engine, never works for another one, because
-        foreign code may have changed its modules.
+        A process that has worked for an ``owner`` never works for another one, because a foreign engine may have
+        changed its modules.
         """
         work = _Work(key, function, arguments, owner, self.limit if limit is None else limit)
         if first:
@@ -171,8 +171,7 @@ class Workers:
 class _Worker:
     """A process and the connection to it; ``key`` identifies its current work, None while it is idle.
 
-    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it. It writes
-    temporary files to ``temporary``.
+    It received the work at ``started``, in s of the monotonic clock, and has ``limit`` (s) for it.
     """
 
     def __init__(self, temporary: str) -> None:
@@ -223,7 +222,7 @@ class _Worker:
     def _exit_code(self) -> int | None:
         """Return the exit code of the process, None if it has none after ``FAREWELL``.
 
-        ``join`` could block forever, because a process without open descriptors appears to have ended.
+        ``join`` could block, because a process without open descriptors appears to have ended.
         """
         deadline = time.monotonic() + FAREWELL
         while self._process.exitcode is None and time.monotonic() < deadline:

@@ -25,8 +25,6 @@ LOADS = np.linspace(0.0, 0.1, 21)
 
 
 class Fake(Study):
-    """A study measured by one function for engines and one for the theory."""
-
     def measure(self, engine, few=None, only=()):
         return self.provided["measure"](engine)
 
@@ -94,37 +92,15 @@ def radius():
 
 def measure_verdicts(engine):
     engine.simulate(FIG5, (0.0, 0.0, 1.0, 0.0), LOADS)  # a failing engine fails here
-    exact = radius()
+    exact, name = radius(), engine.name
+    numbers = exact, exact + 4e-11 * np.cos(40 * LOADS), np.full_like(exact, 2e-10)
+    semicircle = {"equation": "(4)", "note": "error estimated by a run at a quarter of the tolerance"}
+    load, release = {"equation": "(5)", "unit": "N", "resolution": 1e-4}, {"equation": "(7)–(9)", "unit": "s"}
     claims = (
-        claim("The pin comes to rest at the point of eq. (3)", engine.name, 0.08, 0.08 + 3e-11, 1e-10),
-        claim(
-            "Equilibria of all loads lie on the semicircle",
-            engine.name,
-            exact,
-            exact + 4e-11 * np.cos(40 * LOADS),
-            np.full_like(exact, 2e-10),
-            equation="(4)",
-            note="error estimated by a run at a quarter of the tolerance",
-        ),
-        claim(
-            "The equilibrium is lost at the load of eq. (5)",
-            engine.name,
-            0.1,
-            0.1004,
-            1e-6,
-            equation="(5)",
-            unit="N",
-            resolution=1e-4,
-        ),
-        claim(
-            "The time of release follows from eq. (7)",
-            engine.name,
-            2.0,
-            2.1,
-            0.5,
-            equation="(7)–(9)",
-            unit="s",
-        ),
+        claim("The pin comes to rest at the point of eq. (3)", name, 0.08, 0.08 + 3e-11, 1e-10),
+        claim("Equilibria of all loads lie on the semicircle", name, *numbers, **semicircle),
+        claim("The equilibrium is lost at the load of eq. (5)", name, 0.1, 0.1004, 1e-6, **load),
+        claim("The time of release follows from eq. (7)", name, 2.0, 2.1, 0.5, **release),
     )
     return Findings(claims, {"load": LOADS, "radius": exact})
 
@@ -225,32 +201,27 @@ UNENDING = fake("unending", "A study that takes too long", "An hour.", measure_u
 
 
 PIN, POINTS, RING = (
-    "The pin moves on straight lines",
-    "Six points move on straight lines",
-    "The ring moves on straight lines",
+    f"{what} on straight lines" for what in ("The pin moves", "Six points move", "The ring moves")
 )
 SYSTEMS = {PIN: FIG5, POINTS: replace(FIG11, contact_points=6), RING: FIG11}
 
 
 def measure_what_is_promised(engine):
-    mine = {sentence: system for sentence, system in SYSTEMS.items() if engine.simulates(system)}
+    mine = [sentence for sentence, system in SYSTEMS.items() if engine.simulates(system)]
     claims = tuple(
-        claim(
-            sentence,
-            engine.name,
-            0.0,
-            engine.simulate(system, [0.0] * system.state_size, [0.0, 1.0]).at_end[0],
-            0.0,
-        )
-        for sentence, system in mine.items()
+        claim(sentence, engine.name, 0.0, moved(engine, SYSTEMS[sentence]), 0.0) for sentence in mine
     )
-    return Findings(claims, {sentence: np.zeros(2) for sentence in mine}, engine.lacking(SYSTEMS.values()))
+    return Findings(claims, dict.fromkeys(mine, np.zeros(2)), engine.lacking(SYSTEMS.values()))
+
+
+def moved(engine, system):
+    return engine.simulate(system, [0.0] * system.state_size, [0.0, 1.0]).at_end[0]
 
 
 def measure_a_ring(engine):
     """Omit the check for support, as a study of rings alone may do."""
-    moved = engine.simulate(FIG11, [0.0] * 6, [0.0, 1.0]).at_end[0]
-    return Findings((claim(RING, engine.name, 0.0, moved, 0.0),), {"moved": np.array([moved])})
+    made = claim(RING, engine.name, 0.0, moved(engine, FIG11), 0.0)
+    return Findings((made,), {"moved": made.measured})
 
 
 PARTLY = fake("partly", "Pin, points and ring", "Zero.", measure_what_is_promised)

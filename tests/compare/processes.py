@@ -42,7 +42,6 @@ def wait_until(condition: Callable[[], bool]) -> None:
 
 
 def wait_for(process: subprocess.Popen[str], *paths: Path) -> None:
-    """Wait until all files exist or the process has ended."""
     wait_until(lambda: all(path.exists() for path in paths) or process.poll() is not None)
 
 
@@ -56,8 +55,6 @@ def ended(group: int) -> bool:
 
 
 class WorkerHere:
-    """A worker without a process, which needs no time to start."""
-
     def __init__(self, temporary: str) -> None:
         self.key, self.owner, self.started, self.dead, self.connection = None, "", math.inf, False, self
 

@@ -185,7 +185,6 @@ def sentences(findings, verdict):
 
 
 def theory_of(study, *functions, few=None):
-    """Return the verdicts of claims about the theory by their functions."""
     found = study.measure_theory(few or {}, only=functions).claims
     assert len(found) == len(functions)
     return dict(zip(functions, (claim.verdict for claim in found), strict=True))

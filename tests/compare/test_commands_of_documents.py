@@ -32,6 +32,7 @@ SMALLER = (
     (r"^(friction-discs sweep map .*):64 (.*):64$", r"\1:2 \2:2"),
     (r"^(friction-discs sweep uncertainty .*)$", r"\1 --samples 256"),
     (r"^(friction-discs sweep continuation .*):100$", r"\1:2 --samples 4"),
+    (r"^(friction-discs simulate .*)--until 100", r"\1--until 5"),
     (r"^friction-discs plan .*$", "friction-discs plan fig03 --output motions"),
     (r"^friction-discs report .*$", "friction-discs report --claim fig03/rests --engine reference --jobs 1"),
     (r"^friction-discs matrix .*$", "friction-discs matrix --engine mypackage.mymodule:simulate --recorded"),
@@ -41,7 +42,6 @@ SMALLER = (
 
 
 def blocks(page):
-    """Yield the commands of each block of a page, with the lines that the page shows as their output."""
     commands, shown = [], []
     for language, block in BLOCK.findall(page.read_text(encoding="utf-8")):
         lines = [line.strip() for line in block.splitlines() if not language and line.strip()]
@@ -79,7 +79,6 @@ def run_of_ours(words, capsys):
 
 
 def run_of_pytest(words, capsys, fully):
-    """Collect the tests, or run them if a page shows their output."""
     options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:zarr", "-q"] + ["--collect-only"] * (
         not fully
     )
@@ -98,7 +97,6 @@ def check_target(words):
 
 
 def check_installation(words):
-    """Accept the checkout with extras that exist; no index has the project."""
     extras = re.fullmatch(r"\.(?:\[([\w,]+)\])?", words[-1])
     assert words[0] == "install"
     assert extras, f"{words[-1]} is not in a package index: install . or .[EXTRA]"

@@ -43,7 +43,6 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="
 
 @pytest.fixture
 def root(tmp_path, monkeypatch):
-    """Return a project whose texts quote four numbers."""
     (tmp_path / "docs" / "paper").mkdir(parents=True)
     (tmp_path / "builders").mkdir()
     (tmp_path / "builders" / "findings.md").write_text(f'At #n("{PLACE}") m, to #n("{ERROR}") m.\n')

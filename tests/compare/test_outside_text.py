@@ -71,7 +71,6 @@ def test_no_cell_of_a_table_is_a_formula(tmp_path):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """Name of an engine with a hostile version and exception."""
     monkeypatch.chdir(tmp_path)
     code = f"def simulate(*_, **__):\n    raise ValueError({HOSTILE!a})\nsimulate.version = {HOSTILE!a}\n"
     (tmp_path / "hostile_engine.py").write_text(code)

@@ -86,7 +86,6 @@ def run(folder, *arguments, here=True):
 
 
 def run_by_itself(folder, *arguments):
-    """Do the same in a separate process."""
     done = subprocess.run(
         [sys.executable, "-m", "pytest", *OPTIONS, *WITHOUT_OTHERS, *arguments],
         cwd=folder,
@@ -99,7 +98,6 @@ def run_by_itself(folder, *arguments):
 
 
 def outside():
-    """Return the environment without the variables of this pytest run."""
     return {name: value for name, value in os.environ.items() if not name.startswith("PYTEST")}
 
 
@@ -261,7 +259,6 @@ honest.sticks, honest.step = False, 5e-2
 
 @pytest.fixture
 def example(tmp_path):
-    """Return a folder with the example and a coarse engine: Euler's method with a declared step."""
     shutil.copy(ROOT / "examples" / "07_engine_under_pytest.py", tmp_path / "example.py")
     (tmp_path / "rough.py").write_text(HONEST)
     return tmp_path

@@ -20,7 +20,6 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 @functools.cache
 def nodes_of(path):
-    """Return all nodes of a module's syntax."""
     return tuple(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
 
 
@@ -33,7 +32,6 @@ LIST = r"(\d+(?:(?:, | and | to |–)\d+)*)(?![\d.]*\d)"
 
 
 def wrong(text):
-    """Return the citations in ``text`` that do not exist in the paper."""
     return [
         f"{kind} {number}"
         for kind, pattern, most in (
@@ -57,7 +55,6 @@ def test_cited_sections_figures_and_equations_are_in_the_paper():
 
 
 def equations_of_claims():
-    """Yield the file and the text of the equation of every claim."""
     for path in SOURCES:
         for node in nodes_of(path):
             if isinstance(node, ast.keyword) and node.arg == "equation":

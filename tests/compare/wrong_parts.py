@@ -45,7 +45,6 @@ def replaced(owner, name, wrong):
 
 
 def factors_on(owner, factors):
-    """Return the attributes of ``owner`` multiplied by ``factors``, by name."""
     return {name: factor * getattr(owner, name) for name, factor in factors.items()}
 
 
@@ -53,7 +52,7 @@ def factors_on(owner, factors):
 
 
 def clutch_parts_off(**factors):
-    """Return a patch that builds models with parameters off by ``factors``; the prediction keeps the right ones."""
+    """Build models with parameters off by ``factors``, unlike the prediction."""
 
     def put(patch):
         def wrong(build):
@@ -72,7 +71,7 @@ def clutch_parts_off(**factors):
 
 
 def heat_astray(share):
-    """Return a patch that withholds a share of the heat from the thermal node."""
+    """Withhold a share of the heat from the thermal node."""
 
     def wrong(add):
         def added(*arguments, **options):
@@ -94,7 +93,7 @@ def coarsely(patch):
 
 
 def coupled_off(coarse=True, **factors):
-    """Return a patch that builds models with numbers off by ``factors``; not ``coarse`` if rounding matters."""
+    """Build models with numbers off by ``factors``; not ``coarse`` if rounding matters."""
 
     def put(patch):
         if coarse:
@@ -130,13 +129,13 @@ def creep_of_another_order(patch):
 
 
 def bench_off(**factors):
-    """Return a patch that changes the drivetrain on the bench by ``factors``."""
+    """Change the drivetrain on the bench by ``factors``."""
     other = replace(CAR, **factors_on(CAR, factors))
     return replaced(Operation, "build", lambda build: lambda operation, car: build(operation, other))
 
 
 def radial_damping_off(factor):
-    """Return a patch that changes the drivetrain's radial damping by ``factor``."""
+    """Change the drivetrain's radial damping by ``factor``."""
     damping = factor * CAR.radial_damping
     return replaced(
         exudyn_models,
@@ -160,7 +159,7 @@ def reaction_without_the_arm_of_the_force(patch):
 
 
 def whirling_car_off(**factors):
-    """Return a patch that changes the whirling car by ``factors``."""
+    """Change the whirling car by ``factors``."""
     other = replace(CAR, **factors_on(CAR, factors))
     return replaced(
         whirls, "build", lambda build: lambda car, whirl, **options: build(other, whirl, **options)
@@ -179,7 +178,7 @@ def balance_that_does_not_close(patch):
 
 
 def moment_from_outside(moment):
-    """Return a patch that applies a moment in N m to a planar disc."""
+    """Apply a moment in N m to a planar disc."""
 
     def wrong(add):
         def with_moment(mbs, base, disc, **parameters):
@@ -228,7 +227,7 @@ def as_predicted(off=0.0):
 
 
 def moving(data):
-    """Return a patch that replaces every run-up by this data, with balanced energy."""
+    """Replace every run-up by this data, with balanced energy."""
 
     def put(patch):
         angle, speed = data["engine"].T
@@ -240,7 +239,7 @@ def moving(data):
 
 
 def heat_counted_wrong(factor):
-    """Return a patch that multiplies the power of friction by ``factor``."""
+    """Multiply the power of friction by ``factor``."""
     return replaced(
         RingFriction, "power", lambda power: lambda friction, mbs, t: factor * power(friction, mbs, t)
     )
@@ -271,7 +270,7 @@ def first_order(patch):
 
 
 def wider(factor):
-    """Return a patch that changes ε of the solvers by ``factor``."""
+    """Change ε of the solvers by ``factor``."""
 
     def wrong(right):
         def wide(*arguments, **options):
@@ -309,5 +308,5 @@ def full_disc_with_a_small_hole(patch):
 
 
 def hand_with_friction(coefficient):
-    """Return a fault that changes the friction of the hand in the Exudyn model of a pushed body."""
+    """Change the friction of the hand in the Exudyn model of a pushed body."""
     return lambda patch: patch.setattr(pushed_forward, "HAND", coefficient)

@@ -20,7 +20,6 @@ ENGINE = Engine("exact", simulate)
 
 
 def study_of(*names):
-    """Return a study with the named claims, declared in this order."""
     study = Study("rest", Prose("Rest"), system=FIG5, source="Fig. 5")
 
     def rests(engine, loads=LOADS):
@@ -180,7 +179,6 @@ A caption.
 
 @pytest.fixture
 def folder(tmp_path):
-    """Return the folder of a study in the group "pin"."""
     result = tmp_path / "pin" / "title"
     result.mkdir(parents=True)
     (result / "study.md").write_text(PROSE, encoding="utf-8")

@@ -183,23 +183,17 @@ SIMULATE = ("--engine", "fake_studies:straight", "--samples", "3", "--until", "2
 UNITS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "spin": "rad/s"}
 OF_PIN = {name: unit for name, unit in UNITS.items() if name not in ("angle", "spin")}
 MOTIONS = {
-    "pin with changes": (
+    "pin": (
         replace(FIG5, mass=2.0, disc_speed=-1.25),
-        OF_PIN,
-        ("--set", "mass=2", "--set", "disc_speed=-1.25", "--start", "-0.1", "0", "-3e-2", "1"),
-        [-0.1, 0.0, -0.03, 1.0],
+        "--set mass=2 --set disc_speed=-1.25 --start -0.1 0 -3e-2 1",
     ),
     "disc of 6 points": (
         replace(FIG11, contact_points=6),
-        UNITS,
-        ("--set", "contact_points=6", "--start", "0.1", "0", "-0.5", "0.25", "0", "1.25"),
-        [0.1, 0.0, -0.5, 0.25, 0.0, 1.25],
+        "--set contact_points=6 --start 0.1 0 -0.5 0.25 0 1.25",
     ),
     "disc of none": (
         replace(FIG11, shaft_speed=-1.0),
-        UNITS,
-        ("--set", "contact_points= None", "--set", "shaft_speed=-1", "--start", *"000100"),
-        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        "--set contact_points=None --set shaft_speed=-1 --start 0 0 0 1 0 0",
     ),
 }
 
@@ -207,8 +201,10 @@ MOTIONS = {
 @pytest.mark.parametrize("motion", MOTIONS)
 def test_simulate_prints_a_table_or_writes_files(motion, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(fake_studies.straight, "kinds", EVERY_KIND, raising=False)
-    system, units, arguments, start = MOTIONS[motion]
-    call = ["simulate", motion.split()[0], *SIMULATE, *arguments]
+    system, arguments = MOTIONS[motion]
+    call = ["simulate", motion.split()[0], *SIMULATE, *arguments.split()]
+    units = OF_PIN if motion == "pin" else UNITS
+    start = [float(value) for value in arguments.partition("--start ")[2].split()]
     half = len(start) // 2
     states = [[*np.add(start[:half], np.multiply(t, start[half:])), *start[half:]] for t in (0.0, 1.0, 2.0)]
     assert cli.status(call) == 0

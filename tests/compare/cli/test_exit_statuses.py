@@ -23,7 +23,6 @@ def leaving(*arguments, **accuracy):
 
 @pytest.fixture
 def hostile(tmp_path, monkeypatch):
-    """A folder with engines that do not answer, or end the importing process."""
     (tmp_path / "hostile.py").write_text(ENGINES)
     (tmp_path / "exiting.py").write_text("import os\nos._exit(0)")
     monkeypatch.chdir(tmp_path)

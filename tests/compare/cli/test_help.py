@@ -28,7 +28,6 @@ def help_texts(command=None, path="friction-discs"):
 
 
 def examples(text):
-    """Return the lines that begin with the command, joined with their continuation lines."""
     found, margin = [], None
     for line in text.splitlines():
         indent = len(line) - len(line.lstrip())

@@ -31,7 +31,6 @@ def of_size(engine, size):
 
 @pytest.fixture
 def reporting(monkeypatch, tmp_path, in_this_process):
-    """Return a function that reports on the study and returns the status."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "_REGISTRY", {GOOD.name: GOOD})
     ASKED.clear()

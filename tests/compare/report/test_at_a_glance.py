@@ -18,7 +18,6 @@ RESOLUTION = 0.01
 
 
 def setting(engine, name, own=True, **off):
-    """Return a recorded setting with errors and error bars in m for each motion."""
     words = {"slides": SLIDES, "sticks": STICKS, "disc": TURNS}
     by_sentence = {words[motion]: both for motion, both in off.items()}
     return recorded(engine, name, by_sentence, resolution=RESOLUTION, own=own, cases=IN_SHORT)

@@ -41,7 +41,6 @@ def page(browser, reported):
 
 
 def overhang(page):
-    """Return the excess of the page's width over the window's."""
     return page.evaluate("document.documentElement.scrollWidth - window.innerWidth")
 
 

@@ -247,7 +247,6 @@ def test_junit_shares_the_time_of_an_engine_among_its_claims(tmp_path):
 
 @pytest.fixture(scope="module")
 def partly_reported(tmp_path_factory, all_in_this_process):
-    """Matrix and folder of a report with engines that simulate all systems, some systems, and only a pin."""
     folder = tmp_path_factory.mktemp("partly")
     engines = (
         Engine("all", straight, EVERY_KIND),
@@ -385,7 +384,6 @@ def settings():
 
 @pytest.fixture(scope="module")
 def recorded_reported(tmp_path_factory, all_in_this_process):
-    """Exit status and folder of a report of an agreeing study with a recorded engine that differs."""
     folder = tmp_path_factory.mktemp("recorded")
     study = replace(AGREEMENT, provided=AGREEMENT.provided | {"recorded": settings})
     arguments = ["report", "--engine", "reference", "--jobs", "1", "--output", str(folder)]

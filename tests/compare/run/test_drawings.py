@@ -15,7 +15,6 @@ DRAWING = Drawing({"fake-radius": b"<svg/>"}, {"fake-motion": b"GIF89a"})
 
 @pytest.fixture
 def run(tmp_path, monkeypatch):
-    """Run a study in the same folder as before; return its drawing, and whether it was redrawn."""
     drawn = []
 
     def draw(study, data):

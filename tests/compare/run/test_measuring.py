@@ -58,7 +58,6 @@ def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted(engine):
 
 @pytest.fixture
 def reporting(monkeypatch, tmp_path, in_this_process):
-    """Return a function that reports on studies with the engine and returns status, results and cases."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "_REGISTRY", {STEPPING.name: STEPPING, "good": fake_studies.GOOD})
     monkeypatch.setattr("compare.run.runner.is_registered", lambda name: name == "good")

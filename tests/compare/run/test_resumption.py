@@ -20,7 +20,6 @@ from compare.studies import STUDIES
 
 @pytest.fixture
 def code(tmp_path, monkeypatch):
-    """Write modules into an import folder and forget their older versions."""
     folder = tmp_path / "code"
     folder.mkdir()
     monkeypatch.syspath_prepend(folder)
@@ -46,7 +45,6 @@ def code(tmp_path, monkeypatch):
 
 
 def stamp_of(module, *promises, folder=""):
-    """Return the stamp of the function ``simulate`` of a module as an engine."""
     return engine_stamp(Engine("mine", ByName(module, "simulate", str(folder)), *promises))
 
 

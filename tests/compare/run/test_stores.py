@@ -40,8 +40,6 @@ DRAWN = (Drawing({"radius": b"<svg/>", "spin": b""}, {"motion": bytes(range(99))
 
 
 class OfFindings:
-    """The store of findings, with contents as one comparable text."""
-
     keys, values, stamps = KEYS, FOUND, ("now", "then", None)
 
     def __init__(self, folder):
@@ -61,8 +59,6 @@ class OfFindings:
 
 
 class OfDrawings:
-    """The store of drawings."""
-
     keys, values, stamps = ("fig03", "fig04"), DRAWN, ("now", "then")
 
     def __init__(self, folder):

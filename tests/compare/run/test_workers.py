@@ -95,7 +95,6 @@ def test_work_that_cannot_be_sent_is_reported(workers):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """The current folder, with an engine that was imported from it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
     (tmp_path / "engine_of_this_folder.py").write_text("def simulate(): return 42\n")
