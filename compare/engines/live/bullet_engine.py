@@ -42,6 +42,7 @@ class _World(Model):
 
     engine = "Bullet"
     most_points = 100  # PyBullet allows 128 links per body
+    linear = False
 
     def build(self, state: FloatArray, tolerance: float, *, friction: str) -> None:
         self.state, system = state, self.system
@@ -148,22 +149,18 @@ class _World(Model):
         return forces
 
 
-cone = Setting(
-    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, linear=False
-)
+cone = Setting("cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"})
 box = Setting(
     "box",
     "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
     _World,
     {"friction": "box"},
-    linear=False,
 )
 shipped = Setting(
     "as shipped",
     "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
     _World,
     {"friction": "as shipped"},
-    linear=False,
 )
 our_force = Setting(
     "our force",
@@ -171,5 +168,4 @@ our_force = Setting(
     "by friction in a step.",
     _World,
     {"friction": "our force"},
-    linear=False,
 )

@@ -95,7 +95,7 @@ def installed_engine(name: str, setting: str) -> Engine:
         f"{name}:{setting}" if setting != known.settings[0] else name,
         ByName(module, function),
         kinds=KINDS,
-        nonlinear=not simulate.linear,
+        nonlinear=not simulate.model.linear,
         phases=False,
         precision=simulate.precision,
         step=simulate.step,

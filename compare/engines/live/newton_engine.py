@@ -24,6 +24,7 @@ RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the p
 
 class _Model(Model):
     engine = "Newton"
+    linear = False
 
     def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:
         system = self.system
@@ -73,7 +74,6 @@ xpbd = Setting(
     "with its position-based solver and two iterations, its default, in single precision: steps of order 1.",
     _Model,
     {"solver": "XPBD"},
-    linear=False,
     finest=2e-3,
     precision=1e-6,
 )

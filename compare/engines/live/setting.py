@@ -28,12 +28,14 @@ class Model:
     """The bodies in an ``engine`` and their current state.
 
     ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
-    and ``epsilon`` is the slip speed in m/s that regularises the friction law.
+    and ``epsilon`` is the slip speed in m/s that regularises the friction law. A ``linear`` model has springs without
+    hardening and stop.
     """
 
     engine = ""
     method = ""
     most_points = math.inf
+    linear = True
     epsilon = 0.0
 
     def __init__(self, system: System, state: FloatArray, tolerance: float, **options: Any) -> None:
@@ -71,7 +73,6 @@ class Setting:
     model: type[Model]
     options: Mapping[str, Any] = field(default_factory=dict)  # of the model
     finest: float = 0.0  # least step in units of 1/max(k, ω)
-    linear: bool = True  # springs only without hardening and stop
     step: float | None = 2e-3
     precision: float = 0.0
 
@@ -87,7 +88,7 @@ class Setting:
         """Return the motion."""
         state, grid = checked_state(system, initial_state), checked_times(times)
         tolerance, engine = checked_tolerance(tolerance), self.model.engine
-        if self.linear and not system.linear_support:
+        if self.model.linear and not system.linear_support:
             raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
         longest = step or max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
         states, steps = [state], 0
@@ -181,7 +182,7 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 class TopDown(Model):
     """A body with a kinematic partner at each contact point; a ``shipped`` engine keeps its defaults."""
 
-    shipped = False
+    shipped, linear = False, False
 
     def state(self) -> tuple[float, ...]:
         """Return x, y, angle, vx, vy and spin."""
