@@ -1,7 +1,7 @@
 """Newton as an engine: with its position-based and semi-implicit solvers, by Warp on the processor.
 
 Written for Newton 1.8.0, in single precision. A ball that cannot turn is pressed on the plate by its weight N, with μ
-= 1. The plate is a kinematic body that turns at ω. Springs, dampers and stop are a force set before each step.
+= 1. The plate is kinematic.
 """
 
 from __future__ import annotations

@@ -27,6 +27,9 @@ from reference_model.trajectory import Phase, SimulationError, Solution, Traject
 class Model:
     """The bodies in an ``engine`` and their current state.
 
+    In engines with contact, n feet below the body are spheres on vertical joints, each pressed by its own weight N/n
+    on a plate that turns at ω, because several loads of one rigid body are indeterminate.
+
     ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
     and ``epsilon`` is the slip speed in m/s that regularises the friction law. A ``linear`` model has springs without
     hardening and stop.
@@ -63,9 +66,9 @@ class Model:
 class Setting:
     """One setting of an engine, callable as the ``simulate`` of any engine.
 
-    Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), so first-order errors halve between the
-    tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps fills each interval of
-    ``times``. ``step`` is None for an integrator that controls its error.
+    Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), which halves first-order errors between the
+    tolerances of an estimate, but at least ``finest`` / max(k, ω). ``step`` is None for an integrator with error
+    control.
     """
 
     name: str
@@ -173,10 +176,9 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 
 # --- Common code of planar engines, with contact as a joint.
 #
-# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint that
-# removes the relative velocity of two bodies up to a force limit, here μN/n at each contact point. The second body
-# at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
-# forces, set in each step. Steps are semi-implicit, of order 1.
+# A planar engine has no normal load. For top-down scenes, these engines recommend a joint that removes the relative
+# velocity of two bodies up to a force limit, here μN/n at each contact point. The second body there is kinematic and
+# has the velocity of the master disc. Steps are semi-implicit, of order 1.
 
 
 class TopDown(Model):

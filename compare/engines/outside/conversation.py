@@ -58,8 +58,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
-    Raises ``UnsupportedSystemError`` if the program says so, ``OSError`` if it cannot be started, and
-    ``ProgramError`` for any other failure.
+    Raises ``UnsupportedSystemError``, ``OSError`` if the program cannot be started, and ``ProgramError``.
     """
     conversation = conversation_with(command, folder)
     line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))
@@ -227,7 +226,7 @@ class Conversation:
 
 
 def _environment() -> dict[str, str]:
-    """Return this process's environment without the variable of ``compare.run.workers``."""
+    """Return this process's environment without a variable of workers."""
     environment = dict(os.environ)
     if multiprocessing.parent_process() is not None:
         environment.pop("PYTHONSAFEPATH", None)  # a Python program may import from its folder
