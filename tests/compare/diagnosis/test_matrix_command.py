@@ -71,6 +71,7 @@ def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypat
 def test_a_broken_adapter_is_seen_first_and_not_measured(in_this_process, tmp_path, monkeypatch, capsys):
     (tmp_path / "broken.py").write_text("def simulate(system, *arguments, **accuracy):\n    system.gravity\n")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     assert cli.status(["matrix", "--engine", "broken:simulate", "--output", "found"]) == 3
     why = "no result for two blocks: AttributeError: 'PinOnDisc' object has no attribute 'gravity'"
     printed = capsys.readouterr().out
