@@ -1,4 +1,4 @@
-"""DART as an engine of the comparison: with four of its contact solvers, and with our law as a user force.
+"""DART as an engine: with four of its contact solvers, and with our law as a user force.
 
 Measured with 6.20.0. The pin or disc is a body on a planar joint. The motion of the plate is prescribed.
 

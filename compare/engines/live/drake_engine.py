@@ -1,4 +1,4 @@
-"""Drake as an engine of the comparison: three contact solvers, two integrators, and our law as a force.
+"""Drake as an engine: three contact solvers, two integrators, and our law as a force.
 
 Measured with 1.51.1. The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a
 plate that turns at ω. Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any

@@ -179,7 +179,7 @@ def oscillator(random: Generator) -> Problem:
 
 
 def shaft(random: Generator) -> Problem:
-    """Draw a motion of a disc without friction, whose spin follows the shaft with a first-order lag."""
+    """Draw a disc without friction, whose spin follows the shaft with a lag."""
     disc = replace(any_disc(random, None), friction_force=0.0)
     place = vector(random, abs(disc.offset))
     velocity = vector(random, abs(disc.offset) * disc.natural_frequency)
