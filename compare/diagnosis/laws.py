@@ -1,7 +1,7 @@
 """Friction laws of engines, and the identification of a measured force among them by least squares.
 
 An anisotropic law replaces Coulomb's circle by a polygon: the force points to the corner nearest to the opposite of
-the slip. The box, with independent friction along each axis, is a square with sides across the axes.
+the slip. The box is a square with sides across the axes.
 """
 
 from __future__ import annotations

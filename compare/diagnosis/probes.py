@@ -36,7 +36,7 @@ SETTLES_FOR = 0.05
 """Time in s before friction is measured: MuJoCo's soft contact takes 0.04 s to reach its steady force."""
 
 SLIDES_FOR = 0.1
-"""Duration in s: friction removes 1/50 of the speed, less than the smallest component across an axis."""
+"""Duration in s; friction removes 1/50 of the speed, less than any component across an axis."""
 
 PANELS = 32  # intervals for the integral of friction with a direction that changes
 FEWEST_PANELS = 4  # the same at the coarsest rung, where steps may not exceed an interval
@@ -142,9 +142,8 @@ def slides(
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
     They are the mean friction force over μN, the mean directions of slip and position, the conditions (mass, load,
-    mean slip speed, disc speed, distance from the axis), the given initial speed in m/s, the initial speed that
-    follows from speed and force when the measurement begins, the error of the force due to the declared precision,
-    and the ratio of the smallest slip to the first.
+    mean slip speed, disc speed, distance from the axis), the initial speed in m/s as given and as measured, the error
+    of the force due to the declared precision, and the ratio of the smallest slip to the first.
     """
     motions = [(push.system, push.start, push.times(panels)) for push in pushes]
     runs = engine.simulate_many(motions, tolerance=tolerance)
@@ -229,10 +228,7 @@ def second_release(engine: Engine, tolerance: float) -> FloatArray:
 
 
 def at_rest(engine: Engine, tolerance: float) -> float:
-    """Return the largest creep speed in m/s of a block close to release and of one at rest after a slide.
-
-    The slide starts across a pull of μN/2.
-    """
+    """Return the largest creep speed in m/s of a block close to release and of one at rest after a slide."""
     ((nearly, *_),) = pulled(engine, (NEARLY,), tolerance)
     block = replace(SLIDE, offset=0.5 * FRICTION / WEAK)
     run = engine.simulate(block, (0.0, 0.0, 0.0, 0.2), (0.0, 5.0, 6.0), tolerance=tolerance)
@@ -250,7 +246,7 @@ TURNS_FOR = 1.0
 def lag(engine: Engine, tolerance: float) -> float:
     """Return the delay in s of the friction direction behind the slip; 0 for Coulomb friction.
 
-    It is the missing momentum over the change of momentum due to a shift in time, along the latter.
+    It is the missing momentum over the momentum that a shift in time changes, along the latter.
     """
     times = SETTLES_FOR + np.linspace(0.0, TURNS_FOR, PANELS + 1)
     run = engine.simulate(TURN, (0.0, 0.0, SPEED, 0.0), np.concatenate(([0.0], times)), tolerance=tolerance)

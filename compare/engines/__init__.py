@@ -1,7 +1,7 @@
 """Engines of the comparison, each with the kinds of systems that it simulates.
 
-A study of a single system calls ``engine.simulate``. If the engine does not support it, the report says "not
-simulated", neither a pass nor a failure. A study of several systems measures some and reports the others::
+A study of a single system calls ``engine.simulate``; if the engine does not support it, the report says so. A study
+of several systems measures some and reports the others::
 
     mine = [disc for disc in discs if engine.simulates(disc)]
     return Findings(claims_of(mine), data_of(mine), not_simulated=engine.lacking(discs))

@@ -40,11 +40,7 @@ COARSE_STEP = 30.0
 
 
 class Simulate(Protocol):
-    """The one function that an engine must implement.
-
-    Every approximation of the engine (step, iteration, regularised friction law) must improve with ``tolerance``,
-    because errors are estimated by tightening it.
-    """
+    """The one function that an engine must implement. All its approximations must improve with ``tolerance``."""
 
     def __call__(
         self, system: System, initial_state: ArrayLike, times: ArrayLike, *, tolerance: float = 1e-9
@@ -61,17 +57,15 @@ class UnsupportedSystemError(ValueError):
 class Engine:
     """An engine's name, its ``simulate``, and its capabilities.
 
-    - ``function``: the engine's ``simulate``; a function of an importable module if several processes are to use it.
-    - ``kinds``: systems that it simulates: "block" (a pin on a disc at rest), "pin" (includes blocks), "points" (a
-      disc on single points), "ring" (a disc on the continuous ring).
+    - ``function``: the engine's ``simulate``, of an importable module if several processes are to use it.
+    - ``kinds``: the ``KINDS`` of systems that it simulates; "pin" includes blocks.
     - ``sticks``: True if it simulates motions that stick. Otherwise it gets only motions that neither stick in the
       reference nor start at rest on the master disc.
     - ``nonlinear``: True if it simulates supports that harden or have a stop.
     - ``phases``: True if its trajectories contain the stick phases. Otherwise ``compare.engines.stick`` finds them.
-    - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion: 1e-6 for
-      single precision, see ``compare.engines.precision``.
-    - ``step``: step in s for a tolerance of 1e-9, see ``step_at``, if the integrator has a fixed step. ``function``
-      then takes ``step`` in place of ``tolerance``.
+    - ``precision``: error of its states at any tolerance, relative to the lengths and speeds of the motion.
+    - ``step``: fixed step in s for a tolerance of 1e-9, if any; ``function`` then takes ``step`` in place of
+      ``tolerance``.
     - ``order``: order of the error in a fixed step.
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
     - ``contact_only``: True if it shares all but the contact with its kin. Unless requested by name, it is then
@@ -128,8 +122,7 @@ class Engine:
         """Call ``function``, check the trajectory and return it.
 
         Raises ``UnsupportedSystemError`` if the engine does not simulate the motion, ``TypeError`` if ``function``
-        does not return a ``Trajectory``, and ``BadTrajectoryError`` if its times or shapes are not those requested,
-        or its numbers are not finite.
+        does not return a ``Trajectory``, and ``BadTrajectoryError`` if the trajectory is invalid.
         """
         self._refuse(system, initial_state, times)
         answer = self._asked(
@@ -142,9 +135,8 @@ class Engine:
     ) -> list[Trajectory]:
         """Return the motion of each system from its initial state at its times.
 
-        If ``function`` has an attribute ``simulate_many``, one call computes all motions. It takes equally long lists
-        of systems, initial states and times, and ``tolerance`` or ``step``, and returns trajectories. Errors are
-        those of ``simulate``.
+        If ``function`` has an attribute ``simulate_many``, one call with lists of systems, initial states and times
+        computes all motions. Errors are those of ``simulate``.
         """
         motions = list(motions)
         at_once = getattr(self._asked, "simulate_many", None)
@@ -209,10 +201,7 @@ class Engine:
 
     @property
     def root(self) -> float:
-        """Exponent p of the fixed step h ∝ tolerance^(1/p): the order, so errors are proportional to the tolerance.
-
-        It is at least 2, because steps of first order would become too many.
-        """
+        """Exponent p of the fixed step h ∝ tolerance^(1/p): the order, but at least 2 to limit the steps."""
         return max(self.order, 2.0)
 
     def step_at(self, tolerance: float) -> float:

@@ -1,8 +1,8 @@
 """Noise that makes the limited precision of an engine visible in the error estimates.
 
-The error of a claim is estimated from its change with the tolerance. Rounding to single precision can cut off the
-same digits at both tolerances. Noise of that size, different at each tolerance, propagates as rounding does and
-contributes to the change (stochastic arithmetic: Vignes, Mathematics and Computers in Simulation 35, 1993).
+Rounding to single precision can cut off the same digits at both tolerances of an error estimate. Noise of that size,
+different at each tolerance, propagates as rounding does (stochastic arithmetic: Vignes, Mathematics and Computers in
+Simulation 35, 1993).
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def blurred(trajectory: Trajectory, precision: float, tolerance: float, start: F
 def _blurred(states: FloatArray, precision: float, tolerance: float, *question: FloatArray) -> FloatArray:
     """Return ``states`` with noise that depends only on ``question``, times a factor that depends on the tolerance.
 
-    Opposite signs at the two tolerances of an estimate reveal effects that are odd in the noise, different amplitudes
-    those that are even. Independent noise could be equal by chance.
+    Opposite signs at the two tolerances of an estimate reveal odd effects of the noise, different amplitudes even
+    ones. Independent noise could be equal by chance.
     """
     noise = np.random.default_rng([zlib.crc32(part.tobytes()) for part in question])
     factor = precision if round(math.log(tolerance, COARSENING)) % 2 else -OTHER_SIZE * precision

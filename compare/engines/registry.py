@@ -93,9 +93,8 @@ def register(engine: Engine, *, on_request: bool = False) -> Engine:
 def engines(names: Iterable[str] = ()) -> tuple[Engine, ...]:
     """Return the engines of the given names, or by default all registered engines except those on request.
 
-    A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Names may also be
-    "module:function", also in the current folder, "exec:COMMAND", and an entry point "friction_discs.engines" of an
-    installed package. Raises ``ValueError`` if a name is unknown or cannot be imported.
+    A named engine is measured in all that it simulates, whatever its ``Engine.contact_only``. Raises ``ValueError``
+    if a name is unknown or cannot be imported.
     """
     names = list(names)
     return told_apart(names, [_named(name) for name in names]) or tuple(
@@ -171,14 +170,8 @@ def packaged() -> dict[str, str]:
 def imported(name: str, place: str) -> Engine:
     """Return the engine of the function at ``place``, "module:function"; raise ``ValueError`` without one.
 
-    By default it simulates the pin only, without reporting phases. Attributes of the function override parameters of
-    ``Engine``::
-
-        simulate.kinds = ("pin", "points", "ring")
-        simulate.sticks = False
-        simulate.nonlinear = False
-        simulate.phases = True
-        simulate.step = 1e-3
+    By default it simulates the pin only, without reporting phases. The attributes ``DECLARED`` of the function
+    override parameters of ``Engine``.
     """
     module_name, _, function_name = place.partition(":")
     function = ByName(module_name, function_name, os.getcwd())  # not on a console script's path

@@ -132,7 +132,7 @@ class _Samples:
     def _largest_speed(self) -> float:
         """Return the largest speed in m/s of the slip, or of the master disc below the body.
 
-        If a body creeps on a plane at rest, return the speed that the springs could give it.
+        If a body creeps on a plane at rest, return the speed that its springs could cause.
         """
         fastest, omega = float(np.max(self.slip)), abs(self.system.disc_speed)
         x, y = self.states[:, :2].T
@@ -244,9 +244,8 @@ class _Samples:
         """Return a span with the level and degree for extrapolating its end, the release.
 
         The level is the geometric mean of the creep and of ``REST``. If friction is regularised below ε, creep grows
-        before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. If the level
-        jumped with the samples, the error would not fall with the step as the estimate assumes. A cubic has a smaller
-        error.
+        before release as ε·f/√(1 − f²) and reaches a given multiple of ε at the same time for every ε. A level that
+        jumps with the samples would spoil the error estimate. A cubic has a smaller error.
         """
         first, last = self._places(span)
         slip = self.slip[first : last + 1]

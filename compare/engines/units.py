@@ -47,6 +47,16 @@ DIMENSIONS = {
 """Powers of mass, length and time in each parameter."""
 
 
+def in_units(system: System, mass: float, length: float, time: float) -> System:
+    """Return ``system`` with other units of mass, length and time, given as multiples of these numbers."""
+    changes = {
+        name: getattr(system, name) * (mass ** float(m) * length ** float(d) * time ** float(t))
+        for name, (m, d, t) in DIMENSIONS.items()
+        if hasattr(system, name)
+    }
+    return replace(system, **changes)
+
+
 @dataclass(frozen=True)
 class InOtherUnits:
     """A ``simulate`` that asks ``function`` for each motion in units drawn from ``seed`` and the system."""
@@ -98,12 +108,8 @@ def _factors(system: System, units: tuple[int, int, int]) -> FloatArray:
 def _asked(
     system: System, state: ArrayLike, times: ArrayLike, units: tuple[int, int, int]
 ) -> tuple[System, FloatArray, FloatArray]:
-    sizes = {
-        name: float(np.dot(powers, units)) for name, powers in DIMENSIONS.items() if hasattr(system, name)
-    }
-    there = replace(system, **{name: getattr(system, name) * 2.0**power for name, power in sizes.items()})
     return (
-        there,
+        in_units(system, *(2.0**power for power in units)),
         np.asarray(state, dtype=float) * _factors(system, units),
         np.asarray(times, dtype=float) * 2.0 ** units[2],
     )

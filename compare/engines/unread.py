@@ -11,9 +11,9 @@ from typing import Any
 from reference_model.systems import System
 
 NONLINEAR = {"hardening": ("hardening",), "stop_stiffness": ("stop_stiffness", "stop_gap")}
-"""Parameters of nonlinear supports. An engine knows one if it reads any of the listed names.
+"""Parameters of nonlinear supports, each known to an engine that reads any of the listed names.
 
-It may read the stiffness of a stop only during contact, so reading the gap is sufficient.
+An engine may read the stiffness of a stop only during contact.
 """
 
 SHORT = 1e-3  # duration of the motion in s

@@ -1,5 +1,6 @@
 """Quality of the claims: they catch every fault twice and never fail for a sound engine."""
 
+import itertools
 from dataclasses import replace
 
 import pytest
@@ -54,7 +55,8 @@ def test_two_kinds_of_claims_catch_every_fault(fault):
 
 def test_no_claim_accuses_a_sound_engine():
     """The engine gets a new name, like a fault, so the test above cannot pass because of a name."""
-    assert not any(sentences for sentences, _ in caught(replace(SOUND[1], name="harmless")))
+    first = itertools.islice(caught(replace(SOUND[1], name="harmless")), len(ONE_OF_EACH_KIND))
+    assert not any(sentences for sentences, _ in first)
 
 
 def test_engine_that_fails_is_caught_by_all_kinds_of_claims():

@@ -76,7 +76,6 @@ friction_joint = Setting(
     "friction joint",
     "by friction joints, in single precision, with steps of order 1 until accumulated rounding dominates.",
     _World,
-    linear=False,
     finest=2e-3,
     precision=1e-6,
 )

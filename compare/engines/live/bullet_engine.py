@@ -1,17 +1,15 @@
 """Bullet as an engine: with its friction cone on and off, and with our law as a user force.
 
 Written for PyBullet 3.2.7, in double precision. The pin or disc is a multibody on two prismatic joints; a disc also
-has a revolute one. Below it are n feet, spheres on vertical joints, each pressed on the plate by its own weight N/n.
-The plate turns at ω on a joint and is heavy enough not to be slowed.
+has a revolute one. The plate is too heavy to be slowed.
 
 - Disabled defaults of Bullet: a body damping of 0.04, motors in the joints, a joint speed limit of 100. As shipped,
   only the motors are off.
 - The friction coefficient is the product of both bodies'. Slop and the solver's residual threshold are 0.
 - Springs and dampers are forces set before each step, so any support is possible.
 
-Friction opposes the slip at the end of a step, so it is of order 1. With the cone off, it is bounded per world axis.
-With the cone on, friction on a disc deviates from the direction of slip by a relative error of R²·m/J at any step,
-because each component of the slip is divided by its own mobility.
+Friction opposes the slip at the end of a step. With the cone off, it is bounded per world axis. With the cone on,
+friction on a disc deviates from the direction of slip by R²·m/J, because each component has its own mobility.
 """
 
 from __future__ import annotations
@@ -42,6 +40,7 @@ class _World(Model):
 
     engine = "Bullet"
     most_points = 100  # PyBullet allows 128 links per body
+    linear = False
 
     def build(self, state: FloatArray, tolerance: float, *, friction: str) -> None:
         self.state, system = state, self.system
@@ -102,8 +101,7 @@ class _World(Model):
             linkJointAxis=[vectors[axis] for axis in axes],
             physicsClientId=self.client,
         )
-        # Settings of the whole body go to its base; in a call for a link, they would discard the link's own
-        # settings.
+        # Settings of the whole body go to its base, because in a call for a link they discard the link's own.
         if not self.shipped:
             whole = {"linearDamping": 0.0, "angularDamping": 0.0, "maxJointVelocity": 1e9}
             awake = pybullet.ACTIVATION_STATE_DISABLE_SLEEPING
@@ -148,22 +146,18 @@ class _World(Model):
         return forces
 
 
-cone = Setting(
-    "cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"}, linear=False
-)
+cone = Setting("cone", "with Bullet's contact and steps of order 1.", _World, {"friction": "cone"})
 box = Setting(
     "box",
     "with enableConeFriction off. It converges to the motion with friction bounded for each axis.",
     _World,
     {"friction": "box"},
-    linear=False,
 )
 shipped = Setting(
     "as shipped",
     "with all its defaults, which include a damping of the body of 0.04 and a joint speed limit of 100.",
     _World,
     {"friction": "as shipped"},
-    linear=False,
 )
 our_force = Setting(
     "our force",
@@ -171,5 +165,4 @@ our_force = Setting(
     "by friction in a step.",
     _World,
     {"friction": "our force"},
-    linear=False,
 )

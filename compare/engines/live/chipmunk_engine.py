@@ -68,12 +68,10 @@ pivot = Setting(
     "pivot joint",
     "by pivot joints with a force limit, as in its top-down tank demo, with steps of order 1.",
     _Space,
-    linear=False,
 )
 shipped = Setting(
     "as shipped",
     "by pivot joints with a force limit, with ten iterations, its default, and forces set before each step.",
     _Space,
     {"shipped": True},
-    linear=False,
 )

@@ -1,15 +1,12 @@
-"""DART as an engine of the comparison: with four of its contact solvers, and with our law as a user force.
+"""DART as an engine: with four of its contact solvers, and with our law as a user force.
 
-Measured with 6.20.0. The pin or disc is a body on a planar joint. Below it are n feet, spheres on vertical joints,
-each pressed on the plate by its own weight N/n. The plate turns at ω on a joint with prescribed motion.
+Measured with 6.20.0. The pin or disc is a body on a planar joint. The motion of the plate is prescribed.
 
-- A step is semi-implicit, of order 1: friction opposes the slip at its end, positions follow from the new velocities.
-  Implicit springs of joints would damp like C·h, so the support's spring is a force set before each step, with a
-  quarter of the error. The dampers are the joint's.
+- A step is semi-implicit, of order 1. Implicit springs of joints would damp like C·h, so the support's spring is a
+  force set before each step, with a quarter of the error. The dampers are the joint's.
 - By default, bodies at rest fall asleep, and a second solver silently replaces the first if it fails. Both are off.
-- Dantzig's solver and projected Gauss–Seidel solve the same problem: friction is bounded for each of two world axes.
-  The other two solvers use the cone.
-- The tolerance of iterative solvers is 1e-10 of an impulse; at 1e-12, rounding can keep them from converging.
+- Dantzig's solver and projected Gauss–Seidel bound friction on each of two world axes; the others use the cone.
+- At a solver tolerance of 1e-12 of an impulse, rounding can prevent convergence.
 """
 
 from __future__ import annotations

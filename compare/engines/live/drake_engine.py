@@ -1,11 +1,11 @@
-"""Drake as an engine of the comparison: three contact solvers, two integrators, and our law as a force.
+"""Drake as an engine: three contact solvers, two integrators, and our law as a force.
 
 Measured with 1.51.1. The pin or disc is a body on a planar joint, with a sphere at each contact point, deep in a
 plate that turns at ω. Contact is compliant and heights are fixed, so stiffness times depth is the load N/n in any
 motion.
 
-- A step of the discrete solvers is semi-implicit, of order 1. In the model for integrators, friction grows smoothly
-  up to a slip of ε and is Coulomb's beyond, so slip is as accurate as the integrator.
+- A step of the discrete solvers is semi-implicit, of order 1. For integrators, friction grows smoothly up to a slip
+  of ε and is Coulomb's beyond.
 - ε is 1e-3·h or 1e-2·√tolerance, in m/s with rates in 1/s. SAP has its own, 5e-4·h·μN/m as measured in stick.
 - The convex solvers stop at a residual of 1e-6 of the total momentum. A heavy master would hide all friction, so
   theirs is light and driven by its motor's gain or, because cenic ignores that, by a torque through a stiff damper.

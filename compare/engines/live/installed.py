@@ -14,67 +14,47 @@ from compare.output.outside_text import one_of
 KINDS = ("pin", "points")
 
 
-class Installed(NamedTuple):
-    """An engine provided by a Python package, with its official name and the platforms that have wheels.
+EVERYWHERE = "Linux, macOS and Windows"
 
-    The first of the ``settings`` is the default.
+
+class Installed(NamedTuple):
+    """An engine with its official name, its settings, its Python package, and the platforms that have wheels.
+
+    The first setting is the default.
     """
 
     title: str
-    package: str
-    wheels: str
     settings: tuple[str, ...]
+    package: str
+    wheels: str = EVERYWHERE
 
 
 INSTALLED = {
-    "mujoco": Installed(
-        "MuJoCo",
-        "mujoco",
-        "Linux, macOS and Windows",
-        ("ellipse", "ellipse-rk4", "pyramid", "shipped", "our-force"),
-    ),
+    "mujoco": Installed("MuJoCo", ("ellipse", "ellipse-rk4", "pyramid", "shipped", "our-force"), "mujoco"),
     "bullet": Installed(
-        "Bullet",
-        "pybullet",
-        "Linux; elsewhere pip compiles it",
-        ("cone", "box", "shipped", "our-force"),
+        "Bullet", ("cone", "box", "shipped", "our-force"), "pybullet", "Linux; elsewhere pip compiles it"
     ),
     "drake": Installed(
         "Drake",
+        ("tamsi", "sap", "lagged", "cenic", "runge-kutta", "our-force"),
         "drake",
         "Linux, and macOS with newer Pythons; none for Windows",
-        ("tamsi", "sap", "lagged", "cenic", "runge-kutta", "our-force"),
     ),
     "dart": Installed(
         "DART",
+        ("nsgs", "fbf", "dantzig", "pgs", "shipped", "our-force"),
         "dartpy",
         "Linux, and from Python 3.12 on macOS and Windows",
-        ("nsgs", "fbf", "dantzig", "pgs", "shipped", "our-force"),
     ),
-    "chipmunk": Installed(
-        "Chipmunk",
-        "pymunk",
-        "Linux, macOS and Windows",
-        ("pivot", "shipped"),
-    ),
-    "box2d": Installed(
-        "Box2D",
-        "box2d",
-        "Linux, macOS and Windows",
-        ("friction-joint", "shipped"),
-    ),
+    "chipmunk": Installed("Chipmunk", ("pivot", "shipped"), "pymunk"),
+    "box2d": Installed("Box2D", ("friction-joint", "shipped"), "box2d"),
     "ode": Installed(
         "ODE",
+        ("along-slip", "shipped"),
         "Py3ODE",
         "no platform, but Debian and Ubuntu have the package python3-pyode",
-        ("along-slip", "shipped"),
     ),
-    "newton": Installed(
-        "Newton",
-        "newton",
-        "Linux, macOS and Windows",
-        ("xpbd", "semi-implicit"),
-    ),
+    "newton": Installed("Newton", ("xpbd", "semi-implicit"), "newton"),
 }
 """Engines by their names on the command line; the adapter's module is ``<name>_engine``."""
 
@@ -95,7 +75,7 @@ def installed_engine(name: str, setting: str) -> Engine:
         f"{name}:{setting}" if setting != known.settings[0] else name,
         ByName(module, function),
         kinds=KINDS,
-        nonlinear=not simulate.linear,
+        nonlinear=not simulate.model.linear,
         phases=False,
         precision=simulate.precision,
         step=simulate.step,

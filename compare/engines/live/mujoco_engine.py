@@ -1,20 +1,19 @@
 """MuJoCo as an engine: with its elliptic and pyramidal cones, and with our law as a user force.
 
 Written for MuJoCo 4.0. The pin or disc is on two sliding joints with springs and dampers; a disc also has a hinge.
-Below it are n feet, spheres on vertical joints, each pressed on the plate by its own weight N/n. The plate is a
-cylinder on a hinge that turns at ω and is heavy enough not to be slowed.
+The plate is a cylinder on a hinge, too heavy to be slowed.
 
-- Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero, with a compliance of
-  1e-4. It acts along v + a₀/b, with the acceleration a₀ without friction, so b ~ 1/h causes a first-order error. At b
-  = 2/h it acts along the slip at mid-step. Only the direct form of ``solref`` sets b.
+- Contact is soft: friction is the force within the cone that brings a + b·v nearest to zero. It acts along v + a₀/b,
+  with the acceleration a₀ without friction, so b ~ 1/h causes a first-order error. At b = 2/h it acts along the slip
+  at mid-step. Only the direct form of ``solref`` sets b.
 - As in every convex contact model, a sliding foot rises at μ times its slip. With a small μ, zero stiffness and a
   margin above the total rise, it neither leaves the plate nor changes its load.
 - The solver's tolerance is relative to the total inertia, so the heavy plate would satisfy it at once. It is 0, and
-  the number of iterations is limited; a pyramid with many points needs far more than an ellipse.
+  the number of iterations is limited.
 
 As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² times half the mass. A plate at rest is
-fixed. A turning plate is only a hundred times heavier than the body, because of the solver's tolerance, and its speed
-is set before each step.
+fixed. A turning plate is only a hundred times heavier than the body, for the solver's tolerance, and its speed is set
+before each step.
 
 A pyramid's friction acts along the nearest world axis. A sticking pin creeps in proportion to the step with the
 pyramid or Runge–Kutta steps, and to its square with the ellipse.

@@ -1,7 +1,7 @@
 """Newton as an engine: with its position-based and semi-implicit solvers, by Warp on the processor.
 
 Written for Newton 1.8.0, in single precision. A ball that cannot turn is pressed on the plate by its weight N, with μ
-= 1. The plate is a kinematic body that turns at ω. Springs, dampers and stop are a force set before each step.
+= 1. The plate is kinematic.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the p
 
 class _Model(Model):
     engine = "Newton"
+    linear = False
 
     def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:
         system = self.system
@@ -73,7 +74,6 @@ xpbd = Setting(
     "with its position-based solver and two iterations, its default, in single precision: steps of order 1.",
     _Model,
     {"solver": "XPBD"},
-    linear=False,
     finest=2e-3,
     precision=1e-6,
 )

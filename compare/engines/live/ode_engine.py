@@ -22,6 +22,7 @@ from reference_model.systems import FloatArray
 
 class _World(Model):
     engine = "ODE"
+    linear = False
 
     def build(self, state: FloatArray, tolerance: float, *, along_slip: bool) -> None:
         system, self.along_slip, self.turn = self.system, along_slip, 0.0
@@ -74,6 +75,5 @@ along_slip = Setting(
     "with friction along the slip alone, by fdir1 and a mu2 of 0, which is Coulomb's cone with steps of order 1.",
     _World,
     {"along_slip": True},
-    linear=False,
 )
-shipped = Setting("as shipped", "with its default box.", _World, {"along_slip": False}, linear=False)
+shipped = Setting("as shipped", "with its default box.", _World, {"along_slip": False})

@@ -27,13 +27,18 @@ from reference_model.trajectory import Phase, SimulationError, Solution, Traject
 class Model:
     """The bodies in an ``engine`` and their current state.
 
+    In engines with contact, n feet below the body are spheres on vertical joints, each pressed by its own weight N/n
+    on a plate that turns at ω, because several loads of one rigid body are indeterminate.
+
     ``arms`` are the contact points, ``half`` is the number of coordinates, ``method`` names integrator and contact,
-    and ``epsilon`` is the slip speed in m/s that regularises the friction law.
+    and ``epsilon`` is the slip speed in m/s that regularises the friction law. A ``linear`` model has springs without
+    hardening and stop.
     """
 
     engine = ""
     method = ""
     most_points = math.inf
+    linear = True
     epsilon = 0.0
 
     def __init__(self, system: System, state: FloatArray, tolerance: float, **options: Any) -> None:
@@ -61,9 +66,9 @@ class Model:
 class Setting:
     """One setting of an engine, callable as the ``simulate`` of any engine.
 
-    Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), so first-order errors halve between the
-    tolerances of an estimate, but at least ``finest`` / max(k, ω). A whole number of steps fills each interval of
-    ``times``. ``step`` is None for an integrator that controls its error.
+    Steps last ``step`` s, if given, else 0.1·tolerance^(1/3) / max(k, ω), which halves first-order errors between the
+    tolerances of an estimate, but at least ``finest`` / max(k, ω). ``step`` is None for an integrator with error
+    control.
     """
 
     name: str
@@ -71,7 +76,6 @@ class Setting:
     model: type[Model]
     options: Mapping[str, Any] = field(default_factory=dict)  # of the model
     finest: float = 0.0  # least step in units of 1/max(k, ω)
-    linear: bool = True  # springs only without hardening and stop
     step: float | None = 2e-3
     precision: float = 0.0
 
@@ -87,7 +91,7 @@ class Setting:
         """Return the motion."""
         state, grid = checked_state(system, initial_state), checked_times(times)
         tolerance, engine = checked_tolerance(tolerance), self.model.engine
-        if self.linear and not system.linear_support:
+        if self.model.linear and not system.linear_support:
             raise UnsupportedSystemError(f"{engine} does not simulate a nonlinear support")
         longest = step or max(0.1 * max(tolerance, 1e-12) ** (1.0 / 3.0), self.finest) / rate(system)
         states, steps = [state], 0
@@ -172,16 +176,15 @@ def our_friction(system: System, arms: list[complex], state: Sequence[float], ep
 
 # --- Common code of planar engines, with contact as a joint.
 #
-# A planar engine has no third axis for a normal load. For top-down scenes, these engines recommend a joint that
-# removes the relative velocity of two bodies up to a force limit, here μN/n at each contact point. The second body
-# at each point is kinematic and has the velocity of the master disc there. Springs, dampers and the shaft are
-# forces, set in each step. Steps are semi-implicit, of order 1.
+# A planar engine has no normal load. For top-down scenes, these engines recommend a joint that removes the relative
+# velocity of two bodies up to a force limit, here μN/n at each contact point. The second body there is kinematic and
+# has the velocity of the master disc. Steps are semi-implicit, of order 1.
 
 
 class TopDown(Model):
     """A body with a kinematic partner at each contact point; a ``shipped`` engine keeps its defaults."""
 
-    shipped = False
+    shipped, linear = False, False
 
     def state(self) -> tuple[float, ...]:
         """Return x, y, angle, vx, vy and spin."""

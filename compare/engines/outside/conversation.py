@@ -6,15 +6,13 @@ A program that does not answer in time, or answers nonsense, is ended, and the n
 from __future__ import annotations
 
 import atexit
-import math
 import multiprocessing
 import os
 import shutil
 import signal
 import subprocess
 import threading
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import IO
@@ -37,7 +35,6 @@ from reference_model.trajectory import Trajectory
 
 GREETING_LIMIT = 60.0  # time limit in s for the first line; includes compilation
 GREETING_BYTES = 100_000
-TICK = 0.1  # in s, for checks of the time limit
 FAREWELL = 1.0  # time in s for a program to end after its input is closed
 AT_ONCE = 1 << 18
 LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's standard error
@@ -61,8 +58,7 @@ def simulate(
 ) -> Trajectory:
     """Return the motion computed by the program ``command``, which is started in ``folder`` if necessary.
 
-    Raises ``UnsupportedSystemError`` if the program says so, ``OSError`` if it cannot be started, and
-    ``ProgramError`` for any other failure.
+    Raises ``UnsupportedSystemError``, ``OSError`` if the program cannot be started, and ``ProgramError``.
     """
     conversation = conversation_with(command, folder)
     line = conversation.ask(question(system, state, times, accuracy), most_bytes(system, times))
@@ -146,7 +142,6 @@ class Conversation:
         self._input, self._output, errors = (stream for stream in streams if stream is not None)
         self._guard = _guard_of(self._process.pid) if POSIX else None
         self._errors = _LastWords(errors)
-        self._watch = _Watch(self._kill)
         try:
             self.greeting = greeting(self._exchanged(b"", GREETING_BYTES, GREETING_LIMIT, "greeting"))
         except ValueError as error:
@@ -168,7 +163,6 @@ class Conversation:
         if self.over:
             return
         self.over = True
-        self._watch.close()
         with suppress(OSError):
             self._input.close()
         if patience > 0.0:
@@ -190,7 +184,15 @@ class Conversation:
 
     def _exchanged(self, line: bytes, most: int, limit: float, what: str) -> bytes:
         """Write ``line`` and return the next line; end the program unless it writes exactly one."""
-        self._watch.begin(limit)
+        late = threading.Event()
+
+        def expire() -> None:
+            late.set()
+            self._kill()
+
+        watch = threading.Timer(min(limit, threading.TIMEOUT_MAX), expire)
+        watch.daemon = True
+        watch.start()
         try:
             with suppress(BrokenPipeError):  # _read detects the end of the program
                 _write(self._input, line)
@@ -198,7 +200,10 @@ class Conversation:
         except BaseException:  # e.g. Ctrl-C; a late answer would count as the next one
             self.end()
             raise
-        in_time = self._watch.in_time()
+        finally:
+            watch.cancel()
+        watch.join()
+        in_time = not late.is_set()
         if answer.endswith(b"\n") and in_time and answer.count(b"\n") == 1:
             return answer
         if not in_time:
@@ -221,7 +226,7 @@ class Conversation:
 
 
 def _environment() -> dict[str, str]:
-    """Return this process's environment without the variable of ``compare.run.workers``."""
+    """Return this process's environment without a variable of workers."""
     environment = dict(os.environ)
     if multiprocessing.parent_process() is not None:
         environment.pop("PYTHONSAFEPATH", None)  # a Python program may import from its folder
@@ -257,39 +262,6 @@ def _read(stream: IO[bytes], most: int) -> bytes:
         if not part or b"\n" in part:
             break
     return b"".join(parts)
-
-
-class _Watch:
-    """Thread that calls ``expire`` at a time limit."""
-
-    def __init__(self, expire: Callable[[], None]) -> None:
-        self._expire = expire
-        self._deadline = math.inf
-        self._deciding = threading.Lock()
-        self._closed = threading.Event()
-        threading.Thread(target=self._run, daemon=True).start()
-
-    def begin(self, limit: float) -> None:
-        """Start a time limit of ``limit`` in s."""
-        self._deadline = time.monotonic() + limit
-
-    def in_time(self) -> bool:
-        """Clear the limit; return whether it has not passed."""
-        with self._deciding:
-            expired = self._deadline == -math.inf
-            self._deadline = math.inf
-        return not expired
-
-    def close(self) -> None:
-        """Stop the thread."""
-        self._closed.set()
-
-    def _run(self) -> None:
-        while not self._closed.wait(TICK):
-            with self._deciding:
-                if time.monotonic() > self._deadline > -math.inf:
-                    self._deadline = -math.inf
-                    self._expire()
 
 
 class _LastWords:

@@ -1,8 +1,7 @@
 """``fmu:FILE``: a model for co-simulation (FMI 2 or 3) as an engine, by FMPy.
 
-Parameters have the names of the systems' parameters, outputs those of the states: x, y, vx, vy, and for a disc angle
-and spin. ``x_start`` or else x sets the initial x; the other states likewise. Models with the
-outputs of ``stick_events`` report phases; for others, stick is found from states.
+``docs/judge-your-engine.md`` specifies the names. Models with the outputs of ``stick_events`` report phases; for
+others, stick is found from states.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """``files:DIR``: motions computed beforehand as an engine, in a folder created by ``plan``.
 
-``plan.json`` lists the motions. A file such as ``0f3a.json``, named by a hash, contains a question in the form of
-``json_lines``. The answer belongs in ``0f3a.csv``: one row per time with the time and the state, optionally below a
-header.
+``plan.json`` lists the motions. A file such as ``0f3a.json``, named by a hash, contains a question of ``json_lines``,
+and ``0f3a.csv`` its answer.
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +12,7 @@ from numpy.typing import ArrayLike
 from compare.claims import TRUTH, WORKING, ByEngine, Data, Figures, Measured, Study, refined
 from compare.claims.parameters import FIG4, FIG5, FIG8
 from compare.engines import Engine
+from compare.engines.units import in_units
 from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.fig11 import DISCS, integrated
@@ -32,23 +32,7 @@ class Scale:
 
     def system(self, system: System) -> System:
         """Return the scaled ``system``; dimensionless numbers do not change."""
-        length, time, mass = self.length, self.time, self.mass
-        changes: dict[str, Any] = {
-            "mass": mass * system.mass,
-            "stiffness": mass / time**2 * system.stiffness,
-            "damping": mass / time * system.damping,
-            "friction_force": mass * length / time**2 * system.friction_force,
-            "disc_speed": system.disc_speed / time,
-            "offset": length * system.offset,
-        }
-        if isinstance(system, DiscOnDisc):
-            changes |= {
-                "polar_inertia": mass * length**2 * system.polar_inertia,
-                "contact_radius": length * system.contact_radius,
-                "shaft_damping": mass * length**2 / time * system.shaft_damping,
-                "shaft_speed": system.shaft_speed / time,
-            }
-        return replace(system, **changes)
+        return in_units(system, self.mass, self.length, self.time)
 
     def states(self, states: ArrayLike) -> FloatArray:
         """Return scaled ``states`` of shape (..., 4) for a pin or (..., 6) for a disc; angles do not change."""

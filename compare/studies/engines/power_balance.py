@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -129,39 +130,27 @@ def motions_of_the_disc() -> dict[str, Motion]:
 
 STUDY = Study.beside(__file__, "power-balance", seconds=2.5, quick=True, contact=True)
 
-SENTENCE = "The work of the drive equals heat plus stored energy: {}"
-
-NOTE = (
-    "Largest residual at any time, relative to the energy turned over (heat, and the largest stored energy). "
-    "Numerical error: the change with the engine's tolerance, the change of the quadrature without every second "
-    "sample, and the rounding of the energies."
-)
-
 Motions = Callable[[], Mapping[str, Motion]]
 
 
-@STUDY.claim(
-    SENTENCE,
-    equation="(1)",
+_conserved = functools.partial(
+    STUDY.claim,
+    "The work of the drive equals heat plus stored energy: {}",
     kind="conservation",
     resolution=RESOLUTION,
-    note=NOTE,
+    note="Largest residual at any time, relative to the energy turned over (heat, and the largest stored energy). "
+    "Numerical error: the change with the engine's tolerance, the change of the quadrature without every second "
+    "sample, and the rounding of the energies.",
     basis="reference",
-    each=tuple(motions_of_the_pin()),
 )
+
+
+@_conserved(equation="(1)", each=tuple(motions_of_the_pin()))
 def pin(engine: Engine, name: str, motions: Motions = motions_of_the_pin) -> Measured | None:
     return _residual(engine, name, motions()[name])
 
 
-@STUDY.claim(
-    SENTENCE,
-    equation="(19)",
-    kind="conservation",
-    resolution=RESOLUTION,
-    note=NOTE,
-    basis="reference",
-    each=tuple(motions_of_the_disc()),
-)
+@_conserved(equation="(19)", each=tuple(motions_of_the_disc()))
 def disc(engine: Engine, name: str, motions: Motions = motions_of_the_disc) -> Measured | None:
     return _residual(engine, name, motions()[name])
 

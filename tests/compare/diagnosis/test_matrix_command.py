@@ -28,9 +28,9 @@ boxed.kinds, boxed.step = ("block",), 1e-2
         ("boxed", 1, "Not Coulomb friction: friction is a box"),
     ],
 )
-def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, monkeypatch, capsys, request):
-    if name == "simulate":
-        request.getfixturevalue("in_this_process")
+def test_the_friction_law_is_printed_and_written(
+    in_this_process, name, status, said, tmp_path, monkeypatch, capsys
+):
     (tmp_path / f"of_{name}.py").write_text(BLOCKS)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(tmp_path)
@@ -54,9 +54,11 @@ def test_the_friction_law_is_printed_and_written(name, status, said, tmp_path, m
         "cone" if name == "simulate" else "box with a separate limit for each axis"
     )
     assert row["wrong"] == bool(status)
+    assert (output / "friction.png").exists() == bool(status)
 
 
-def test_an_engine_that_simulates_nothing_has_its_own_status(in_this_process, tmp_path, monkeypatch, capsys):
+def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypatch, capsys):
+    """In worker processes, as the command usually runs."""
     (tmp_path / "refusing.py").write_text(
         "from compare.engines import UnsupportedSystemError\n"
         "def simulate(*arguments, **accuracy):\n    raise UnsupportedSystemError('nothing')\n"
@@ -69,6 +71,7 @@ def test_an_engine_that_simulates_nothing_has_its_own_status(in_this_process, tm
 def test_a_broken_adapter_is_seen_first_and_not_measured(in_this_process, tmp_path, monkeypatch, capsys):
     (tmp_path / "broken.py").write_text("def simulate(system, *arguments, **accuracy):\n    system.gravity\n")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
     assert cli.status(["matrix", "--engine", "broken:simulate", "--output", "found"]) == 3
     why = "no result for two blocks: AttributeError: 'PinOnDisc' object has no attribute 'gravity'"
     printed = capsys.readouterr().out

@@ -51,10 +51,7 @@ SOURCE = (
 )
 
 KNOWN = 4.0 * np.finfo(float).eps
-"""Accuracy of an exact motion relative to its largest number: rounding of a sine, a root and a product.
-
-A smaller true error is a coincidence of two roundings, so its ratio to an estimate means nothing.
-"""
+"""Accuracy of an exact motion relative to its largest number. A smaller true error is a coincidence of roundings."""
 
 EXACT = 100.0 * TRUTH
 """Tolerance of the reference, a thousandth of the smallest tolerance of a motion."""
@@ -179,7 +176,7 @@ def oscillator(random: Generator) -> Problem:
 
 
 def shaft(random: Generator) -> Problem:
-    """Draw a motion of a disc without friction, whose spin follows the shaft with a first-order lag."""
+    """Draw a disc without friction, whose spin follows the shaft with a lag."""
     disc = replace(any_disc(random, None), friction_force=0.0)
     place = vector(random, abs(disc.offset))
     velocity = vector(random, abs(disc.offset) * disc.natural_frequency)

@@ -1,7 +1,7 @@
 """Given motions, ranges of random motions, and integrals over panels of time.
 
-The paper's m, J and C are all one, so an engine may confuse them unnoticed. Here no two parameters are equal. A
-mistake may also need certain parameters, such as a slow disc, so random motions cover the whole range.
+The paper's m, J and C are all one, so an engine may confuse them. Here no two parameters are equal, and random
+motions cover the whole range.
 """
 
 from __future__ import annotations
@@ -159,9 +159,8 @@ def at_nodes(states: FloatArray) -> FloatArray:
 def gauss(rates: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the integrals of ``rates`` (panels, nodes, k) over each panel and their errors, both (panels, k).
 
-    The rule with n nodes misses the Legendre coefficients from 2n on. The error estimate assumes that they decay at
-    the mean rate between the middle and the last of the first n, times SAFETY, because they decay more slowly if a
-    point of the contact comes to rest.
+    The rule with n nodes misses the Legendre coefficients from 2n on. They are assumed to decay at the mean rate
+    between the middle and the last of the first n, times SAFETY for a point of the contact that comes to rest.
     """
     n = len(NODES)
     project = legvander(NODES, n - 1).T * WEIGHTS * (np.arange(n)[:, np.newaxis] + 0.5)

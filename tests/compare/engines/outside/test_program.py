@@ -263,17 +263,6 @@ def test_a_program_runs_until_the_last_request():
         os.waitpid(process, os.WNOHANG)
 
 
-def test_each_worker_starts_its_own_program():
-    engine = faulty("tells its process")
-    assert pickle.loads(pickle.dumps(engine)) == engine
-    with Workers(2) as workers:
-        workers.submit("key", asked_twice, engine)
-        (done,) = workers.finished()
-    assert isinstance(done.value, Failure)
-    assert "says: " in done.value.reason
-    assert int(done.value.reason.rpartition(": ")[2]) != process_of(engine)
-
-
 def _killed_while_it_waits(engine, file):
     asked(engine)
     process = conversation.conversation_with(engine.function.command, engine.function.folder)._process
@@ -283,12 +272,18 @@ def _killed_while_it_waits(engine, file):
 
 
 @posix
-def test_a_killed_worker_ends_its_program(tmp_path):
-    with Workers(2) as workers:
-        engine = faulty("hang with a child", limit=1000.0)
-        workers.submit("key", _killed_while_it_waits, engine, tmp_path / "process")
-        (done,) = workers.finished()
-    assert "SIGKILL" in done.value.reason
+def test_a_worker_starts_its_own_program_which_ends_with_a_killed_worker(tmp_path):
+    telling, hanging = faulty("tells its process"), faulty("hang with a child", limit=1000.0)
+    assert pickle.loads(pickle.dumps(telling)) == telling
+    with Workers(1) as workers:
+        workers.submit("own", asked_twice, telling)
+        (own,) = workers.finished()
+        workers.submit("killed", _killed_while_it_waits, hanging, tmp_path / "process")
+        (killed,) = workers.finished()
+    assert isinstance(own.value, Failure)
+    assert "says: " in own.value.reason
+    assert int(own.value.reason.rpartition(": ")[2]) != process_of(telling)
+    assert "SIGKILL" in killed.value.reason
     group = int((tmp_path / "process").read_text())
     wait_until(lambda: not _members(group))
 

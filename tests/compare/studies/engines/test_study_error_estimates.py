@@ -21,7 +21,7 @@ def of(motions):
 
 def test_error_bars_of_exudyns_built_in_contact_are_calibrated():
     engine = engine_named("exudyn-native")
-    found = STUDY.measure(engine, of(36))
+    found = STUDY.measure(engine, of(18))
     assert len(found.claims) == 2 * len(simulated(engine)) > 0
     assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}, [c.note for c in found.claims]
     assert found.not_simulated == "exudyn-native does not simulate a disc on a continuous ring"
