@@ -125,7 +125,6 @@ def test_contacts_of_a_model_that_was_reset_are_forgotten():
     mbs, *_ = braked(LOAD, True, regularisation=None)
     mbs.Reset()
     disc = rotor(mbs, 0.9, 20.0)
-    mbs.Assemble()
     assert solve_dynamic(mbs, settings_of(0.1, 100), SOLVERS.RK44) == []
     assert rate_of(mbs, disc) == 20.0
     assert largest_stable_step(mbs, SOLVERS.RK44) == np.inf

@@ -42,7 +42,6 @@ def test_what_is_created_is_what_is_added(add, create, options):
             getattr(mbs, create)(bodyNumbers=nodes, **in_style_of_exudyn(options))
         else:
             add(mbs, *nodes, **options)
-        mbs.Assemble()
         run_explicitly(mbs, 0.05, 10)
         ends.append(all_states(mbs))
     np.testing.assert_array_equal(ends[0], ends[1])
@@ -56,7 +55,6 @@ def test_a_ground_of_exudyn_is_a_master_that_rests():
         ground = mbs.CreateGround() if of_exudyn else None
         mbs.CreateRingFriction([ground, disc], **in_style_of_exudyn(POINTS))
         mbs.CreateRadialSupport([ground, exu.ObjectIndex(0)], stiffness=3.0, hardening=5.0)
-        mbs.Assemble()
         run_explicitly(mbs, 0.05, 10)
         ends.append(all_states(mbs))
     np.testing.assert_array_equal(ends[0], ends[1])

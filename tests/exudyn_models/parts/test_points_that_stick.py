@@ -57,7 +57,6 @@ def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     mbs, node, contact = body_on_feet(angle=angle, static_ratio=ratio, plates=plates)
     sensors = [contact.add_sensor(one) for one in ("transmitted_moment", "radial_force", "capacity_share")]
     push(mbs, node, load, lambda t: size * t)
-    mbs.Assemble()
     assert run(mbs, 1.0, updateInitialValues=True) == []
     held, pushed, share = (mbs.GetSensorValues(sensor) for sensor in sensors)
     assert [*pushed[:2], float(held)] == pytest.approx(-size * np.array(load), abs=1e-12)
@@ -175,10 +174,8 @@ def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_to
 def test_a_deleted_contact_lets_all_its_points_go():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
-    mbs.Assemble()
     assert run(mbs, 0.1) == []
     mbs.DeleteObject(contact.item, deleteDependentItems=False)
-    mbs.Assemble()
     run(mbs, 0.1)
     assert mbs.systemData.GetODE2Coordinates_t() == pytest.approx([0.1 / MASS, 0.0, 0.0])
 
