@@ -9,7 +9,7 @@ from pairs_of_bodies import DISC, MASTER, bodies_of
 from exudyn_models import add_radial_support, add_ring_friction
 
 FRICTION = {"friction_coefficient": [[0.0, 0.3], [1.0, 0.2]], "normal_load": lambda time: 2.0 + time}
-CONTACT = FRICTION | {"regularisation": 1e-3, "static_ratio": 1.2, "plates": 2}
+CONTACT = FRICTION | {"regularisation": 0.3, "static_ratio": 1.2, "plates": 2}
 POINTS = CONTACT | {"contact_radius": 0.12, "contact_points": 6}
 TURNED = {"master_rotation": np.diag([1.0, -1.0, -1.0]), "disc_rotation": np.diag([-1.0, -1.0, 1.0])}
 ANNULUS = CONTACT | {"inner_radius": 0.08, "outer_radius": 0.12, "pressure": "wear"}

@@ -71,11 +71,12 @@ def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
     assert {change.contact for change in changes} == {int(contact.item)}
 
 
-def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load():
-    motion = [0.4, 0.2, 6.0]
+@pytest.mark.parametrize("spin", [6.0, -1e-6])  # the second changes its sign
+def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load(spin):
     shown = []
     for epsilon in (None, 1e-9):
-        mbs, _, contact = body_on_feet(motion, regularisation=epsilon)
+        mbs, node, contact = body_on_feet([0.4, 0.2, spin], regularisation=epsilon)
+        push(mbs, node, [0.0, 0.0, 1.0], lambda t: 1.0)
         sensors = [contact.add_sensor(one) for one in SENSORS]
         contact.change(normal_load=20.0)
         run(mbs, 1e-6, 1)
