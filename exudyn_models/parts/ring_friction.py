@@ -6,8 +6,7 @@ pressure. Friction is Coulomb's above the slip speed ε and viscous below.
 
 *Bodies.* The nodes are ``KINDS``; Euler parameters need an implicit solver. A ``Node1D`` turns about the z-axis of
 its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a master at
-rest. ``computeMassMatrixInversePerBody`` must stay False, or Exudyn raises an error, because nodes are shared with
-their bodies.
+rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies.
 
 The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
@@ -23,8 +22,7 @@ through friction and presses nothing together.
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
 They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
-derivatives by all arguments except time, and none through sensors. If a function returns an invalid number, Exudyn
-raises an ``ExudynError`` with its time and arguments.
+derivatives by all arguments except time, and none through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
 ``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that

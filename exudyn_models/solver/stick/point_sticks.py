@@ -56,7 +56,7 @@ class PointsOnAxis(PlanarStick):
         return self._wrench_per_moment(math.atan2(sine, cosine))[None]
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
+        """Return force and moment as ``AxialStick.wrench`` does."""
         moment: float = super().wrench(mbs, t, slip, radius, angle)[2]
         return moment * self._wrench_per_moment(angle)
 
@@ -140,7 +140,7 @@ class PointSticks(AxialStick):
         return np.asarray(sum(part.jacobian(*arguments) for part in self.active))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc about its centre, in the master's axes, shape (3,)."""
+        """Return force and moment about the centre as ``AxialStick.wrench`` does."""
         if self.whole.on_axis:
             return self.whole.wrench(mbs, t, slip, radius, angle)
         maps = slip_maps(self.factors.geometry[-1], angle)

@@ -118,7 +118,7 @@ def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_d
     ("feet", "solver"), [(ring_places(0.05, 3), SOLVER), (FEET, SOLVER), (TWO_FEET, GENERALISED)]
 )
 def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_together(feet, solver):
-    """Their net force loads the joint, which loads them; all of them slide at the capacity."""
+    """Their net force loads the joint, whose reaction loads them."""
     weight, coefficient, inertia, spin, rate = 40.0, 0.4, 0.02, 3.0, 3.0
     arms, shares = np.array([complex(x, y) for x, y, _ in feet]), np.array([share for *_, share in feet])
     mbs = new_model()

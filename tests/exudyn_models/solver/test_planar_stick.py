@@ -240,7 +240,6 @@ def test_free_bodies_with_euler_parameters_stick_with_the_second_order():
 
 
 def switching_times(pin, start, step, until):
-    """Return the times of mode changes of the paper's pin."""
     mbs = new_model()
     master = rotor(mbs, 1e20, pin.disc_speed)
     body = planar_body(mbs, pin.mass, 1.0, [*start[:2], 0.0], [*start[2:], 0.0])
