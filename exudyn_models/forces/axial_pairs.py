@@ -187,7 +187,7 @@ class AxialStick:
         self.locks = tuple(locks)
 
     def renew(self) -> None:
-        """Use the present load and coefficient from now on, which this class asks the factors for each time."""
+        """Use the present load and coefficient, which this class asks for each time."""
 
     @property
     def visible_mode(self) -> Mode:

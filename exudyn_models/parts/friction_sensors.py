@@ -18,7 +18,7 @@ from exudyn_models.forces.slip_kinematics import Axes, slip_and_place_of_nodes
 from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
-from exudyn_models.solver.contacts import Contact, places_of, present_item
+from exudyn_models.solver.contacts import Contact, motion_of, places_of, present_item
 from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.stick.point_sticks import PointSticks
@@ -177,7 +177,8 @@ class RingFriction:
 
     def _new_power(self) -> Callable[[float], float]:
         """Return the power in W as a function of the time in s, for the model as it is assembled now."""
-        mbs, contact, (first, second, *_) = self.mbs, self._contact, (*self._places, None)
+        mbs, contact = self.mbs, self._contact
+        first, second, *_ = *places_of(mbs, contact, self.item), None
         get_coordinates, get_velocities = (
             mbs.systemData.GetODE2Coordinates,
             mbs.systemData.GetODE2Coordinates_t,
@@ -219,24 +220,11 @@ class RingFriction:
 
     def _slip(self, mbs: Any, configuration: Any) -> tuple[FloatArray, float, float, Axes]:
         """Return u_x, u_y (m/s), S (rad/s), the disc's angle and radius in the master's axes, and these axes."""
-        coordinates, velocities = self._motion(mbs, configuration)
-        to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(self._contact.kinds, coordinates)
-        return to_slip @ velocities, math.atan2(sine, cosine), math.hypot(x, y), axes
-
-    def _motion(self, mbs: Any, configuration: Any) -> tuple[FloatArray, FloatArray]:
-        data = mbs.systemData
-        q, q_t = (
-            np.concatenate(
-                [values[place] for place in self._places]
-            )  # half the cost of the nodes' own outputs
-            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
+        q, q_t = motion_of(mbs, self._contact, self.item, configuration)
+        to_slip, axes, (cosine, sine), (x, y) = slip_and_place_of_nodes(
+            self._contact.kinds, self._contact.reference + q
         )
-        return self._contact.reference + q, q_t
-
-    @property
-    def _places(self) -> list[slice]:
-        """Slices of the nodes' coordinates among those of the assembled model."""
-        return places_of(self.mbs, self._contact, self.item)
+        return to_slip @ q_t, math.atan2(sine, cosine), math.hypot(x, y), axes
 
     def _creep(self, t: float, slip: FloatArray, angle: float, radius: float) -> float | None:
         """Return P/ε, or None without friction."""

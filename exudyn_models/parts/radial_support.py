@@ -37,7 +37,7 @@ from exudyn_models.forces.slip_kinematics import (
 )
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
-from exudyn_models.solver.contacts import Connector, places_of, register_support
+from exudyn_models.solver.contacts import Connector, motion_of, places_of, register_support
 from exudyn_models.solver.items import IN_MEMORY, items
 from reference_model.systems import FloatArray, finite_number
 
@@ -99,11 +99,7 @@ class RadialSupport:
     def _state(
         self, mbs: Any, configuration: Any = exu.ConfigurationType.Current
     ) -> tuple[FloatArray, FloatArray, float, float]:
-        data, places = mbs.systemData, places_of(mbs, self._connector, self.item)
-        q, q_t = (
-            np.hstack([values[place] for place in places])
-            for values in (data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration))
-        )
+        q, q_t = motion_of(mbs, self._connector, self.item, configuration)
         hidden = np.zeros(len(self._reference) - len(q))
         coordinates, velocities = self._reference + np.hstack((hidden, q)), np.hstack((hidden, q_t))
         to_slip, axes, _, place = slip_and_place_of_nodes(self._kinds, coordinates)

@@ -4,11 +4,9 @@
 angle φ + 2πi/n, with equal shares of the normal load N), points anywhere with any shares, or an annulus under a
 pressure. Friction is Coulomb's above the slip speed ε and viscous below.
 
-*Bodies.* Either node is a ``Node1D``, a ``NodeRigidBody2D``, a ``NodeRigidBodyRotVecLG``, a ``NodeRigidBodyRxyz`` or,
-for implicit solvers, a ``NodeRigidBodyEP``, the default of Exudyn's ``CreateRigidBody``. A ``Node1D`` turns about the
-z-axis of its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a
-master at rest. ``computeMassMatrixInversePerBody`` must stay False, or Exudyn raises an error, because nodes are
-shared with their bodies.
+*Bodies.* The nodes are ``KINDS``; Euler parameters need an implicit solver. A ``Node1D`` turns about the z-axis of
+its ``ObjectRotationalMass1D``, which must be added first, or else about the global z-axis. The ground is a master at
+rest. ``computeMassMatrixInversePerBody`` must stay False, because nodes are shared with their bodies.
 
 The axis of the contact is the z-axis of the master's body, through its node, or that of the ground. A
 ``MarkerBodyRigid`` moves the contact on its body to the marker. Rotations turn it like ``rotationMarker0`` and
@@ -23,15 +21,13 @@ through friction and presses nothing together.
 - ``slip_speed`` in m/s, the mean slip speed P of the contact,
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
-They may read sensors of ``mbs``, as a controller does, but of this contact only the sensors of slip and heat. The
-Jacobian contains their derivatives by all arguments except time, and none through sensors. If a function returns an
-invalid number, Exudyn raises an ``ExudynError`` with its time and arguments. A static solver keeps the initial
-velocities, so it finds the equilibrium of a disc on a turning master.
+They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
+derivatives by all arguments except time, and none through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
-``solve_dynamic`` with an implicit solver. The contact does not creep, so steps can be as large as the motion allows.
-Switching times are as accurate as the steps. A contact on one axis that reverses twice within a step goes undetected.
-Each of several points sticks alone, and evaluates functions with its own slip speed.
+``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that
+reverses twice within a step goes undetected. Each of several points sticks alone, with its own slip speed, unless
+joints hold the disc on the contact's axis.
 """
 
 from __future__ import annotations

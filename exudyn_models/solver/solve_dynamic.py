@@ -2,17 +2,15 @@
 
 - *Load jumps.* A step across a load jump has an error of at least the jump times the part of the step before it. With
   ``breaks`` the run stops just before these times and continues just after. A ``RuntimeWarning`` reports jumps that
-  ``jumps`` finds in the powers of ``add_energy_balance`` and of heat sensors.
+  ``jumps`` finds.
 - *Explicit solvers.* Exudyn's ignore algebraic constraints, or lose their order when they eliminate them, and report
   success with a state that is not finite. A check after every step (about 1.5 μs) ends such a run.
-- *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the stability limit of sticking contacts
-  (``largest_stable_step``), with dampers at their initial values, and loads and coefficients at a hundred times.
-- *Implicit solvers.* The run starts with the actual rates of heat and work, which Exudyn would take as zero. Repeated
-  steps start from their complete first state (``repeated_steps``), so modified Newton renews its Jacobian instead of
-  restarting, whatever the settings. Steps that skip a peak of friction are repeated with a
-  smaller size; with fixed steps a ``RuntimeWarning`` reports the first one, see ``steep_laws``.
-- *Exact stick.* Contacts without a regularisation lock and release at the times of Coulomb's law, see
-  ``stick.switching``. Sensors have an additional row at each of these times.
+- *Fixed explicit steps.* A ``RuntimeWarning`` reports steps beyond the ``step_limit`` of sticking contacts.
+- *Implicit solvers.* The run starts with the actual rates of heat and work (``starting_rates``). Repeated steps start
+  from their complete first state (``repeated_steps``). Steps that skip a peak of friction are repeated or reported
+  (``steep_laws``).
+- *Exact stick.* Contacts without a regularisation lock and release at the times of Coulomb's law
+  (``stick.switching``). Sensors have an additional row at each of these times.
 """
 
 from __future__ import annotations

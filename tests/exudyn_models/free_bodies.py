@@ -52,6 +52,8 @@ def settings_of(end: float, steps: int, start: float = 0.0, newton: float | None
 
 
 def run_explicitly(mbs: Any, end: float, steps: int = 6000) -> None:
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
     settings = settings_of(end, steps)
     settings.timeIntegration.solverType = exu.DynamicSolverType.RK67
     assert exu.MainSolverExplicit().SolveSystem(mbs, settings)

@@ -103,7 +103,7 @@ class PlanarStick(AxialStick):
         return np.asarray(self._to_basis)
 
     def gradient(self, q: Any) -> list[float]:
-        """Return the gradient of the slip on one axis, at coordinates without reference values."""
+        """Return the gradient of the slip on one axis."""
         row: list[float] = self.rows(self.reference + q)[0].tolist()
         return row
 

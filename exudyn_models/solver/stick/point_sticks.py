@@ -41,7 +41,7 @@ class PointsOnAxis(PlanarStick):
 
     @cached_property
     def _force_per_moment(self) -> complex:
-        """F, in 1/m in the disc's axes."""
+        """The force per moment f in 1/m, in the disc's axes."""
         x, y, shares = places_in(self.factors.geometry[-1]).T
         arms = x + 1j * y
         return complex(shares @ (1j * arms / np.where(arms == 0.0, 1.0, abs(arms)))) / self.mean_radius
@@ -56,7 +56,7 @@ class PointsOnAxis(PlanarStick):
         return self._wrench_per_moment(math.atan2(sine, cosine))[None]
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc, in the master's axes, shape (3,)."""
+        """Return force and moment as ``AxialStick.wrench`` does."""
         moment: float = super().wrench(mbs, t, slip, radius, angle)[2]
         return moment * self._wrench_per_moment(angle)
 
@@ -131,26 +131,16 @@ class PointSticks(AxialStick):
         sliding = modes & {Mode.FORWARD, Mode.BACKWARD}
         return next(iter(sliding or modes - {Mode.OPEN} or modes))
 
-    def force(self, mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Any:
+    def force(self, *arguments: Any) -> Any:
         """Return the sum of the generalised forces, as the user function of the connector."""
-        return np.sum([part.force(mbs, t, item, q, q_t) for part in self.active], axis=0).tolist()
+        return np.sum([part.force(*arguments) for part in self.active], axis=0).tolist()
 
-    def jacobian(
-        self,
-        mbs: Any,
-        t: float,
-        item: int,
-        q: Sequence[float],
-        q_t: Sequence[float],
-        position_factor: float,
-        velocity_factor: float,
-    ) -> FloatArray:
+    def jacobian(self, *arguments: Any) -> FloatArray:
         """Return the sum of the derivatives of minus the forces, as the user function of the connector."""
-        arguments = mbs, t, item, q, q_t, position_factor, velocity_factor
         return np.asarray(sum(part.jacobian(*arguments) for part in self.active))
 
     def wrench(self, mbs: Any, t: float, slip: FloatArray, radius: float, angle: float) -> FloatArray:
-        """Return force (N) and moment (N m) on the disc about its centre, in the master's axes, shape (3,)."""
+        """Return force and moment about the centre as ``AxialStick.wrench`` does."""
         if self.whole.on_axis:
             return self.whole.wrench(mbs, t, slip, radius, angle)
         maps = slip_maps(self.factors.geometry[-1], angle)

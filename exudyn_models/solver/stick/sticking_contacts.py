@@ -254,11 +254,7 @@ class PlanarContact(StickingContact):
         return motion
 
     def margin(self, mbs: Any, t: float) -> float:
-        """Return a number that falls below zero when the present mode ends.
-
-        It is the unused share of the capacity, or ±1 without load or coefficient. ``sliding_steps`` finds the end of
-        sliding.
-        """
+        """Return the unused share of the capacity, or ±1 if open; ``sliding_steps`` finds the end of sliding."""
         holding = self.holding(t)
         if self.opens_or_closes(holding):
             return -1.0

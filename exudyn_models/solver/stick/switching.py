@@ -183,7 +183,7 @@ class _Run:
         if (longest := self._slides.longest) < self._step:
             end, steps = min(end, start + longest), 1
         self._sensors.is_due(start)  # the part begins with a row
-        margins, passed = self._margins_at(start), None
+        margins, passed = self._modes.margins(start), None
         self._slides.pauses = self._slides.rests = False
 
         def look(t: float) -> bool:
@@ -191,7 +191,7 @@ class _Run:
             if t == start:
                 self._accelerations = data.GetODE2Coordinates_tt()
                 return True
-            now = self._margins_at(t)
+            now = self._modes.margins(t)
             if min(now) < 0.0:
                 passed = t, (np.array(margins), np.array(now))
             if passed is not None or not self._slides.resolves(t - self._reached):
@@ -223,16 +223,13 @@ class _Run:
 
         self._part(self._reached + self._step, 1, end, write=False, keep=False, settles=True)
 
-    def _margins_at(self, t: float) -> list[float]:
-        return self._modes.margins(t)
-
     def _try(self, t: float) -> FloatArray:
         found = np.empty(0)
 
         def look(time: float) -> bool:
             nonlocal found
             if time > self._reached:
-                found = np.array(self._margins_at(time))
+                found = np.array(self._modes.margins(time))
                 return False
             return True
 

@@ -79,11 +79,10 @@ def test_any_other_law_keeps_its_user_function(contact):
 
 
 def test_the_load_may_become_a_function_and_a_number_again():
-    mbs, disc, contact = braked(LOAD, True)
-    mbs.Assemble()
-    settings = settings_of(0.1, 100)
-    rate = 0.3 * LOAD * 0.12 / 0.9  # rad/s²
-    speed = 20.0
+    mbs, _, contact = braked(LOAD, False, speed := 200.0)
+    spin = contact.add_sensor("relative_spin")
+    settings = settings_of(0.1, 400)
+    rate = 0.3 * LOAD * 0.12 * (1.0 / 0.3 + 1.0 / 0.9)  # rad/s²
     for part, (load, expected) in enumerate(
         (
             (LOAD, lambda speed: speed - 0.1 * rate),
@@ -96,7 +95,7 @@ def test_the_load_may_become_a_function_and_a_number_again():
         settings.timeIntegration.startTime, settings.timeIntegration.endTime = 0.1 * part, 0.1 * (part + 1)
         solve_dynamic(mbs, settings, SOLVERS.RK44, updateInitialValues=True)
         speed = expected(speed)
-        assert rate_of(mbs, disc) == pytest.approx(speed, rel=1e-11), part
+        assert mbs.GetSensorValues(spin) == pytest.approx(speed, rel=1e-11), part
 
 
 def test_an_invalid_load_after_a_change_is_reported_with_its_time():
@@ -125,7 +124,6 @@ def test_contacts_of_a_model_that_was_reset_are_forgotten():
     mbs, *_ = braked(LOAD, True, regularisation=None)
     mbs.Reset()
     disc = rotor(mbs, 0.9, 20.0)
-    mbs.Assemble()
     assert solve_dynamic(mbs, settings_of(0.1, 100), SOLVERS.RK44) == []
     assert rate_of(mbs, disc) == 20.0
     assert largest_stable_step(mbs, SOLVERS.RK44) == np.inf

@@ -39,7 +39,6 @@ def driven_oscillator(unit=1.0, **left_out):
         "stored": [spring_energy(spring)],
     }
     read = add_energy_balance(mbs, **parts | left_out, unit=unit)
-    mbs.Assemble()
     run_explicitly(mbs, UNTIL, 400)
     return read()
 
@@ -96,7 +95,6 @@ def test_kinetic_energy_of_every_kind_of_body_is_counted_and_friction_takes_it(k
     frictions = [add_ring_friction(mbs, shaft, disc, **law) for disc in discs]
     losses = {f"friction {i}": friction.power for i, friction in enumerate(frictions)}
     read = add_energy_balance(mbs, gains={}, losses=losses)
-    mbs.Assemble()
     run_explicitly(mbs, 0.4, 400)
     balance = read()
     kinetic = (0.5 * 3.0**2 + 1.0 * 0.05 + 0.08 * 2.0**2 + 1.5 * (0.3**2 + 0.4**2) + 0.03 * 5.0**2) / 2.0

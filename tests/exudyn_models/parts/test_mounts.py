@@ -88,7 +88,6 @@ def motion(kinds, turned, own):
         rotation.append(axes.T)
     add_ring_friction(mbs, *bodies, **WITH_RADIUS, master_rotation=rotation[0], disc_rotation=rotation[1])
     if "Tait-Bryan" in kinds:  # the trapezoidal rule would err differently in every orientation
-        mbs.Assemble()
         run_explicitly(mbs, 0.05, 40)
     else:
         solve_dynamic(mbs, settings_of(0.05, 5, newton=1e-12), IMPLICIT)
@@ -226,7 +225,6 @@ def test_a_rod_in_a_bearing_at_its_end_stops_at_the_exact_time(kind, regularisat
     mbs.AddObject(items.GenericJoint(markerNumbers=markers, constrainedAxes=held))
     bearing = add_ring_friction(mbs, *markers, **PIVOT, regularisation=regularisation)
     spin = bearing.add_sensor("relative_spin")
-    mbs.Assemble()
     stops = 3.0 * (0.1 + 2.0 * 0.4**2)  # s at 1 N m
     changes = solve_dynamic(mbs, settings_of(1.5, 300, newton=1e-10), IMPLICIT)
     assert abs(mbs.GetSensorValues(spin)) < 1e-6
@@ -293,7 +291,6 @@ def test_a_support_on_a_base_of_any_axis_holds_a_disc_as_on_the_global_one(kind,
         sensors = [
             support.add_sensor(quantity) for quantity in ("deflection", "stored_energy", "power", "force")
         ]
-        mbs.Assemble()
         run_explicitly(mbs, 0.3, 60)
         *values, force = (mbs.GetSensorValues(sensor) for sensor in sensors)
         end = mbs.GetObjectOutputBody(disc, OUT.Position) - shift

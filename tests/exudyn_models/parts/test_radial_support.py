@@ -79,7 +79,6 @@ def test_bodies_in_the_plane_move_as_planar_ones(kinds, law):
     ends = []
     for pair in (kinds, (kinds[0] and "planar", "planar")):
         mbs, nodes, _ = supported(pair, (flat_base, flat_disc), **SUPPORT | law)
-        mbs.Assemble()
         run_explicitly(mbs, 0.4, 200)
         ends.append(np.hstack([in_plane(mbs, node) for node in nodes if node is not None]))
     np.testing.assert_allclose(ends[0], ends[1], rtol=0.0, atol=1e-13)
@@ -118,7 +117,6 @@ def test_a_disc_on_an_eccentric_shaft_runs_out_and_centres_itself_above_its_crit
     shaft = rotor(mbs, 1e30, speed)
     disc = planar_body(mbs, 1.0, 0.5, [r, 0.0, 0.0], [0.0, speed * r, 0.0])
     add_radial_support(mbs, shaft, disc, stiffness=stiffness, damping=0.2, offset=(e, 0.0))
-    mbs.Assemble()
     run_explicitly(mbs, end, 2000)
     turn = r * np.exp(1j * speed * end)
     np.testing.assert_allclose(in_plane(mbs, disc)[:2], [turn.real, turn.imag], atol=1e-12)
@@ -133,7 +131,6 @@ def test_a_mass_swings_through_the_hardening_spring_as_the_elliptic_function():
     place = amplitude * direction
     disc = planar_body(mbs, mass, 1.0, [place.real, place.imag, 0.0], [0.0, 0.0, 0.0])
     add_radial_support(mbs, None, disc, stiffness=stiffness, hardening=hardening)
-    mbs.Assemble()
     run_explicitly(mbs, end, 2000)
     expected = amplitude * ellipj(rate * end, parameter)[1] * direction
     np.testing.assert_allclose(in_plane(mbs, disc)[:2], [expected.real, expected.imag], atol=1e-10)

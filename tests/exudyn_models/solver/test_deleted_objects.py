@@ -15,7 +15,6 @@ def wheel(mbs, planar):
 
 
 def run(mbs):
-    mbs.Assemble()
     return solve_dynamic(mbs, settings_of(0.1, 100), exu.DynamicSolverType.TrapezoidalIndex2)
 
 

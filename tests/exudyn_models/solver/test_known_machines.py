@@ -251,7 +251,6 @@ def test_a_gear_shift_of_modelica_is_exact(solver):
     brake = add_ring_friction(
         mbs, None, ring, normal_load=lambda time: 100.0 * (1.0 - clutch_share(time)), **law
     )
-    mbs.Assemble()
     changes = changes_of(mbs, 5.0, 1e-3, solver, breaks=[0.5, 2.0, 2.1])
     slips, sticks, speed = exact_gear_shift()
     clutch, brake = int(clutch.item), int(brake.item)
@@ -280,7 +279,6 @@ def test_a_brake_of_modelica_is_exact(sliding_mass):
         friction_coefficient=1.0,
         normal_load=lambda time: 1.0 if time >= 0.1 else 0.0,
     )
-    mbs.Assemble()
     assert [(time, *modes) for time, _, *modes in changes_of(mbs, 2.0, 1e-3)] == [
         (pytest.approx(0.1, abs=1e-9), 2, 1),
         (pytest.approx(1.1, abs=1e-9), 1, 0),
@@ -296,7 +294,6 @@ def test_rounding_errors_of_the_load_do_not_close_a_contact(planar):
     loads = [(0.1, 1.0), (0.2, 0.0), (0.3, 1e-14), (0.4, 1e-3)]  # ends in s, N
     load = lambda time: next(size for end, size in loads if time < end)  # noqa: E731
     add_ring_friction(mbs, None, node, normal_load=load, **law)
-    mbs.Assemble()
     changes = changes_of(mbs, 0.399, 1e-3)
     assert [(pytest.approx(time, abs=1e-9), *modes) for time, _, *modes in changes] == [
         (0.1, 1, 2),
@@ -327,7 +324,6 @@ def test_a_one_way_clutch_overruns_and_engages_at_the_exact_times(solver):
         drive(mbs, driver, lambda t: 8.0 * math.sin(5.0 * t))
         drive(mbs, driven, -1.0)
         moment, mode = clutch.add_sensor("transmitted_moment"), clutch.add_sensor("mode")
-        mbs.Assemble()
         changes = solve_dynamic(mbs, settings_of(1.6, round(1.6 / step)), solver)
         assert [(int(change.before), int(change.after)) for change in changes] == [(0, 1), (1, 0)]
         errors.append(max(abs(changes[0].time - released), abs(changes[1].time - engaged)))
@@ -342,7 +338,6 @@ def test_a_one_way_clutch_without_a_load_rests():
     """Rounding errors of the moment do not release it."""
     mbs = new_model()
     driver, driven, _ = one_way_clutch(mbs, 3.0)
-    mbs.Assemble()
     assert solve_dynamic(mbs, settings_of(10.0, 1000), TRAPEZOIDAL) == []
     assert rate_of(mbs, driver) == rate_of(mbs, driven) == 3.0
 
@@ -361,7 +356,6 @@ def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solv
 
     add_ring_friction(mbs, None, shafts[0], contact_radius=1.0, friction_coefficient=1.0, normal_load=loss)
     speed = node_sensor(mbs, shafts[0], exu.OutputVariableType.Coordinates_t)
-    mbs.Assemble()
     solve_dynamic(mbs, settings_of(2.0, 200), solver, breaks=[1.0])
     times, speeds = mbs.GetSensorStoredData(speed).T
     far = 0.5 / ratio**2  # inertia of the second shaft at the first

@@ -210,7 +210,6 @@ def test_sensors_and_the_solution_file_show_the_kink_and_keep_their_times(tmp_pa
     settings = settings_of(0.1, 100)
     settings.solution.sensors.writePeriod = settings.solution.file.writePeriod = 0.02
     settings.solution.file.write, settings.solution.file.name = True, str(tmp_path / "solution")
-    mbs.Assemble()
     solve_dynamic(mbs, settings, SOLVERS.TrapezoidalIndex2)
     times = mbs.GetSensorStoredData(sensors["mode"])[:, 0]
     stops = 2.0 * INERTIA / (2.0 * SLIDING)
