@@ -183,6 +183,7 @@ PUSHES = Tested(
     STUDY["pushes"],
     few={"final_poses": {"every": 50}} | few({"every": 10}, "sums", "on_limit_surface"),
     sound=("exudyn",),
+    drawn=False,  # the limit surface takes long; a separate test draws the rest
     gross={"a hand without friction": Patched(wrong.hand_with_friction(0.0))},
     small={"the hand's friction 2 % too small": Patched(wrong.hand_with_friction(0.49))},
 )

@@ -19,7 +19,8 @@ def draw(data: ByEngine) -> Figures:
     )
     for heading in HEADINGS:
         along = direction(heading)
-        plane.plot(*_line(STOPPING_DISTANCE * along), color=BLACK, linewidth=0.6)
+        path = STOPPING_DISTANCE * along * np.array([0.0, 1.0])
+        plane.plot(path.real, path.imag, color=BLACK, linewidth=0.6)
         boxed = STOPPING_DISTANCE * np.array([along.real, along.imag]) ** 2  # each axis stops independently
         plane.plot(*boxed, color=GREY, marker="+", linestyle="none", label="" if heading else "box")
     swings.axhspan(-1.0, 1.0, color="#eeeeee", zorder=0.5)
@@ -58,7 +59,3 @@ def draw(data: ByEngine) -> Figures:
     for panel in (plane, swings, velocity):
         panel.legend(loc="upper right")
     return {"block": figure}
-
-
-def _line(end: complex) -> tuple[tuple[float, float], tuple[float, float]]:
-    return (0.0, end.real), (0.0, end.imag)

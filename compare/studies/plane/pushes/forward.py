@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -33,37 +32,22 @@ EDGES = ((0.0j, 1j), (0.0j, 1.0 + 0.0j), (LEGS + 0.0j, -(1.0 + 1.0j) / math.sqrt
 """A point on each edge in mm, and the normal into the triangle."""
 
 
-@dataclass(frozen=True)
-class Path:
-    """Path of the hand (m) relative to the centre of mass, in the body's first pose.
+def path_of(push: Push) -> tuple[complex, complex, complex, complex]:
+    """Return start and end of the hand, a point (m) on the edge that faces it, and the normal into the body.
 
-    ``edge`` is a point on the edge that the hand pushes, and ``normal`` points into the body.
+    They are relative to the centre of mass, in the body's first pose.
     """
-
-    start: complex
-    end: complex
-    edge: complex
-    normal: complex
-
-    @classmethod
-    def of(cls, push: Push) -> Path:
-        """Return the path of a push against the edge that faces the hand."""
-        start = complex(push.start_x, push.start_y)
-        half = cmath.exp(0.5j * push.turn)
-        end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
-        point, normal = min(EDGES, key=lambda edge: ((start - edge[0]) * edge[1].conjugate()).real)
-        return cls((start - CENTRE) * MM, (end - CENTRE) * MM, (point - CENTRE) * MM, normal)
-
-    def gap(self, hand: complex, position: complex, angle: float) -> float:
-        """Return the distance (m) from the hand to the edge of the moved body."""
-        turn = cmath.exp(1j * angle)
-        return ((position + turn * self.edge - hand) * (turn * self.normal).conjugate()).real
+    start = complex(push.start_x, push.start_y)
+    half = cmath.exp(0.5j * push.turn)
+    end = half * complex(push.x, push.y) + half**2 * complex(push.end_x, push.end_y)
+    edge, normal = min(EDGES, key=lambda edge: ((start - edge[0]) * edge[1].conjugate()).real)
+    return (start - CENTRE) * MM, (end - CENTRE) * MM, (edge - CENTRE) * MM, normal
 
 
 def quasi_static(push: Push, steps: int = 5, hand: float = HAND) -> tuple[complex, float]:
     """Return displacement (m) and turn (rad) about the centre of mass for a hand with the coefficient ``hand``."""
-    path = Path.of(push)
-    return Pushing(contact_of(push.series), path.edge, path.normal, hand).pose(path.start, path.end, steps)
+    start, end, edge, normal = path_of(push)
+    return Pushing(contact_of(push.series), edge, normal, hand).pose(start, end, steps)
 
 
 def measured_motion(push: Push) -> tuple[complex, float]:
@@ -90,8 +74,8 @@ def by_exudyn(push: Push, epsilon: float) -> tuple[complex, float]:
     from exudyn_models.solver.solver_run import quiet
 
     items: Any = exudyn.itemInterface  # its type hints do not fit its calls
-    path, contact = Path.of(push), contact_of(push.series)
-    way = path.end - path.start
+    start, end, edge, inwards = path_of(push)
+    way = end - start
     duration = abs(way) / SPEED
     mbs = exu.SystemContainer().AddSystem()
     node = mbs.AddNode(items.NodeRigidBody2D())
@@ -100,19 +84,18 @@ def by_exudyn(push: Push, epsilon: float) -> tuple[complex, float]:
         mbs,
         None,
         node,
-        contact_points=list(contact),
+        contact_points=list(contact_of(push.series)),
         friction_coefficient=1.0,
         normal_load=SLIDING_FORCES[surface(push.series)],
         regularisation=epsilon,
     )
 
     def pressed(mbs: Any, t: float, item: int, q: Any, q_t: Any) -> list[float]:
-        at = path.start + min(1.0, t / duration) * way
-        position, angle = complex(q[0], q[1]), q[2]
-        depth = -path.gap(at, position, angle)
+        turn, arm = cmath.exp(1j * q[2]), start + min(1.0, t / duration) * way - complex(q[0], q[1])
+        normal = turn * inwards
+        depth = ((arm - turn * edge) * normal.conjugate()).real
         if depth <= 0.0:
             return [0.0, 0.0, 0.0]
-        normal, arm = cmath.exp(1j * angle) * path.normal, at - position
         velocity = way / duration - complex(q_t[0], q_t[1]) - 1j * q_t[2] * arm
         along = (velocity * (1j * normal).conjugate()).real
         force = STIFFNESS * depth * normal * (1.0 + 1j * HAND * max(-1.0, min(1.0, along / epsilon)))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from compare.claims import ByEngine, Figures
-from compare.output.figures import BLACK, GREY, Axes, Figure, axis, new_figure
+from compare.claims import ByEngine, Data, Figures
+from compare.output.figures import BLACK, GREY, Axes, Figure, axis, curve, new_figure
 from compare.output.limit_surface import draw_limit_surface
 from compare.studies.plane.pushes.theory import (
     LEGS,
@@ -25,7 +25,7 @@ SHOWN = ("10_130_10_10_10_130", "patch")
 
 
 def draw(data: ByEngine) -> Figures:
-    return {"pushes-forces": _forces(), "pushes-errors": _errors()}
+    return {"pushes-forces": _forces(), "pushes-errors": _errors(data.get("exudyn", {}))}
 
 
 def _forces() -> Figure:
@@ -53,20 +53,18 @@ LENGTH = 6.0
 
 def _limit_surface(panel: Axes, series: str) -> None:
     load = SLIDING_FORCES[surface(series)]
-    directions = np.linspace(0.0, 2.0 * np.pi, 12, endpoint=False).tolist()
+    directions = np.radians(range(150, 301, 30)).tolist()  # θ and 270° − θ have the same curve
     draw_limit_surface(panel, contact_of(series), directions, color="tab:orange", linewidth=0.5)
     for wrench in map(measured, by_series()[series]):
         panel.plot(abs(wrench.force) / load, wrench.moment / load, ".", color=BLACK)
     panel.set(xlim=(0.0, None), title="Limit surface of the feet on the left")
 
 
-def _errors() -> Figure:
-    figure, panels = new_figure(ncols=2, width=9.6, height=3.8)
+def _errors(positions: Data) -> Figure:
+    figure, panels = new_figure(ncols=3 if positions else 2, width=13.2 if positions else 9.6, height=3.8)
     for series, pushes in by_series().items():
         dashes = "--" if surface(series) == "wood" else "-"
-        sizes = np.sort(errors(pushes, force_error))
-        shares = (np.arange(len(sizes)) + 1.0) / len(sizes)
-        panels[0].step(sizes, shares, where="post", label=_title(series), linestyle=dashes)
+        panels[0].ecdf(errors(pushes, force_error), label=_title(series), linestyle=dashes)
         theory, found = ([abs(law(push).force) for push in pushes] for law in (coulomb, measured))
         panels[1].plot(theory, found, "x" if dashes == "--" else ".", markersize=4, label=_title(series))
     panels[0].set(
@@ -75,6 +73,10 @@ def _errors() -> Figure:
     panels[1].plot([0.0, 5.0], [0.0, 5.0], color=GREY, linewidth=0.9)
     panels[1].set(xlabel="predicted force in N", ylabel="measured force in N")
     panels[0].legend(loc="lower right", fontsize="x-small")
+    for engine, distances in positions.items():
+        panels[2].ecdf(distances, **curve(engine))
+        panels[2].set(xlabel="error of the final position in mm", ylabel="share of the pushes")
+        panels[2].legend(loc="lower right")
     return figure
 
 

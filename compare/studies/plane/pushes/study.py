@@ -117,6 +117,15 @@ def _components(motions: Sequence[tuple[complex, float]]) -> FloatArray:
     return np.array([(position.real, position.imag, theory.PUSHER * angle) for position, angle in motions])
 
 
+def from_measured(poses: FloatArray, every: int) -> FloatArray:
+    """Return the distances (mm) of simulated from measured final positions."""
+    return apart(poses, _components([forward.measured_motion(push) for push in chosen(every)]))
+
+
+def apart(poses: FloatArray, others: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm((poses - others)[:, :2], axis=1) / theory.MM)
+
+
 @STUDY.claim(
     "A body that is pushed along the measured path ends where the motion of least friction power ends",
     kind="trajectory",
@@ -132,12 +141,14 @@ def final_poses(engine: Engine, every: int = EVERY) -> Measured:
         for epsilon in (EPSILON, 2.0 * EPSILON)
     )
     deformed = 2.0 * max(theory.SLIDING_FORCES.values()) / forward.STIFFNESS
+    value = 2.0 * fine - coarse  # the error is of first order
     return Measured(
         predicted=predicted,
-        value=2.0 * fine - coarse,  # the error is of first order
+        value=value,
         error=np.abs(fine - coarse) + np.abs(predicted - quasi_static(every=every)) + deformed,
         at={"push": [f"{push.series} {push.number}" for push in chosen(every)]},
         components=("x in m", "y in m", "turn times 50 mm in m"),
+        data={"reference": from_measured(predicted, every), "exudyn": from_measured(value, every)},
     )
 
 
@@ -185,18 +196,14 @@ def _of(series: Sequence[str], of: theory.Difference, sentence: str, **names: st
 
 def _of_final_positions(every: int) -> Validation:
     predicted = quasi_static(every=every)
-
-    def apart(other: FloatArray) -> FloatArray:
-        return np.asarray(np.linalg.norm((predicted - other)[:, :2], axis=1) / theory.MM)
-
     slippery, rough = (quasi_static(hand=forward.HAND + change, every=every) for change in (-0.1, 0.1))
     poses = [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
     return _validation(
-        apart(_components([forward.measured_motion(push) for push in chosen(every)])),
+        from_measured(predicted, every),
         Uncertainties(
             data=np.array(poses),
-            input=0.5 * apart(predicted + rough - slippery),
-            numerical=apart(quasi_static(10, every=every)),
+            input=0.5 * apart(rough, slippery),
+            numerical=apart(predicted, quasi_static(10, every=every)),
         ),
         "Coulomb's law predicts the final position of the pushed body with a median error of {} mm.",
         quantity="final position",

@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 from studies_under_test import DIFFERS, theory_of
 
-from compare.studies.plane.pushes import forward, theory
+from compare.studies.plane.pushes import forward, pictures, theory
 from compare.studies.plane.pushes.reduction import reduced_pushes
 from compare.studies.plane.pushes.study import GROUPS, STUDY, chosen, validations
 
@@ -125,3 +125,11 @@ def test_a_push_through_the_centre_of_mass_only_moves_the_body():
     position, angle = forward.by_exudyn(push, 1e-5)
     assert position == pytest.approx(0.01j - 4.2j / forward.STIFFNESS, abs=1e-6)
     assert angle == pytest.approx(0.0, abs=1e-4)
+
+
+def test_a_figure_shows_final_positions_if_they_were_simulated(monkeypatch):
+    monkeypatch.setattr(pictures, "_forces", lambda: None)
+    without = pictures.draw({})["pushes-errors"]
+    shown = pictures.draw({"exudyn": {"reference": [1.0, 2.0], "exudyn": [1.0, 3.0]}})["pushes-errors"]
+    assert len(without.axes) == 2
+    assert shown.axes[2].get_legend_handles_labels()[1] == ["reference", "exudyn"]
