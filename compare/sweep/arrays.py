@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -136,13 +136,14 @@ class Group:
         array = self.array(name)
         pieces = range(0, array.shape[0], array.chunks[0])
         return array.nchunks_initialized == array.nchunks and all(
-            self.can_read(name, slice(first, first + array.chunks[0])) for first in pieces
+            self.can_read([name], slice(first, first + array.chunks[0])) for first in pieces
         )
 
-    def can_read(self, name: str, where: slice) -> bool:
-        """Return whether a part of an array is intact."""
+    def can_read(self, names: Iterable[str], where: slice) -> bool:
+        """Return whether a part of these arrays is intact."""
         try:
-            self.array(name)[where]
+            for name in names:
+                self.array(name)[where]
         except MemoryError:
             raise
         except Exception:  # a damaged file may raise anything
@@ -199,33 +200,19 @@ def digest_of(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
 
 
-# --- Trajectories of a round in the store
-#
-# Two workers that write the same chunk write the same bits.
+class Round:
+    """The trajectories ``numbers`` of a round, in chunks of at most ``size``; ``done`` marks the readable chunks.
 
+    Two workers that write the same chunk write the same bits.
+    """
 
-@dataclass(frozen=True)
-class Chunks:
-    """The chunks of a round of ``count`` trajectories, at most ``size`` in each."""
-
-    group: Group
-    count: int
-    size: int
-
-    def __len__(self) -> int:
-        return -(-self.count // self.size)
+    def __init__(self, group: Group, numbers: Numbers, size: int) -> None:
+        self.group, self.numbers, self.size = group, numbers, size
+        self.done: NDArray[np.bool_] = np.zeros(-(-len(numbers) // size), dtype=bool)
 
     def where(self, chunk: int) -> slice:
         """Return the indices of a chunk's trajectories in the round."""
-        return slice(chunk * self.size, min((chunk + 1) * self.size, self.count))
-
-    def read(self, name: str, where: int | slice) -> NDArray[Any]:
-        """Return a result of trajectories."""
-        return np.asarray(self.group.array(name)[where])
-
-    def write(self, chunk: int, results: Mapping[str, NDArray[Any]]) -> None:
-        """Write the results of a chunk."""
-        self.group.write(results, {"trajectory": self.where(chunk)})
+        return slice(chunk * self.size, min((chunk + 1) * self.size, len(self.numbers)))
 
     def there(self) -> list[int]:
         """Return the chunks with all files."""
@@ -233,27 +220,6 @@ class Chunks:
         keys = {name: "{}/0" if name == "states" else "{}" for name in RESULTS}
         return [
             chunk
-            for chunk in range(len(self))
+            for chunk in range(len(self.done))
             if all(f"{self.group.name}/{name}/c/{key.format(chunk)}" in files for name, key in keys.items())
         ]
-
-    def is_whole(self, chunk: int) -> bool:
-        """Return whether all results of a chunk are readable."""
-        return all(self.group.can_read(name, self.where(chunk)) for name in RESULTS)
-
-
-class Round:
-    """The trajectories ``numbers`` of a round; ``done`` marks its readable chunks."""
-
-    def __init__(self, chunks: Chunks, numbers: Numbers) -> None:
-        self.chunks, self.numbers = chunks, numbers
-        self.done: NDArray[np.bool_] = np.zeros(len(chunks), dtype=bool)
-
-    def numbers_of(self, chunk: int) -> Numbers:
-        """Return the numbers of a chunk's trajectories."""
-        return self.numbers[self.chunks.where(chunk)]
-
-    @property
-    def ends(self) -> Any:
-        """Ends of the trajectories, read on demand."""
-        return self.chunks.group.array("end")

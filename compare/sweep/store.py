@@ -25,7 +25,6 @@ from compare.run.provenance import version_of
 from compare.sweep.arrays import (
     CHECKSUM,
     DESCRIPTION,
-    Chunks,
     Group,
     Large,
     Round,
@@ -129,14 +128,14 @@ class SweepStore:
             return found
         group = self.begin(ROUND.format(i), self._template(len(numbers)))
         self.end(group, xr.Dataset(coords={"component": list(components(self.plan.system))}))
-        return Round(Chunks(group, len(numbers), self.chunk), numbers)
+        return Round(group, numbers, self.chunk)
 
     def look(self, i: int, numbers: Numbers) -> Round | None:
         """Return round ``i`` of the trajectories ``numbers``, or None without an intact one."""
         group = self._group(ROUND.format(i))
         if not self._is_intact(group, f"the description of {group.name}", ["component"]):
             return None
-        return Round(Chunks(group, len(numbers), self.chunk), numbers)
+        return Round(group, numbers, self.chunk)
 
     def note_damaged(self, i: int, chunks: list[int], count: int) -> None:
         """Add damaged ``chunks`` of round ``i`` to ``broken``."""

@@ -2,8 +2,8 @@
 
 - ``simulate``: :func:`simulate_ensemble`; ``end_states``: its results;
 - ``core``: lanes of trajectories in vector registers, forces, explicit and implicit steps;
-- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``, ``stability``), and ``kernel``
-  with ``driver``, which combine them;
+- ``pin``, ``disc``: rest and release (``slip``), end states (``events``, ``trapping``), and ``kernel`` with
+  ``driver``, which combine them;
 - ``single_run`` with ``recording``: ``reference_model.simulate(..., compiled=True)``.
 """
 

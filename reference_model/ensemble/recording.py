@@ -1,7 +1,7 @@
 """The motion of a single trajectory at any times, from the checkpoints of a compiled run.
 
-A requested state is the end of a short trajectory from the checkpoint before it, with the same step, so the motion
-does not depend on the requested times.
+A short trajectory from the last checkpoint, with the same step, gives a requested state, so the motion does not
+depend on the requested times.
 """
 
 from __future__ import annotations
@@ -11,13 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference_model.ensemble.core.checkpoints import (
-    NONE,
-    ON_THE_WAY,
-    SLIPS,
-    Checkpoints,
-    empty_checkpoints,
-)
+from reference_model.ensemble.core.checkpoints import NONE, ON_THE_WAY, SLIPS, Checkpoints, empty_checkpoints
 from reference_model.ensemble.end_states import HANDED_OVER, Results
 from reference_model.ensemble.task import Task
 from reference_model.motion.stepper import Kind
@@ -38,10 +32,10 @@ STAGES = 12
 
 @dataclass
 class Recording:
-    """A motion from t = 0 on that is being recorded at ``times`` >= 0 in s, shape (n,).
+    """A motion from t = 0 on, recorded at ``times`` >= 0 in s, shape (n,).
 
     ``states``, shape (n, 4) or (n, 6), is filled as far as computed. ``phases`` are (kind, start, state). ``steps``
-    and ``evaluations`` include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
+    include rejected steps and stick phases. ``duration`` and ``rounding`` are in s.
     """
 
     times: FloatArray

@@ -11,13 +11,13 @@ import numpy as np
 from reference_model.systems import FloatArray, System
 
 CHUNK = 512
-"""Number of trajectories that a thread takes at a time, so that lanes are rarely empty and threads end together."""
+"""Number of trajectories that a thread takes at a time: lanes are rarely empty, and threads end together."""
 
 LENGTH, RATE, STEP, SHORT, SPAN = range(5)
-"""Indices into the pace of a trajectory, numbers that let a continuation take the original's steps.
+"""Indices into the pace of a trajectory. A continuation with this pace takes the original's steps.
 
-They are the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and the
-length of an implicit step.
+It contains the unit of length in m, the inverse unit of time in 1/s, the step, the number of recent short steps, and
+the length of an implicit step.
 """
 
 PACE_SIZE = SPAN + 1

@@ -40,42 +40,26 @@ def rows(text: str) -> int:
     return number
 
 
+def _start_option(more: str = "") -> Any:
+    text = f"Components of the initial state in SI units; the others keep their defaults in simulate.{more}"
+    return typer.Option("--start", metavar="NAME=VALUE,...", help=text, show_default=False)
+
+
+def _axis_option(name: str, which: str) -> Any:
+    text = f"{which} axis, in SI units."
+    return typer.Option(name, metavar="NAME=LOW:HIGH:POINTS", help=text, show_default=False)
+
+
 SystemName = Annotated[
     str,
     typer.Argument(
         metavar="pin|disc", help="System to simulate.", parser=chosen_from("system", list(STARTS))
     ),
 ]
-Start = Annotated[
-    str,
-    typer.Option(
-        metavar="NAME=VALUE,...",
-        help="Components of the initial state in SI units; the others keep their defaults in simulate.",
-        show_default=False,
-    ),
-]
-Starts = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--start",
-        metavar="NAME=VALUE,...",
-        help="Components of the initial state in SI units; the others keep their defaults in simulate. "
-        "Repeat for more initial states.",
-        show_default=False,
-    ),
-]
-XAxis = Annotated[
-    str,
-    typer.Option(
-        "--x", metavar="NAME=LOW:HIGH:POINTS", help="Horizontal axis, in SI units.", show_default=False
-    ),
-]
-YAxis = Annotated[
-    str,
-    typer.Option(
-        "--y", metavar="NAME=LOW:HIGH:POINTS", help="Vertical axis, in SI units.", show_default=False
-    ),
-]
+Start = Annotated[str, _start_option()]
+Starts = Annotated[list[str] | None, _start_option(" Repeat for more initial states.")]
+XAxis = Annotated[str, _axis_option("--x", "Horizontal")]
+YAxis = Annotated[str, _axis_option("--y", "Vertical")]
 Coarse = Annotated[
     int | None,
     typer.Option(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from compare.claims import shares
 from compare.claims.shares import Share
-from compare.sweep.arrays import Chunks, Group, Large, Round
+from compare.sweep.arrays import Group, Large, Round
 from compare.sweep.compute.motions import Motion, matched, motions_of
 from compare.sweep.compute.sensitivity import GROUPS, Moments, indices, moments
 from compare.sweep.compute.theory import curves, theory_branches
@@ -49,7 +49,7 @@ class Block(NamedTuple):
 class Part(NamedTuple):
     """Trajectories of a block from one round: their indices in both."""
 
-    chunks: Chunks
+    group: Group
     where: slice
     places: slice | NDArray[np.int64]
 
@@ -131,12 +131,12 @@ def parts_of(block: Block, rounds: Sequence[Round]) -> list[Part]:
     for one in rounds:
         if isinstance(one.numbers, range):
             where = slice(block.first, block.last)
-            parts.append(Part(one.chunks, where, slice(None)))
+            parts.append(Part(one.group, where, slice(None)))
         else:
             start, stop = np.searchsorted(one.numbers, (block.first, block.last)).tolist()
             if start < stop:
                 where = slice(start, stop)
-                parts.append(Part(one.chunks, where, one.numbers[where] - block.first))
+                parts.append(Part(one.group, where, one.numbers[where] - block.first))
     return parts
 
 
@@ -177,7 +177,7 @@ def label(
 
 def _found(name: str, block: Block, parts: Sequence[Part]) -> NDArray[Any]:
     """Return a result of a block, shape (n, ...); NaN or 0 where none was simulated."""
-    found = [(part.places, part.chunks.read(name, part.where)) for part in parts]
+    found = [(part.places, part.group.array(name)[part.where]) for part in parts]
     more = found[0][1].shape[1:] if found else ()
     dtype = np.dtype(RESULTS[name].dtype)
     values = np.full((block.last - block.first, *more), np.nan if dtype.kind == "f" else 0, dtype)

@@ -9,7 +9,7 @@ from contextlib import suppress
 import numpy as np
 import xarray as xr
 
-from compare.sweep.arrays import Chunks, Round
+from compare.sweep.arrays import Group, Round
 from compare.sweep.compute.executors import Executor, InProcess, Task
 from compare.sweep.compute.results import (
     Labelled,
@@ -23,7 +23,7 @@ from compare.sweep.compute.results import (
 )
 from compare.sweep.compute.work import Plain, recompute, simulate_chunk
 from compare.sweep.plan import Continuation, Map, Plan
-from compare.sweep.quantities import components
+from compare.sweep.quantities import RESULTS, components
 from compare.sweep.refinement import Grid
 from compare.sweep.store import SweepStore, flags
 
@@ -65,7 +65,7 @@ def finished(store: SweepStore) -> bool:
             _check_chunks(store, i, found, InProcess())
             if not np.all(found.done):
                 return False
-            ends = found.ends
+            ends = found.group.array("end")
     return not missing
 
 
@@ -82,30 +82,34 @@ def simulated(store: SweepStore, executor: Executor, progress: Progress) -> tupl
         rounds.append(store.round(len(rounds), numbers))
         _check_chunks(store, len(rounds) - 1, rounds[-1], executor)
         _simulate(store, rounds, executor, progress)
-        ends = rounds[-1].ends
+        ends = rounds[-1].group.array("end")
 
 
 def _check_chunks(store: SweepStore, i: int, found: Round, executor: Executor) -> None:
-    tasks = (Task(chunk, Chunks.is_whole, (found.chunks, chunk), True) for chunk in found.chunks.there())
+    tasks = (
+        Task(chunk, Group.can_read, (found.group, list(RESULTS), found.where(chunk)), True)
+        for chunk in found.there()
+    )
     broken = []
     for chunk, whole in executor.run(tasks):
         found.done[chunk] = whole
         if not whole:
             broken.append(chunk)
-    store.note_damaged(i, sorted(broken), len(found.chunks))
+    store.note_damaged(i, sorted(broken), len(found.done))
 
 
 def _simulate(store: SweepStore, rounds: Sequence[Round], executor: Executor, progress: Progress) -> None:
     current = rounds[-1]
     what = f"round {len(rounds)}" if len(rounds) > 1 else "trajectories"
     total = len(current.numbers)
-    finished = sum(len(current.numbers_of(int(chunk))) for chunk in np.flatnonzero(current.done))
+    finished = sum(len(current.numbers[current.where(int(chunk))]) for chunk in np.flatnonzero(current.done))
     progress(what, finished, total)
 
     def tasks() -> Iterator[Task]:
         for chunk in np.flatnonzero(~current.done).tolist():
-            numbers = current.numbers_of(chunk)
-            arguments = (current.chunks, chunk, store.plan, numbers, executor.threads, store.stamp)
+            where = current.where(chunk)
+            numbers = current.numbers[where]
+            arguments = (current.group, where, store.plan, numbers, executor.threads, store.stamp)
             yield Task(chunk, simulate_chunk, arguments, True)
 
     for chunk, count in executor.run(tasks()):
@@ -145,7 +149,8 @@ def _checked(
     where = [(rounds[i], int(place)) for i, place in zip(of_round, places, strict=True)]
     numbers = [int(one.numbers[place]) for one, place in where]
     time, end, states = (
-        [one.chunks.read(name, place) for one, place in where] for name in ("time", "end", "states")
+        [np.asarray(one.group.array(name)[place]) for one, place in where]
+        for name in ("time", "end", "states")
     )
     tasks = [
         Task(i, recompute, (store.plan, numbers[i], float(time[i]), int(end[i])), False) for i in range(count)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from compare.run.provenance import stamp
-from compare.sweep.arrays import Chunks
+from compare.sweep.arrays import Group
 from compare.sweep.plan import Numbers, Plan
 from compare.sweep.quantities import RESULTS
 from reference_model import simulate
@@ -35,15 +35,15 @@ class Plain:
 
 
 def simulate_chunk(
-    chunks: Chunks, chunk: int, plan: Plan, numbers: Numbers, threads: int | None, made_by: str
+    group: Group, where: slice, plan: Plan, numbers: Numbers, threads: int | None, made_by: str
 ) -> int:
-    """Simulate the trajectories of a chunk, write their results and return their number.
+    """Simulate the trajectories of a chunk, write their results to ``where`` and return their number.
 
     Raises :class:`OtherCodeError`, before anything is written, if the code does not match the stamp ``made_by``.
     """
     if stamp() != made_by:
         raise OtherCodeError("a worker uses a different version of the code or libraries")
-    chunks.write(chunk, compute(plan, numbers, threads))
+    group.write(compute(plan, numbers, threads), {"trajectory": where})
     return len(numbers)
 
 

@@ -1,6 +1,6 @@
-"""Checkpoints of a trajectory; :mod:`reference_model.ensemble.recording` computes the motion from them.
+"""Checkpoints of a trajectory: where slip begins or ends, and before requested times.
 
-A kernel takes one where slip begins or ends, and at the start of each step that contains a requested time.
+:mod:`reference_model.ensemble.recording` computes the motion from them.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ They also store the increasing ``requested`` times.
 
 
 def empty_checkpoints(n: int, state_size: int, requested: FloatArray | tuple[()] = ()) -> Checkpoints:
-    """Return ``n`` unused checkpoints with up to n ``requested`` times in s."""
+    """Return ``n`` unused checkpoints with the ``requested`` times in s."""
     room = np.zeros(n, dtype=_layout(state_size))
     room["requested"] = np.inf
     room["requested"][: len(requested)] = requested

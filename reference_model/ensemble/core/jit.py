@@ -38,13 +38,16 @@ def inlined(function: Function) -> Function:
 def scalar(function: Function) -> Function:
     """Compile ``function`` to be called, not inlined, because it is large or has several callers.
 
-    Each direct or indirect caller compiles it again, so few functions in a chain of calls should be scalar.
+    LLVM optimises it again in each direct or indirect caller, so few functions in a chain of calls should be scalar.
     """
     return cast(Function, extending.register_jitable(**PART)(function))
 
 
 def written_out(function: Function) -> Function:
-    """Insert ``function`` into its only caller before compilation, with the functions passed to it."""
+    """Insert ``function`` into its only caller before compilation, with the functions passed to it.
+
+    numba copies all variables for each block, so the time grows with the square of the size of ``function``.
+    """
     return cast(Function, numba.njit(error_model="numpy", inline="always")(function))
 
 

@@ -1,8 +1,8 @@
 """Many trajectories at once in lanes that are refilled as trajectories finish.
 
-Each number has its own row (:mod:`records`), so a loop over the lanes becomes vector instructions if it calls only
-inlined functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events
-(rest, release, the end) it raises a flag, which scalar code handles. Results are the same bit by bit in every lane.
+Each number has its own row (:mod:`records`), so a loop over the lanes is vectorised if it calls only inlined
+functions of numbers and tuples. In a round every lane makes one trial step of its own size. At rare events it raises
+a flag, which scalar code handles. Results are the same bit by bit in every lane.
 """
 
 from __future__ import annotations
@@ -18,6 +18,16 @@ from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, wri
 from reference_model.ensemble.core.records import LANES
 from reference_model.ensemble.end_states import HANDED_OVER, UNDECIDED, Results
 from reference_model.systems import FloatArray
+
+REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
+"""Flags, which add up: slip is about to end; the due time has come; x or the radius had an extreme; the step size or
+the number of steps is out of bounds; an implicit step may be worthwhile.
+"""
+
+MANY = 40.0
+"""Number of successive short steps that indicates stiffness."""
+
+SMALLEST_STEP = 1e-13
 
 
 class _Lanes(Protocol):
@@ -36,13 +46,13 @@ Kind = TypeVar("Kind")
 
 
 Load = Callable[[Lanes, Memory, int, int, Task, Settings], bool]
-"""Writes the start of a trajectory, given by its number, to a lane's trial; returns whether it has ended."""
+"""Writes the start of a trajectory to a lane's trial; returns whether it has ended."""
 Advance = Callable[[Lanes, Kind], None]
 """Makes a trial step in all lanes, or in the first one only."""
 HandleFlag = Callable[[Lanes, Memory, int, Settings], bool]
-"""Handles the event that a lane's flag reports; may change the trial; returns whether the trajectory has ended."""
+"""Handles a lane's flag, may change the trial, and returns whether the trajectory has ended."""
 Store = Callable[[Lanes, Memory, int, Results], None]
-"""Writes the result of a trajectory from the trial of its lane."""
+"""Writes the result of a trajectory."""
 Idle = Callable[[Lanes, int], None]
 """Fills a lane with harmless numbers."""
 

@@ -13,6 +13,12 @@ from reference_model.motion.stick import GRAZING, ROUNDING
 ROUNDING_OF_SLIP = 4.0 * 2.220446049250313e-16
 """Largest relative slip that counts as rounding, so that the body sticks."""
 
+STRETCHING_TIME = 0.5
+"""Scaled ratio s₀/g. A larger one shortens steps, a smaller one makes rest and release stiffer."""
+
+SPENT_SHARE = 0.1
+"""Share of the tolerance for the slip that remains when creep counts as over."""
+
 CREEP = 0.1
 """Largest excess of the pull in creep, as a fraction of the pull's change in a turn or of g."""
 
@@ -57,7 +63,7 @@ class DiscLaw(NamedTuple):
 Law = PinLaw | DiscLaw
 
 Friction = Callable[[float, float, float, float, DiscLaw], tuple[float, float, float, float]]
-"""Takes the slip u_x, u_y, r and the angle; returns friction and mean slip speed, as :func:`ring_friction`."""
+"""Takes the slip u_x, u_y, r and the angle; returns as :func:`ring_friction`."""
 
 
 @scalar

@@ -1,7 +1,7 @@
 """Records: the data of a lane, by name.
 
-All fields have constant offsets from one address, so the compiler can vectorise loops over lanes. An array of rows or
-a tuple of arrays would take four times as long.
+All fields have constant offsets from one address, so loops over lanes can be vectorised. An array of rows or a tuple
+of arrays would take four times as long.
 """
 
 from __future__ import annotations

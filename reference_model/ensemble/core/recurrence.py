@@ -21,7 +21,7 @@ NO_WINDOW = 0
 
 
 class Series(Record):
-    """The last values of a kind, the last two distances between values, and their number."""
+    """The last values, the last two distances between values, and their number."""
 
     values: Annotated[FloatArray, 5]
     last: float

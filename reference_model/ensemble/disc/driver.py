@@ -1,7 +1,4 @@
-"""Ensembles of discs and single discs.
-
-Compiled code does not follow contact points that come to rest. The plain reference continues until all points slip.
-"""
+"""Ensembles of discs and single discs; the plain reference follows contact points that rest until all slip."""
 
 from __future__ import annotations
 
@@ -16,7 +13,7 @@ from numpy.typing import NDArray
 from reference_model.ensemble.core.checkpoints import Checkpoints, empty_checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.disc.kernel import PARAMETERS, run_points, run_rings
-from reference_model.ensemble.disc.memory import DiscSettings
+from reference_model.ensemble.disc.lanes import DiscSettings
 from reference_model.ensemble.disc.trapping import no_regions, trapping_regions
 from reference_model.ensemble.end_states import HANDED_OVER, STUCK, UNDECIDED, Results
 from reference_model.ensemble.recording import ROUNDED, Recording

@@ -20,10 +20,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from reference_model.ensemble.core.checkpoints import next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import DiscLaw
-from reference_model.ensemble.core.records import fill
+from reference_model.ensemble.core.records import fill, put
 from reference_model.ensemble.core.recurrence import (
     ACCURACY,
     NO_WINDOW,
@@ -40,30 +43,35 @@ from reference_model.ensemble.core.stepping.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
+from reference_model.ensemble.core.stepping.implicit import (
+    WORTH,
+    Collocation,
+    failed,
+    first_try,
+    patience,
+    stride_with,
+)
 from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.disc.lanes import (
     AT_END,
     BOTH,
-    EXTREME,
-    IS_DUE,
-    LOST,
+    NEAR_REST,
+    OF_PEAK,
+    OF_TURN,
     RADII,
-    REST,
-    RIGHTMOST,
-    STIFF,
     UNWATCHED,
     DiscLanes,
+    DiscMemory,
+    DiscSettings,
+    DiscState,
+    Edge,
+    Rates,
+    flags_of,
     last_step,
     law_of,
     rates_at,
-    state_at,
-)
-from reference_model.ensemble.disc.memory import (
-    OF_PEAK,
-    OF_TURN,
-    DiscMemory,
-    DiscSettings,
     record_requested,
+    state_at,
 )
 from reference_model.ensemble.end_states import MODULATED, SELF_CENTRED, UNDECIDED, WHIRL
 
@@ -177,7 +185,6 @@ def record_turn(
     lanes: DiscLanes, memory: DiscMemory, lane: int, kind: int, u: float, radius: float, law: DiscLaw,
     settings: DiscSettings,
 ) -> bool:  # fmt: skip
-    """Record a crossing that repeats the previous one."""
     t0, t1 = lanes.now.state.time[lane], lanes.trial.state.time[lane]
     way0, way1 = lanes.now.state.way[lane], lanes.trial.state.way[lane]
     t, way = t0 + u * (t1 - t0), way0 + u * (way1 - way0)
@@ -249,3 +256,51 @@ def in_region(memory: DiscMemory, z: complex, v: complex, r: float, settings: Di
             )
             return True
     return False
+
+
+# --- Implicit steps in place of many short ones
+
+
+@written_out
+def disc_stride_with(
+    lanes: DiscLanes,
+    memory: DiscMemory,
+    lane: int,
+    law: DiscLaw,
+    rates: Rates,
+    edge: Edge,
+    collocate: Collocation,
+) -> None:
+    now, trial = lanes.now, lanes.trial
+    state, k = state_at(now, lane), rates_at(now, lane)
+    short = now.step[lane] * k.time
+    left = lanes.duration[lane] - state.time
+    least = min(WORTH * short, left)
+    span = first_try(memory.span, least, left)
+    start = np.array((state.ux, state.uy, state.r))
+    z, ux, uy, r, angle, took, way, following = stride_with(
+        complex(state.x, state.y),
+        state.angle,
+        start,
+        start,
+        span,
+        least,
+        lanes.tolerance[lane],
+        law,
+        collocate,
+    )
+    new = DiscState(z.real, z.imag, ux, uy, r, angle, state.time + took, state.way + way)
+    k1 = DiscState(*rates(new[:6], law))
+    if took == 0.0 or edge(state[:6], k, law)[0] * edge(new[:6], k1, law)[0] < 0.0:
+        memory.span = failed(memory.span)
+        lanes.short[lane] = -patience(memory.span)
+    else:
+        memory.span = following
+        put(trial.state, lane, new)
+        put(trial.rates, lane, k1)
+        trial.step[lane] = now.step[lane]
+        lanes.usual[lane] = 0.0
+        due = new.time >= min(lanes.due[lane], lanes.duration[lane] - AT_END)
+        lanes.flag[lane] = flags_of(
+            state, k, new, k1, NEAR_REST * law.friction, due, False, lanes.watch[lane]
+        )

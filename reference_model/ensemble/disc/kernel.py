@@ -10,36 +10,28 @@ import numpy as np
 from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
 from reference_model.ensemble.core.lanes import row_of, run, store_end
-from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, DiscLaw, units
+from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, DiscLaw, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
 from reference_model.ensemble.core.stepping.implicit import Collocation, collocate_points, collocate_ring
 from reference_model.ensemble.core.stepping.runge_kutta import Tuple
-from reference_model.ensemble.disc.events import Attracts, Slow, handle_flag_with
+from reference_model.ensemble.disc.events import Attracts, Slow, disc_stride_with, handle_flag_with
 from reference_model.ensemble.disc.lanes import (
     RADII,
     TURNS,
     DiscLanes,
+    DiscMemory,
+    DiscSettings,
     Edge,
     Rates,
     advance_with,
     idle,
     put_slipping,
-)
-from reference_model.ensemble.disc.memory import (
-    DiscMemory,
-    DiscSettings,
     put_state,
     take_checkpoint,
 )
-from reference_model.ensemble.disc.rest import (
-    points_rest,
-    points_slow,
-    ring_rests,
-    ring_slow,
-)
+from reference_model.ensemble.disc.rest import points_rest, points_slow, ring_rests, ring_slow
 from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.disc.stability import attracts
-from reference_model.ensemble.disc.stride import disc_stride_with
 from reference_model.ensemble.end_states import Results
 from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
 from reference_model.systems import FloatArray
@@ -50,9 +42,6 @@ PARAMETERS = (
     "mass", "polar_inertia", "stiffness", "damping", "friction_force", "disc_speed", "offset", "contact_radius",
     "shaft_damping", "shaft_speed",
 )  # fmt: skip
-
-STRETCHING_TIME = 0.5
-"""Scaled ratio s₀/g."""
 
 WATCHED_STEP = 1e-3
 """Step below which points of a disc may be about to rest."""

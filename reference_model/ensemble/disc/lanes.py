@@ -4,16 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Annotated, Any, NamedTuple
 
+from numpy.typing import NDArray
+
+from reference_model.ensemble.core.checkpoints import ON_THE_WAY, Checkpoints, mark_requested
 from reference_model.ensemble.core.contact_shares import LEAST
 from reference_model.ensemble.core.jit import inlined, scalar, wide_vectors, written_out
+from reference_model.ensemble.core.lanes import (
+    EXTREME,
+    IS_DUE,
+    LOST,
+    MANY,
+    REST,
+    RIGHTMOST,
+    SMALLEST_STEP,
+    STIFF,
+)
 from reference_model.ensemble.core.laws import DiscLaw
 from reference_model.ensemble.core.records import Record, Row, Rows, at, put
+from reference_model.ensemble.core.recurrence import Measures, Series, Window
 from reference_model.ensemble.core.stepping.dense_output import DenseOutput, Motion, dense_output
 from reference_model.ensemble.core.stepping.runge_kutta import TURNED_BACK, Tuple, factor_of, moved, step
-from reference_model.ensemble.disc.breakaway import grown
-from reference_model.ensemble.disc.slip import direction
+from reference_model.ensemble.disc.slip import direction, grown
+from reference_model.systems import FloatArray
 
 
 class DiscState(NamedTuple):
@@ -65,14 +79,10 @@ Edge = Callable[[Tuple, Tuple, DiscLaw], tuple[float, float]]
 UNWATCHED, TURNS, BOTH, RADII = 0.0, 1.0, 2.0, 3.0
 """Degrees of watching: no flags; flags where x is largest; also where the radius is extreme; only the latter."""
 
-REST, IS_DUE, RIGHTMOST, EXTREME, LOST, STIFF = 1, 2, 4, 8, 16, 32
-"""Flags, which add up, as for a pin."""
-
-SHORT_STEP, MANY = 0.1, 40.0
-"""As for a pin; explicit steps of discs cost more."""
+SHORT_STEP = 0.1
+"""Scaled duration of a short step; explicit steps of discs cost more than those of pins."""
 
 MOST_STEPS = 5_000_000.0
-SMALLEST_STEP = 1e-13
 FIRST_STEP = 0.1
 
 ON_EDGE = 1e-4
@@ -296,3 +306,81 @@ def begin_slip(lanes: DiscLanes, lane: int, z: complex, angle: float, t: float, 
     angle += law.disc_speed * took + law.curling * curl
     put(trial.state, lane, (z.real, z.imag, u.real, u.imag, r, angle, t + took, way + work))
     return bool(took > 0.0)
+
+
+# --- Scalar data of each lane
+
+OF_TURN, OF_PEAK = 1, 2
+"""Kinds of windows: from one largest x, or one largest radius, to the next."""
+
+
+class Region(Record):
+    """A neighbourhood that no motion leaves, in m and s: where a quadratic form is below its level.
+
+    ``circle`` is 1 about a whirl, in coordinates that turn with the centre (ρ, v along and across the radius, r, 0),
+    and 0 about an equilibrium, in (x, y, vx, vy, r). ``form`` is the upper half of the form, row by row.
+    """
+
+    circle: int
+    centre: Annotated[FloatArray, 5]
+    form: Annotated[FloatArray, 15]
+    level: float
+    measures: Measures
+
+
+class DiscMemory(Record):
+    """Scalar data of a lane, with the motion at ``checks``, at the largest x (``turns``) and the largest radius."""
+
+    number: int
+    length: float
+    rate: float
+    end: int
+    found: Measures
+    tick: float
+    checks: Series
+    turns: Series
+    peaks: Series
+    window: Window
+    span: float
+    checkpoints: int
+    passed: int
+
+
+class DiscSettings(NamedTuple):
+    """Settings for scalar code; ``checkpoints`` are those of a single trajectory, empty if not requested."""
+
+    tolerance: float
+    early: bool
+    around: tuple[float, ...]
+    regions: NDArray[Any]
+    checkpoints: Checkpoints
+
+
+@scalar
+def record_requested(
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, until: float, settings: DiscSettings
+) -> None:
+    if mark_requested(lanes, moment, memory, lane, until, settings):
+        take_checkpoint(lanes, moment, memory, lane, ON_THE_WAY, settings)
+
+
+@scalar
+def take_checkpoint(
+    lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int, kind: float, settings: DiscSettings
+) -> None:
+    if memory.checkpoints < settings.checkpoints.size:
+        checkpoint = settings.checkpoints[memory.checkpoints]
+        memory.checkpoints += 1
+        checkpoint.kind, checkpoint.time = kind, moment.state.time[lane] / memory.rate
+        put_state(checkpoint.state, lanes, moment, memory, lane)
+
+
+@scalar
+def put_state(state: FloatArray, lanes: DiscLanes, moment: Moment, memory: DiscMemory, lane: int) -> None:
+    length, rate = memory.length, memory.rate
+    there = state_at(moment, lane)
+    omega, curling = lanes.law.disc_speed[lane], lanes.law.curling[lane]
+    state[0], state[1], state[2] = there.x * length, there.y * length, there.angle
+    state[3] = (there.ux - omega * there.y) * length * rate
+    state[4] = (there.uy + omega * there.x) * length * rate
+    state[5] = (omega + curling * there.r) * rate

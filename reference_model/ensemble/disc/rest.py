@@ -1,6 +1,7 @@
 """End of slip, rest and beginning of slip of a disc; a disc on points is handed over.
 
-A disc on a ring sticks like a pin with the friction that the shaft's moment leaves (eq. 7).
+A disc on a ring sticks like a pin with the friction that the shaft's moment leaves (eq. 7). Functions of type bool
+return whether the trajectory ends.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import math
 
 from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, recorded
 from reference_model.ensemble.core.jit import inlined, scalar
-from reference_model.ensemble.core.laws import DiscLaw, creeps_by_turns, sticking_radius
+from reference_model.ensemble.core.laws import SPENT_SHARE, DiscLaw, creeps_by_turns, sticking_radius
 from reference_model.ensemble.core.records import fill, put
 from reference_model.ensemble.core.recurrence import Measures, compared
 from reference_model.ensemble.disc.events import found
@@ -17,20 +18,18 @@ from reference_model.ensemble.disc.lanes import (
     AT_END,
     LEAST_SLIP,
     NEAR_REST,
+    OF_PEAK,
     UNWATCHED,
     DiscLanes,
+    DiscMemory,
+    DiscSettings,
     begin_slip,
     comes_to_rest,
     put_slipping,
     rates_at,
+    record_requested,
     slip_left,
     state_at,
-)
-from reference_model.ensemble.disc.memory import (
-    OF_PEAK,
-    DiscMemory,
-    DiscSettings,
-    record_requested,
     take_checkpoint,
 )
 from reference_model.ensemble.disc.slip import centre_of, held_friction, ring_rates, stuck_for
@@ -39,16 +38,13 @@ from reference_model.ensemble.end_states import HANDED_OVER, STICK_SLIP, STUCK, 
 LINGERS = 0.01
 """Shortest scaled time to rest of slow slip of a creeping disc or point."""
 
-SPENT_SHARE = 0.1
-"""Share of the tolerance for the slip that remains when creep counts as over."""
-
 SOON = 3e-4
 """Longest scaled time to rest of a point whose stop can be predicted."""
 
 
 @scalar
 def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Bring a disc on a ring to rest if the end of slip is known; return whether the trajectory ends."""
+    """Bring a disc on a ring to rest if the end of slip is known."""
     if not slip_left(lanes, lane)[0] < NEAR_REST * law.friction:
         return False
     if _creeps_out(lanes, memory, lane, law, settings):
@@ -60,7 +56,7 @@ def ring_slow(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, set
 def _creeps_out(
     lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings
 ) -> bool:
-    """End the trajectory if the disc slips ever more slowly forever; return whether it does.
+    """End the trajectory if the disc slips ever more slowly forever.
 
     This requires a pull that only rotates with the master disc, as for a pin in ``pin.slip.creeps_steadily``.
     """
@@ -87,7 +83,7 @@ def _creeps_out(
 
 @scalar
 def ring_rests(lanes: DiscLanes, memory: DiscMemory, lane: int, law: DiscLaw, settings: DiscSettings) -> bool:
-    """Follow a disc on a ring from rest until it slips; return whether the trajectory ends."""
+    """Follow a disc on a ring from rest until it slips."""
     ended = _held(lanes, memory, lane, law, settings)
     if not ended:
         put_slipping(lanes, lane, law, ring_rates)

@@ -1,9 +1,8 @@
 """Trapping regions of a disc's equilibria and whirls: a motion that enters one is decided.
 
 Near a motion whose eigenvalues λ all decay, V = Σ |amplitude of a mode|² falls like 2·Re λ along the linear motion. A
-fan of directions shows how far out it falls along the true motion. If all motion crosses a sphere of V and every
-smaller one inwards, it goes to the centre. A disc on points oscillates about the motion on a ring, so only spheres
-down to INNER of the size count.
+fan of directions shows how far out it falls along the true motion. Motion that crosses a sphere of V and every
+smaller one inwards goes to the centre. A disc on points oscillates, so only spheres down to INNER of the size count.
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from scipy.special import ellipe, ellipkm1
 
 from reference_model.contact.limit_surface import ComplexArray
 from reference_model.ensemble.core.records import layout
-from reference_model.ensemble.disc.memory import Region
+from reference_model.ensemble.disc.lanes import Region
 from reference_model.steady.steady_states import self_centred_equilibria, whirls
 from reference_model.systems import DiscOnDisc, FloatArray
 
@@ -76,7 +75,7 @@ def _gyration(disc: DiscOnDisc) -> float:
 def _accelerations(
     disc: DiscOnDisc, z: ComplexArray, v: ComplexArray, r: FloatArray
 ) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return v̇, ṙ and the mean slip speed by eq. 19 and 20, with contact points at angles that differ by row."""
+    """Return v̇, ṙ and the mean slip speed by eq. 19 and 20, with contact points at other angles in each row."""
     kappa, g = _gyration(disc), disc.friction_force / disc.mass
     u, w = v - 1j * disc.disc_speed * z, disc.contact_radius / kappa * r
     if disc.contact_points is None:

@@ -10,7 +10,7 @@ from reference_model.ensemble.core.checkpoints import Checkpoints
 from reference_model.ensemble.core.stepping.runge_kutta import tolerance_of_steps
 from reference_model.ensemble.end_states import Results
 from reference_model.ensemble.pin.kernel import PARAMETERS, results_of, run_pins
-from reference_model.ensemble.pin.memory import settings_of
+from reference_model.ensemble.pin.lanes import settings_of
 from reference_model.ensemble.pin.trapping import trapping_regions
 from reference_model.ensemble.recording import Recording
 from reference_model.ensemble.task import Task, in_chunks, parameter_table

@@ -7,22 +7,21 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, next_requested, recorded
 from reference_model.ensemble.core.jit import inlined, scalar, written_out
+from reference_model.ensemble.core.lanes import EXTREME, IS_DUE, LOST, REST, RIGHTMOST, STIFF
 from reference_model.ensemble.core.laws import (
+    SPENT_SHARE,
+    DiscLaw,
     PinLaw,
     creeps_by_turns,
     pull,
     release_delay,
     sticking_radius,
 )
-from reference_model.ensemble.core.recurrence import (
-    ACCURACY,
-    NO_WINDOW,
-    compared,
-    open_window,
-    see_radius,
-)
+from reference_model.ensemble.core.recurrence import ACCURACY, NO_WINDOW, compared, open_window, see_radius
 from reference_model.ensemble.core.stepping.dense_output import (
     DenseOutput,
     position_on,
@@ -31,37 +30,41 @@ from reference_model.ensemble.core.stepping.dense_output import (
     where_radius_turns,
     where_rightmost,
 )
+from reference_model.ensemble.core.stepping.implicit import (
+    WORTH,
+    collocate_pin,
+    failed,
+    first_try,
+    patience,
+    stride_with,
+)
 from reference_model.ensemble.core.stepping.linear import quadratic_form
 from reference_model.ensemble.end_states import SELF_CENTRED, STICK_SLIP, STUCK, UNDECIDED, WHIRL
-from reference_model.ensemble.pin.end_states import depth
+from reference_model.ensemble.pin.end_states import depth, orbit_attracts
 from reference_model.ensemble.pin.lanes import (
-    EXTREME,
-    IS_DUE,
     LANDING,
-    LOST,
+    OF_RELEASE,
+    OF_TURN,
     RADII,
-    REST,
-    RIGHTMOST,
-    STIFF,
     TURNS,
     UNWATCHED,
     PinLanes,
+    PinMemory,
+    Settings,
+    close_window,
+    flags_of,
+    keep,
     landed,
     last_step,
     law_of,
     position_at,
+    put_motion,
     put_position,
     put_slipping,
-    slip_at,
-)
-from reference_model.ensemble.pin.memory import (
-    OF_RELEASE,
-    OF_TURN,
-    PinMemory,
-    Settings,
-    close_window,
-    keep,
+    rates_at,
     record_requested,
+    slip_at,
+    state_at,
     take_checkpoint,
 )
 from reference_model.ensemble.pin.slip import (
@@ -71,14 +74,9 @@ from reference_model.ensemble.pin.slip import (
     creeps_steadily,
     time_to_rest,
 )
-from reference_model.ensemble.pin.stability import orbit_attracts
-from reference_model.ensemble.pin.stride import stride
 
 SERIES_SHARE = 0.1
 """Share of the tolerance for the last terms of the series of slip."""
-
-SPENT_SHARE = 0.1
-"""Share of the tolerance for the slip that remains when creep counts as over."""
 
 REVERSAL_SLIP = 1e-13
 """Scaled slip below which slip that friction cannot hold counts as reversed."""
@@ -341,3 +339,42 @@ def settle(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
         radius = math.hypot(memory.equilibrium.real, memory.equilibrium.imag)
         memory.end = SELF_CENTRED
         keep(memory, radius, radius, abs(law.disc_speed) * radius)
+
+
+# --- Implicit steps in place of many short ones
+
+
+@written_out
+def stride(lanes: PinLanes, memory: PinMemory, lane: int, law: PinLaw) -> None:
+    """Replace the trial step by an implicit step if that goes much further."""
+    now, trial = lanes.now, lanes.trial
+    t, share = now.state.time[lane], now.rates.time[lane]
+    short = now.step[lane] * share
+    z, w = position_at(now, lane), slip_at(now, lane)
+    left = memory.duration - t
+    least = min(WORTH * short, left)
+    span = first_try(memory.span, least, left)
+    start, guess = np.array((w.real, w.imag)), np.array((w.real, w.imag))
+    if law.friction * span > abs(w):  # slaved to the direction of the pull
+        a = pull(z, w, law)
+        guess[0], guess[1] = abs(w) / abs(a) * a.real, abs(w) / abs(a) * a.imag
+    z, wx, wy, _, _, took, way, following = stride_with(
+        z, 0.0, start, guess, span, least, lanes.tolerance[lane],
+        DiscLaw(
+            (), law.stiffness, law.damping, law.friction, law.disc_speed, law.offset, law.stretching, law.free,
+            0.0, 0.0, 0.0, 0.0,
+        ),
+        collocate_pin,
+    )  # fmt: skip
+    memory.span = following if took > 0.0 else failed(memory.span)
+    if took == 0.0:
+        lanes.short[lane] = -patience(memory.span)
+        return
+    put_motion(trial, lane, z, complex(wx, wy), law)
+    trial.state.time[lane] = t + took if took < left else memory.duration
+    trial.step[lane] = now.step[lane]  # the trial step gives no estimate
+    trial.state.way[lane] = now.state.way[lane] + way
+    lanes.flag[lane] = flags_of(
+        state_at(now, lane), rates_at(now, lane), state_at(trial, lane), rates_at(trial, lane),
+        lanes.due[lane], lanes.slow[lane], lanes.watch[lane],
+    )  # fmt: skip

@@ -8,42 +8,36 @@ import numpy as np
 
 from reference_model.ensemble.core.checkpoints import SLIPS, next_requested, recorded
 from reference_model.ensemble.core.jit import called_from_python, inlined, scalar, written_out
-from reference_model.ensemble.core.lanes import row_of, run, store_end
-from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, PinLaw, pull, units
+from reference_model.ensemble.core.lanes import MANY, row_of, run, store_end
+from reference_model.ensemble.core.laws import ROUNDING_OF_SLIP, STRETCHING_TIME, PinLaw, pull, units
 from reference_model.ensemble.core.records import LANES, clear, layout, put
 from reference_model.ensemble.end_states import SELF_CENTRED, Results
 from reference_model.ensemble.pin.end_states import FORM_SIZE, equilibrium_region
 from reference_model.ensemble.pin.events import handle_flag, rest
 from reference_model.ensemble.pin.lanes import (
     LANDING,
-    MANY,
     STEPS_A_TIME,
     STEPS_TO_SPARE,
     TURNS,
     UNWATCHED,
     PinLanes,
+    PinMemory,
+    Settings,
     advance,
     advance_alone,
     idle,
+    keep,
     law_of,
     position_at,
     put_slipping,
-    slip_at,
-)
-from reference_model.ensemble.pin.memory import (
-    PinMemory,
-    Settings,
-    keep,
     put_state,
+    slip_at,
     take_checkpoint,
 )
 from reference_model.ensemble.task import LENGTH, RATE, SHORT, SPAN, STEP, Task
 from reference_model.systems import PinOnDisc
 
 LANES_LAYOUT, MEMORY_LAYOUT = layout(PinLanes), layout(PinMemory)
-
-STRETCHING_TIME = 0.5
-"""Scaled ratio s₀/g. A larger one shortens steps, a smaller one makes rest and release stiffer."""
 
 SLOWNESS = 1e-3
 """Slip speed, in units of g, below which a pin that friction does not stop starts with implicit steps."""

@@ -1,8 +1,8 @@
 """Trapping regions of a pin's equilibrium and whirl, for one set of parameters.
 
 Both are fixed points of a map: the flow over a given time, or the return to the section where x is largest. Near a
-stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The region is the
-largest ellipsoid that the map, like all smaller ones, moves into a clearly smaller one.
+stable fixed point with the derivative M the map contracts in the norm xᵀPx with MᵀPM − P = −1. The map moves the
+region, an ellipsoid, and all smaller ones into clearly smaller ones.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from scipy.linalg import solve_discrete_lyapunov
 
 from reference_model.ensemble.end_states import EndState, Results
 from reference_model.ensemble.pin.kernel import PARAMETERS, results_of
-from reference_model.ensemble.pin.memory import no_regions, settings_of
+from reference_model.ensemble.pin.lanes import no_regions, settings_of
 from reference_model.ensemble.task import Task, parameter_table
 from reference_model.formulas.pin import equilibrium_position, whirl_frequency, whirl_radius
 from reference_model.systems import FloatArray, PinOnDisc

@@ -11,22 +11,22 @@ import sys
 import threading
 from contextlib import contextmanager
 
-from compare.sweep.arrays import Chunks
+from compare.sweep.arrays import Group
 from compare.sweep.compute.executors import Cluster
 
 
 def signalling(name, process, chunk):
     """Send the signal during the ``chunk``-th chunk; chunks are written one after the other."""
-    write, lock, written = Chunks.write, threading.Lock(), 0
+    write, lock, written = Group.write, threading.Lock(), 0
 
-    def counted(self, place, results):
+    def counted(self, results, region):
         nonlocal written
         with lock:
-            written += 1
+            written += self.name.startswith("round")
             if written == chunk:
-                write(self, place, {"end": results["end"]})
+                write(self, {"end": results["end"]}, region)
                 os.kill(process or os.getpid(), signal.Signals[name])
-            return write(self, place, results)
+            return write(self, results, region)
 
     run = Cluster.run
 
@@ -36,18 +36,18 @@ def signalling(name, process, chunk):
                 os.kill(process or os.getpid(), signal.Signals[name])
             yield found
 
-    Chunks.write, Cluster.run = counted, told
+    Group.write, Cluster.run = counted, told
 
 
 @contextmanager
 def signalling_here(name, process, chunk):
     """Do the same only within this context."""
-    before = Chunks.write, Cluster.run
+    before = Group.write, Cluster.run
     signalling(name, process, chunk)
     try:
         yield
     finally:
-        Chunks.write, Cluster.run = before
+        Group.write, Cluster.run = before
 
 
 def dask_setup(worker):

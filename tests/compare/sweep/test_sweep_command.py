@@ -137,8 +137,7 @@ def test_parameters_and_other_components_are_accepted(tmp_path):
     "arguments",
     [
         "basin pin --random 30",
-        "map pin --x offset=0:0.1:3 --y mass=1:2:2 --start x=0 --start x=0.1",
-        "map disc --x disc_speed=1.3:1.6:2 --y friction_force=0.01:0.02:2",
+        "map disc --x disc_speed=1.3:1.6:2 --y friction_force=0.01:0.02:2 --start x=0 --start x=0.1",
         "uncertainty pin --vary vx=uniform(0,0.01) --samples 256",
         "continuation pin --x disc_speed=1.4:1.6:2 --samples 3",
     ],

@@ -14,11 +14,13 @@ from plain_engines import stuck_state
 from compare.claims.parameters import FIG5, FIG9, FIG11
 from reference_model import simulate
 from reference_model.ensemble import simulate_ensemble, task
-from reference_model.ensemble.core.records import layout
-from reference_model.ensemble.disc import kernel as disc_kernel
-from reference_model.ensemble.disc.lanes import DiscLanes
-from reference_model.ensemble.pin import lanes as pin_lanes
+from reference_model.ensemble.core.jit import PART
+from reference_model.ensemble.core.records import LANES, layout
+from reference_model.ensemble.disc.kernel import run_points
+from reference_model.ensemble.disc.lanes import DiscLanes, advance_with
+from reference_model.ensemble.disc.slip import no_edge, points_rates, ring_edge, ring_rates
 from reference_model.ensemble.pin.kernel import run_pins
+from reference_model.ensemble.pin.lanes import PinLanes, _advance_in
 
 SIX = replace(FIG11, contact_points=6)
 ARM = platform.machine() in ("arm64", "aarch64")
@@ -59,19 +61,26 @@ def test_neighbours_chunks_and_threads_do_not_change_a_single_bit(system, durati
     assert_same(together, results(starts, threads=3))
 
 
+def advance_pins(lanes):
+    _advance_in(lanes, LANES)
+
+
+def advance_rings(lanes):
+    advance_with(lanes, (), ring_rates, ring_edge, 0.0, LANES)
+
+
+def advance_points(lanes):
+    advance_with(lanes, (1.0, 0.0, -0.5, 0.8, -0.5, -0.8), points_rates, no_edge, 1e-3, LANES)
+
+
 @pytest.mark.parametrize(
-    ("advance", "lanes", "around", "roots"),
-    [
-        (pin_lanes.advance, pin_lanes.PinLanes, None, 16),
-        (disc_kernel._advance_rings, DiscLanes, (), 40),
-        (disc_kernel._advance_points, DiscLanes, (1.0, 0.0, -0.5, 0.8, -0.5, -0.8), 40),
-    ],
-    ids=["pin", "ring", "points"],
+    ("advance", "lanes", "roots"),
+    [(advance_pins, PinLanes, 16), (advance_rings, DiscLanes, 40), (advance_points, DiscLanes, 40)],
 )
-def test_step_of_all_lanes_is_vectorised(advance, lanes, around, roots):
-    caller = numba.njit(lambda lanes, around: advance(lanes, around))
-    caller.compile((numba.from_dtype(layout(lanes)), numba.typeof(around)))
-    code = "\n".join(caller.inspect_asm().values())
+def test_step_of_all_lanes_is_vectorised(advance, lanes, roots):
+    compiled = numba.njit(**PART)(advance)
+    compiled.compile((numba.from_dtype(layout(lanes)),))
+    code = "\n".join(compiled.inspect_asm().values())
     # Each of thirteen right-hand sides takes at least one root for a pin and three for a disc.
     assert len(re.findall(VECTOR_ROOT, code)) >= roots
     assert not re.search(SCALAR_ROOT, code)
@@ -85,12 +94,12 @@ def test_one_kernel_serves_a_single_pin_and_many():
 
 def test_one_kernel_serves_discs_with_and_without_stick():
     simulate(SIX, [0.1, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0], compiled=True)
-    known = len(disc_kernel.run_points.kinds)
+    known = len(run_points.kinds)
     disc = replace(FIG9, friction_force=2.0 * FIG9.friction_force, contact_points=6)
     found = simulate(disc, stuck_state(disc, -0.02, 0.0), [0.0, 40.0], compiled=True)
     assert found.stick_phases
     assert found.phases[-1].kind == "slip"
-    assert len(disc_kernel.run_points.kinds) == known
+    assert len(run_points.kinds) == known
 
 
 def test_plain_reference_does_not_import_the_compiler():

@@ -7,14 +7,7 @@ import pytest
 from plain_engines import stuck_state
 
 from compare.claims.parameters import FIG5, FIG5_STARTS, FIG8, FIG9, FIG11
-from reference_model import (
-    DiscOnDisc,
-    PinOnDisc,
-    Ring,
-    SimulationError,
-    simulate,
-    sticking_radius,
-)
+from reference_model import DiscOnDisc, PinOnDisc, Ring, SimulationError, simulate, sticking_radius
 from reference_model.ensemble import recording, simulate_ensemble, single_run
 from reference_model.ensemble.disc import driver
 from reference_model.motion.exact import simulate_with
@@ -112,22 +105,16 @@ def test_each_parameter_set_of_an_ensemble_moves_as_alone(system, start):
 
 
 @pytest.mark.parametrize(("system", "start"), [(FIG5, SECOND), (STICKING, stuck_state(STICKING, -0.08, 0.0))])
-def test_motion_does_not_depend_on_the_requested_times(system, start):
+def test_motion_depends_neither_on_the_requested_times_nor_on_room_for_checkpoints(
+    system, start, monkeypatch
+):
     times = np.linspace(0.0, 60.0, 1201)
     fine = simulate(system, start, times, compiled=True)
+    monkeypatch.setattr(recording, "ROOM_TO_SPARE", 0)
     coarse = simulate(system, start, times[::48], compiled=True)
     np.testing.assert_array_equal(fine.states[::48], coarse.states)
     assert fine.stick_times.tolist() == coarse.stick_times.tolist()
     assert fine.solution.steps == coarse.solution.steps
-
-
-def test_growing_memory_for_checkpoints_does_not_change_the_motion(monkeypatch):
-    times = np.linspace(0.0, 60.0, 3)
-    usual = simulate(FIG5, SECOND, times, compiled=True)
-    monkeypatch.setattr(recording, "ROOM_TO_SPARE", 0)
-    found = simulate(FIG5, SECOND, times, compiled=True)
-    np.testing.assert_array_equal(found.states, usual.states)
-    assert found.stick_times.tolist() == usual.stick_times.tolist()
 
 
 @pytest.mark.parametrize(
@@ -207,9 +194,9 @@ def straight_swing(share, times):
     return side * (share + swing * np.cos(phase)), -side * swing * np.sin(phase)
 
 
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-9, 1e-11])
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-11])
 @pytest.mark.parametrize(
-    ("points", "number"), [("pin", 25), (None, 5), (6, 2)], ids=["pin", "ring", "six points"]
+    ("points", "number"), [("pin", 25), (None, 5), (6, 1)], ids=["pin", "ring", "six points"]
 )
 def test_oscillation_on_a_line_agrees_with_its_closed_form(points, number, tolerance):
     rng = np.random.default_rng(35)
@@ -301,7 +288,7 @@ def test_disc_on_points_uses_the_plain_reference_only_until_it_slips(monkeypatch
         return parts[-1]
 
     monkeypatch.setattr(driver, "simulate_with", watched)
-    start, times = stuck_state(disc, -4.0, 0.0), np.linspace(0.0, 60.0, 301)
+    start, times = stuck_state(disc, -4.0, 0.0), np.linspace(0.0, 40.0, 201)
     found, tight = (
         simulate(disc, start, times, tolerance=tolerance, compiled=compiled)
         for tolerance, compiled in ((1e-9, True), (1e-11, False))
@@ -320,11 +307,8 @@ def test_contact_law_of_the_parameters_is_accepted():
     np.testing.assert_array_equal(named.states, simulate(FIG9, start, times, compiled=True).states)
 
 
-def test_run_is_compiled_by_default_if_the_system_allows_it():
-    start, times = [0.1, 0.0, 0.0, 0.1], [0.0, 1.0]
-    known, unknown = FIG5, replace(FIG5, hardening=1.0)
-    methods = {
-        pin: simulate(pin, start, times, compiled=None).solution.method.startswith("compiled")
-        for pin in (known, unknown)
-    }
-    assert methods == {known: True, unknown: False}
+@pytest.mark.parametrize("hardening", [0.0, 1.0])
+def test_run_is_compiled_by_default_if_the_system_allows_it(hardening):
+    pin = replace(FIG5, hardening=hardening)
+    method = simulate(pin, [0.1, 0.0, 0.0, 0.1], [0.0, 1.0], compiled=None).solution.method
+    assert method.startswith("compiled") == (hardening == 0.0)

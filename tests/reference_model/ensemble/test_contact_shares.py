@@ -14,18 +14,8 @@ EPS = np.finfo(float).eps
 
 
 @numba.njit
-def of_ring(slip, rim):
-    return ring_shares(slip, rim)
-
-
-@numba.njit
 def of_points(ux, uy, rim, around):
     return points_shares(ux, uy, rim, around)
-
-
-@numba.njit
-def turn(angle):
-    return turned(angle)
 
 
 def integrals(slip, rim):
@@ -52,21 +42,20 @@ RATIOS = np.concatenate(
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_friction_of_a_ring_agrees_with_elliptic_integrals_to_rounding(ratio):
     for slip, rim in ((1.7, 1.7 * ratio), (1.7 * ratio, 1.7)):
-        for share, exact in zip(of_ring(slip, rim), integrals(slip, rim), strict=True):
+        for share, exact in zip(ring_shares(slip, rim), integrals(slip, rim), strict=True):
             assert abs(share - exact) <= 12.0 * EPS * exact
 
 
 @pytest.mark.parametrize("distance", [1e-10, 1e-12, 1e-14, EPS, 0.0])
 def test_friction_of_a_ring_with_a_resting_point_loses_a_logarithm_of_its_accuracy(distance):
     slip, rim = 1.0, 1.0 - distance
-    for share, exact in zip(of_ring(slip, rim), integrals(slip, rim), strict=True):
+    for share, exact in zip(ring_shares(slip, rim), integrals(slip, rim), strict=True):
         assert abs(share - exact) <= 5.0 * EPS * math.log(4.0 / EPS)
 
 
-@pytest.mark.parametrize("points", [3, 7])
-def test_friction_of_points_agrees_with_the_contact_law(points):
-    rng = np.random.default_rng(points)
-    law = PointsOnRing(1.0, points)
+def test_friction_of_points_agrees_with_the_contact_law():
+    rng = np.random.default_rng(5)
+    law = PointsOnRing(1.0, 5)
     around = tuple(np.ravel([(arm.real, arm.imag) for arm in law.arms(0.0)]))
     for ux, uy, rim in rng.normal(size=(50, 3)):
         force, moment = law.force_and_moment(complex(ux, uy), -rim, 0.0)
@@ -84,6 +73,6 @@ def test_cosine_and_sine_are_accurate_to_rounding_in_long_runs():
         *np.arange(-8, 9) * math.pi / 4.0,
     ]
     for angle in angles:
-        c, s = turn(angle)
+        c, s = turned(angle)
         assert abs(c - math.cos(angle)) <= EPS
         assert abs(s - math.sin(angle)) <= EPS

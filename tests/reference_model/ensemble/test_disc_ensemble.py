@@ -71,13 +71,11 @@ def test_early_end_states_agree_with_full_length_and_the_reference():
     assert np.array_equal(early.end, full.end)
     assert np.mean(early.time) < 0.3 * 1000.0
     point = self_centred_equilibria(BISTABLE)[0]
-    for i in [
-        *np.flatnonzero(early.end == EndState.SELF_CENTRED)[:2],
-        *np.flatnonzero(early.end == EndState.WHIRL)[:2],
-    ]:
+    for end in (EndState.SELF_CENTRED, EndState.WHIRL):
+        i = np.flatnonzero(early.end == end)[0]
         motion = simulate(BISTABLE, starts[i], np.linspace(0.0, 500.0, 5001))
         rests = math.dist(motion.at_end[:2], (point.x, point.y)) < 1e-8
-        assert rests == (early.end[i] == EndState.SELF_CENTRED)
+        assert rests == (end == EndState.SELF_CENTRED)
         last = motion.radius[-1000:]
         assert early.least_radius[i] == pytest.approx(last.min(), rel=2e-4)
         assert early.largest_radius[i] == pytest.approx(last.max(), rel=2e-4)
@@ -93,7 +91,7 @@ def test_whirl_without_offset_is_the_circle_of_the_formula():
     whirling = found.end == EndState.WHIRL
     assert found.largest_radius[whirling] == pytest.approx(whirl.radius, rel=1e-4)
     assert np.hypot(*full.states[whirling, :2].T) == pytest.approx(whirl.radius, rel=1e-8)
-    for start, end in list(zip(starts_of(12), found.end, strict=True))[:6]:
+    for start, end in list(zip(starts_of(12), found.end, strict=True))[:3]:
         last = simulate(WHIRLING, start, [0.0, 400.0]).phases[-1]
         assert last.kind == ("slip" if end == EndState.WHIRL else "stick")
 
@@ -135,6 +133,7 @@ def test_disc_that_sticks_repeatedly_ends_in_stick_slip():
 
 
 @pytest.mark.parametrize("points", [None, 6])
+@pytest.mark.filterwarnings("error")
 def test_disc_without_friction_that_starts_without_slip_oscillates_and_is_decided(points):
     disc = replace(FIG8, friction_force=0.0, damping=0.3, shaft_damping=0.5, contact_points=points)
     start = stuck_state(disc, 0.3, 0.1)
@@ -146,21 +145,12 @@ def test_disc_without_friction_that_starts_without_slip_oscillates_and_is_decide
     )
     assert full.time[0] == 20.0
     assert full.states[0, :2] == pytest.approx((z.real, z.imag), abs=1e-8)
-    for parameters in ({}, {"mass": [disc.mass]}):
-        found = simulate_ensemble(disc, start, duration=300.0, parameters=parameters)
-        assert found.end[0] == EndState.SELF_CENTRED
-        assert found.largest_radius[0] == pytest.approx(disc.offset, rel=1e-4)
-
-
-@pytest.mark.parametrize("points", [None, 6])
-@pytest.mark.filterwarnings("error")
-def test_disc_without_friction_and_offset_comes_to_the_axis(points):
-    disc = replace(
-        FIG8, friction_force=0.0, damping=0.3, shaft_damping=0.5, offset=0.0, contact_points=points
-    )
-    assert (
-        simulate_ensemble(disc, stuck_state(disc, 0.3, 0.1), duration=300.0).end[0] == EndState.SELF_CENTRED
-    )
+    for offset in (disc.offset, 0.0):
+        for parameters in ({}, {"offset": [offset]}):
+            disc = replace(disc, offset=offset)
+            found = simulate_ensemble(disc, start, duration=300.0, parameters=parameters)
+            assert found.end[0] == EndState.SELF_CENTRED
+            assert found.largest_radius[0] == pytest.approx(offset, rel=1e-4)
 
 
 def test_disc_on_six_points_ends_near_the_equilibrium_of_the_ring():

@@ -23,8 +23,12 @@ from reference_model.ensemble import EndState, simulate_ensemble
 from reference_model.ensemble.core import laws
 from reference_model.ensemble.core.recurrence import converged
 from reference_model.ensemble.pin import slip as pin_slip
-from reference_model.ensemble.pin.end_states import depth, equilibrium_region
-from reference_model.ensemble.pin.stability import orbit_attracts, return_derivative
+from reference_model.ensemble.pin.end_states import (
+    depth,
+    equilibrium_region,
+    orbit_attracts,
+    return_derivative,
+)
 from reference_model.motion.pin_equations import SlipMotion
 from reference_model.motion.stick import release_delay, slip_from_rest
 
@@ -38,12 +42,6 @@ CREEPS = replace(FIG5, damping=0.85, friction_force=0.56, disc_speed=-0.46, offs
 
 def starts(n, reach, seed=0):
     return np.random.default_rng(seed).uniform(-reach, reach, (n, 4))
-
-
-def counts(ensemble):
-    return {
-        state.name: int(np.sum(ensemble.end == state)) for state in EndState if np.any(ensemble.end == state)
-    }
 
 
 @pytest.mark.parametrize(
@@ -72,7 +70,7 @@ def test_early_end_states_agree_with_runs_of_full_length(pin, reach, duration, e
     without_known_ends = simulate_ensemble(
         pin, states, duration=duration, parameters={"mass": np.ones(len(states))}
     )
-    assert set(counts(early)) == expected
+    assert {EndState(end).name for end in early.end} == expected
     # A motion that creeps or passes near a boundary may be undecided at the end of the run.
     for other in (full, without_known_ends):
         decided = (other.end != EndState.UNDECIDED) & (early.end != EndState.UNDECIDED)
@@ -115,7 +113,7 @@ def test_radii_of_periodic_motions_agree_with_the_reference():
     found = simulate_ensemble(FIG5, starts(n, 1.0), duration=1000.0, parameters=varied)
     periodic = np.flatnonzero((found.end == EndState.WHIRL) | (found.end == EndState.STICK_SLIP))
     assert len(periodic) > 40
-    for i in periodic[::4]:
+    for i in periodic[::8]:
         pin = replace(FIG5, **{name: float(values[i]) for name, values in varied.items()})
         # A whirl takes one turn of the pin or disc, whichever is slower, and a cycle with stick up to two.
         times = np.linspace(0.0, 4.0 * np.pi, 2001)
@@ -140,8 +138,8 @@ def test_radii_and_power_of_rest_and_equilibrium_have_their_closed_forms():
 def test_radii_and_power_of_a_stick_slip_cycle_agree_with_the_reference():
     found = simulate_ensemble(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], duration=400.0)
     assert found.end[0] == EndState.STICK_SLIP
-    times = np.linspace(0.0, 120.0, 60_001)
-    trajectory = simulate(STICK_SLIP, [0.5, 0.0, 0.3, 0.3], times, tolerance=1e-10)
+    times = np.linspace(0.0, 20.0, 10_001)
+    trajectory = simulate(STICK_SLIP, found.states[0], times, tolerance=1e-10)
     first, last = (phase.end for phase in trajectory.stick_phases[-3:-1])
     cycle = (times >= first) & (times <= last)
     assert found.least_radius[0] == pytest.approx(trajectory.radius[cycle].min(), rel=2.0 * ACCURACY)
@@ -219,12 +217,12 @@ def test_fast_slip_inward_ends_where_the_reference_rests(offset, share):
 def test_pin_that_still_creeps_at_the_end_is_stuck_at_its_final_radius():
     pin = replace(FIG5, damping=30.0, friction_force=0.05, disc_speed=0.25, offset=0.0)
     creeping, early = (simulate_ensemble(pin, [0.3, 0.0, 0.0, 0.0], duration=time) for time in (250.0, 150.0))
-    assert counts(creeping) == {"STUCK": 1}
+    assert creeping.end[0] == EndState.STUCK
     assert creeping.largest_radius[0] == pytest.approx(sticking_radius(pin), rel=1e-12)
     late = simulate(pin, [0.3, 0.0, 0.0, 0.0], [0.0, 250.0, 1000.0])
     assert late.radius[1] > 1.005 * sticking_radius(pin)  # still far from the final radius
     assert late.radius[2] == pytest.approx(sticking_radius(pin), rel=1e-9)
-    assert counts(early) == {"UNDECIDED": 1}  # the slip has not yet turned towards the pull
+    assert early.end[0] == EndState.UNDECIDED  # the slip has not yet turned towards the pull
 
 
 def law_of(pin):
@@ -232,11 +230,8 @@ def law_of(pin):
 
 
 def test_release_and_first_slip_agree_with_the_plain_reference():
-    motion, law, work = (
-        SlipMotion.of(FIG5),
-        law_of(FIG5),
-        np.zeros((6, pin_slip.MOST_TERMS + 2), dtype=complex),
-    )
+    motion, law = SlipMotion.of(FIG5), law_of(FIG5)
+    work = np.zeros((6, pin_slip.MOST_TERMS + 2), dtype=complex)
     for angle in np.linspace(0.0, 6.0, 9):
         z = 0.05 * np.exp(1j * angle)
         delay = release_delay(motion, z)
@@ -299,7 +294,7 @@ def about_the_fold():
 
 def test_return_map_of_whirls_has_the_multipliers_from_shooting(about_the_fold):
     assert {orbit.stable for orbit in about_the_fold} == {True, False}
-    for orbit in about_the_fold:
+    for orbit in about_the_fold[::4]:
         rightmost = np.argmax(orbit.trajectory.states[:, 0])
         x, y, vx, vy = orbit.trajectory.states[rightmost]
         law, derivative = law_of(orbit.system), np.zeros((3, 3))
@@ -314,8 +309,8 @@ def test_return_map_of_whirls_has_the_multipliers_from_shooting(about_the_fold):
         aside = np.array([1e-3, 2e-3, -1e-3])
         came, left = tuple(derivative @ aside - aside), np.linalg.norm(derivative @ aside)
         turn = complex(x, y), complex(vx, vy), orbit.period, law, came
-        assert orbit_attracts(*turn, 1.001 * left) == orbit.stable
-        assert not orbit_attracts(*turn, 0.999 * left)
+        assert orbit_attracts.py_func(*turn, 1.001 * left) == orbit.stable
+        assert not orbit_attracts.py_func(*turn, 0.999 * left)
 
 
 def test_whirl_of_a_strongly_damped_pin_is_decided():

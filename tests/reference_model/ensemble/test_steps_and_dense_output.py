@@ -4,15 +4,8 @@ import numba
 import numpy as np
 import pytest
 
-from reference_model.ensemble.core.stepping.dense_output import (
-    Motion,
-    dense_output,
-    position_on,
-    velocity_on,
-)
-from reference_model.ensemble.core.stepping.runge_kutta import (
-    step,
-)
+from reference_model.ensemble.core.stepping.dense_output import Motion, dense_output, position_on, velocity_on
+from reference_model.ensemble.core.stepping.runge_kutta import step
 
 
 @numba.njit

@@ -41,7 +41,7 @@ FIRST_SPAN = 0.1
 """Scaled first implicit step, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""Number of short steps before another try after an implicit step failed to pay, and most doublings of it."""
+"""Number of short steps before another try after a failure, and most doublings of it."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """Largest ratio of successive steps, and safety factor of the error estimate."""
@@ -67,9 +67,8 @@ def collocate_with(
 ) -> float:
     """Solve for the slip ``w`` (NODES, 2 or 3) at the nodes of a step, from a guess.
 
-    ``z``, ``angle`` and ``start`` are those at the start of the step. The rates ``f`` and the mean slip speed
-    ``power`` (NODES,) are results too. Returns the relaxation rate of the direction of slip at the end, or -1 without
-    convergence.
+    ``z``, ``angle`` and ``start`` belong to the start of the step. The rates ``f`` and the mean slip speed ``power``
+    (NODES,) are results too. Returns the final relaxation rate of the direction of slip, or -1 without convergence.
     """
     d = len(start)
     matrix, change = zeros((NODES * d) ** 2).reshape(NODES * d, NODES * d), zeros(NODES * d)
@@ -253,7 +252,6 @@ def stride_with(
 
 @inlined
 def first_try(planned: float, least: float, left: float) -> float:
-    """Return the first implicit step to try: ``planned`` if positive."""
     return min(planned if planned > 0.0 else max(FIRST_SPAN, 2.0 * least), left)
 
 

@@ -33,7 +33,7 @@ E3, E5 = _without_zeros(DOP853.E3), _without_zeros(DOP853.E5)
 TURNED_BACK = 256.0
 """Error assigned to a step whose slip turns by more than a right angle, which halves the next trial.
 
-Friction reverses within such a step, and the error estimate would accept errors of a hundred tolerances.
+The error estimate would accept errors of a hundred tolerances.
 """
 
 LOCAL = 0.1

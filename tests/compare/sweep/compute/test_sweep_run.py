@@ -64,18 +64,18 @@ def swept(path, plan, chunk, executor=None):
 
 @pytest.fixture(scope="module")
 def basin(tmp_path_factory):
-    return swept(tmp_path_factory.mktemp("basin") / "s", BASIN, 50).get("result")
+    return swept(tmp_path_factory.mktemp("basin") / "s", BASIN, 50)
 
 
 @pytest.mark.parametrize("plan", [BASIN, MAP], ids=lambda plan: plan.kind)
 def test_chunks_of_any_size_give_the_same_store_to_the_last_bit(plan, tmp_path):
-    for chunk in (7, 1000):
+    for chunk in (17, 1000):
         swept(tmp_path / str(chunk), plan, chunk)
-    assert_same(content(tmp_path / "7"), content(tmp_path / "1000"))
+    assert_same(content(tmp_path / "17"), content(tmp_path / "1000"))
 
 
 def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(basin):
-    result = basin
+    result = basin.get("result")
     assert dict(result.sizes) == {"vx": 9, "x": 17, "end_state": len(EndState)}
     assert (result["x"].attrs["units"], result["vx"].attrs["units"]) == ("m", "m/s")
     assert (result["largest_radius"].attrs["units"], result["slip_power"].attrs["units"]) == ("m", "W")
@@ -89,7 +89,7 @@ def test_a_basin_is_labelled_and_its_ends_equal_those_of_the_plain_reference(bas
 
 
 def test_results_of_a_basin_are_at_their_simulated_points_only(basin):
-    result = basin
+    result = basin.get("result")
     simulated = result["simulated"].values.astype(bool)
     assert 0 < np.count_nonzero(simulated) < simulated.size
     for name in ("time", "least_radius", "largest_radius", "slip_power"):
@@ -114,9 +114,8 @@ def test_friction_power_of_the_whirl_is_that_of_its_slip(tmp_path):
     assert np.max(result["modulation"]) < 1e-3
 
 
-def test_a_store_contains_its_provenance(tmp_path):
-    swept(tmp_path / "s", RANDOM, 50)
-    attributes = zarr.open_group(tmp_path / "s", mode="r").attrs
+def test_a_store_contains_its_provenance(basin):
+    attributes = zarr.open_group(basin.path, mode="r").attrs
     plan = json.loads(attributes["plan"])
     assert (plan["seed"], plan["tolerance"], plan["system"]["friction_force"]) == (4, 1e-9, 0.09)
     assert json.loads(attributes["versions"])["numpy"] == np.__version__
@@ -185,7 +184,7 @@ def test_probability_of_the_whirl_and_its_sensitivities(tmp_path):
     )
     by_speed, by_mass = (result["sobol_total"].sel(uncertain=name).values for name in ("vx", "mass"))
     assert np.all(by_speed > 10.0 * np.abs(by_mass))
-    for i in (0, 200, 511):  # labelled arrays are consistent
+    for i in (0, 511):  # labelled arrays are consistent
         pin = replace(FIG5, mass=float(result["mass"][i]))
         start = [0.1, 0.0, float(result["vx"][i]), 0.0]
         motion = plain_trajectory(pin, np.array(start), 1.0, 400.0, 1e-9)
@@ -194,11 +193,11 @@ def test_probability_of_the_whirl_and_its_sensitivities(tmp_path):
 
 def test_an_interrupted_sweep_continues_without_repeating_work(tmp_path):
     whole, first, second = Recording(), Recording(until=5), Recording()
-    swept(tmp_path / "whole", BASIN, 7, whole)
+    swept(tmp_path / "whole", BASIN, 15, whole)
     with pytest.raises(KeyboardInterrupt):
-        swept(tmp_path / "s", BASIN, 7, first)
+        swept(tmp_path / "s", BASIN, 15, first)
     done = len(list((tmp_path / "s").glob("round-*/steps/c/*")))
-    swept(tmp_path / "s", BASIN, 7, second)
+    swept(tmp_path / "s", BASIN, 15, second)
     assert 5 - AT_ONCE <= done <= 5
     assert first.simulated()[:done] + second.simulated() == whole.simulated()
     assert_same(content(tmp_path / "s"), content(tmp_path / "whole"))

@@ -27,7 +27,7 @@ PLAN = Basin(
 )
 """Plan with several rounds of several chunks."""
 
-CHUNK = 3
+CHUNK = 5
 
 
 class Counting(InProcess):
@@ -105,8 +105,8 @@ class Store(RuleBasedStateMachine):
 
 
 Store.TestCase.settings = settings(
-    max_examples=5,
-    stateful_step_count=7,
+    max_examples=4,
+    stateful_step_count=6,
     deadline=None,
     suppress_health_check=list(HealthCheck),
     phases=(Phase.reuse, Phase.generate),  # shrinking an example takes minutes
