@@ -5,46 +5,96 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numba.np.unsafe.ndarray
 import numpy as np
 
 from exudyn_models.forces.friction_laws import (
     CONTACT_SIZE,
     Contact,
-    contact_of,
     derivatives_by_slip,
     friction_of_slip,
     slip_potential_of_contact,
 )
-from exudyn_models.forces.jit import KeptOnDisk, compiled
-from exudyn_models.forces.laws.product import Law, friction_force_under
-from exudyn_models.forces.slip_kinematics import (
-    IMAGINARY_STEP,
-    MOUNTS_SIZE,
-    Floats,
-    Kinds,
-    Mounts,
-    slip_and_place,
-)
+from exudyn_models.forces.jit import KeptOnDisk, as_arrays, compiled
+from exudyn_models.forces.laws.calls import number_at
+from exudyn_models.forces.laws.product import Law, friction_force_slopes, friction_force_under
+from exudyn_models.forces.slip_kinematics import IMAGINARY_STEP, SIZES, Kinds, slip_and_place
 from reference_model.systems import FloatArray
 
-to_tuple: Any = numba.np.unsafe.ndarray.to_fixed_tuple  # unsafe for a shorter array
+Parameters = tuple[float, tuple[Any, ...]]
+"""Address of a ``Contact``, ``Kinds``, the address of a ``Law`` and reference coordinates, and the law's objects."""
+
+NO_LAW = 0.0
+
+KINDS_AT, LAW_AT, REFERENCE_AT = CONTACT_SIZE, CONTACT_SIZE + 3, CONTACT_SIZE + 4
+
+
+def parameters_of(contact: Contact, kinds: Kinds, law: Law | None, reference: FloatArray) -> Parameters:
+    """Return the parameters of a force function; ``reference``, shape (n,), contains the nodes' coordinates.
+
+    ``law`` gives a friction force that is not constant; the contact then contains 1 N.
+    """
+    law_address, objects = law or (NO_LAW, ())
+    table = np.array([*contact, *kinds, law_address, *reference])
+    return float(table.ctypes.data), (*objects, table)  # the table lives as long as its address
 
 
 @compiled
-def friction_derivatives_on_nodes(
-    kinds: Kinds,
-    coordinates: FloatArray,
-    velocities: FloatArray,
+def contact_of(parameters: Parameters) -> tuple[Contact, Kinds, Law]:
+    """Return contact, kinds and law from the table of ``parameters_of``."""
+    at, objects = parameters
+    radius, points, friction = number_at(at, 0), int(number_at(at, 1)), number_at(at, 2)
+    contact = radius, points, friction, number_at(at, 3), int(number_at(at, 4)), number_at(at, 5)
+    kinds = int(number_at(at, KINDS_AT)), int(number_at(at, KINDS_AT + 1)), number_at(at, KINDS_AT + 2)
+    return contact, kinds, (number_at(at, LAW_AT), objects)
+
+
+@compiled
+def motion_of(parameters: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, FloatArray]:
+    """Return coordinates with reference values, and velocities, in the memory of the lists ``q`` and ``q_t``."""
+    at, _ = parameters
+    size = SIZES[int(number_at(at, KINDS_AT))] + SIZES[int(number_at(at, KINDS_AT + 1))]
+    coordinates, velocities = as_arrays(q, q_t, size)
+    for i in range(size):
+        coordinates[i] += number_at(at, REFERENCE_AT + i)
+    return coordinates, velocities
+
+
+@compiled
+def force_on_any(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+    """Return the generalised forces on both nodes, in the memory of ``q_t``.
+
+    All arguments but the first are Exudyn's.
+    """
+    contact, kinds, law = contact_of(parameters)
+    coordinates, velocities = motion_of(parameters, q, q_t)
+    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
+    ux, uy, spin = slip_of_nodes(to_slip, velocities)
+    angle = math.atan2(sine, cosine)
+    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
+    if law[0] != NO_LAW:
+        radius = math.sqrt(x * x + y * y)
+        speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+        friction = friction_force_under(law, contact[3], t, radius, speed, spin)
+        fx, fy, moment = friction * fx, friction * fy, friction * moment
+    for k in range(len(velocities)):
+        velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
+    return q_t
+
+
+@compiled
+def jacobian_on_any(
+    parameters: Parameters,
+    mbs: Any,
+    t: float,
+    item: int,
+    q: Any,
+    q_t: Any,
     position_factor: float,
     velocity_factor: float,
-    contact: Contact,
-) -> tuple[FloatArray, FloatArray, tuple[FloatArray, float, float, float]]:
-    """Return the derivatives of the generalised forces, shape (n, n), and of radius, P and S, shape (3, n).
-
-    They are weighted sums of the derivatives by coordinates and by velocities. Also returns the generalised forces,
-    shape (n,), the disc's radius in m, P in m/s and S in rad/s.
-    """
+) -> FloatArray:
+    """Return the weighted sum of the derivatives of the negative forces by ``q`` and ``q_t``, shape (n, n)."""
+    contact, kinds, law = contact_of(parameters)
+    coordinates, velocities = motion_of(parameters, q, q_t)
     to_slip, _, turned, (x, y) = slip_and_place(kinds, coordinates)
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(turned[1], turned[0])
@@ -54,19 +104,27 @@ def friction_derivatives_on_nodes(
     speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
     creep = min(1.0, speed / contact[3])
     slope = -1.0 / (contact[2] * creep) if creep > 0.0 else 0.0
-    by_nodes, motion_by_nodes, forces = derivatives_on_nodes(
+    result, by_motion, forces = derivatives_on_nodes(
         kinds,
         coordinates,
         velocities,
-        position_factor,
-        velocity_factor,
+        -position_factor,
+        -velocity_factor,
         to_slip,
         turned,
         force,
         by_slip,
         slope,
     )
-    return by_nodes, motion_by_nodes, (forces, math.sqrt(x * x + y * y), speed, spin)
+    if law[0] != NO_LAW:
+        motion = t, math.sqrt(x * x + y * y), speed, spin
+        friction = friction_force_under(law, contact[3], *motion)
+        slopes = friction_force_slopes(law, contact[3], contact[0], *motion)
+        for j in range(len(forces)):
+            change = slopes[0] * by_motion[0, j] + slopes[1] * by_motion[1, j] + slopes[2] * by_motion[2, j]
+            for i in range(len(forces)):
+                result[i, j] = friction * result[i, j] + forces[i] * change
+    return result
 
 
 @compiled
@@ -84,8 +142,9 @@ def derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The first results are those of ``friction_derivatives_on_nodes``. ``force`` (F_x, F_y, M) has the derivatives
-    ``by_slip``, shape (3, 4), by slip and angle; the gradient of P is ``slope`` times the force.
+    The derivatives are weighted sums of those by coordinates and by velocities: of the forces, shape (n, n), and of
+    radius (m), P (m/s) and S (rad/s), shape (3, n). ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape
+    (3, 4), by slip and angle; the gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
     ux, uy, _ = slip_of_nodes(to_slip, velocities)
@@ -124,48 +183,6 @@ def derivatives_on_nodes(
 
 
 @compiled
-def force_on_any(
-    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the generalised forces on both nodes.
-
-    ``parameters`` are the numbers of ``Contact``, both kinds and the reference coordinates of both nodes. ``law``
-    gives a friction force that is not constant; the contact then contains 1 N. The other arguments are Exudyn's.
-    """
-    result: Floats = to_tuple(_forces(parameters, None, law, t, q, q_t), len(q))
-    return result
-
-
-@compiled
-def force_on_mounted(
-    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
-    forces = _forces(parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE], law, t, q, q_t)
-    result: Floats = to_tuple(forces, len(q))
-    return result
-
-
-@compiled
-def _forces(
-    parameters: Floats, mounts: Mounts | None, law: Law | None, t: float, q: Floats, q_t: Floats
-) -> FloatArray:
-    contact, kinds, coordinates, velocities = _state(parameters, mounts, q, q_t)
-    to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, coordinates)
-    ux, uy, spin = slip_of_nodes(to_slip, velocities)
-    angle = math.atan2(sine, cosine)
-    fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    if law is not None:
-        radius = math.sqrt(x * x + y * y)
-        speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
-        friction = friction_force_under(law, contact[3], t, radius, speed, spin)
-        fx, fy, moment = friction * fx, friction * fy, friction * moment
-    for k in range(len(q)):
-        velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
-    return velocities
-
-
-@compiled
 def slip_of_nodes(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, float, float]:
     """Return their product, faster than a library for such small arrays."""
     ux = uy = spin = 0.0
@@ -174,55 +191,6 @@ def slip_of_nodes(to_slip: FloatArray, velocities: FloatArray) -> tuple[float, f
         uy += to_slip[1, k] * velocities[k]
         spin += to_slip[2, k] * velocities[k]
     return ux, uy, spin
-
-
-@compiled
-def jacobian_on_any(
-    parameters: Floats,
-    mbs: Any,
-    t: float,
-    item: int,
-    q: Floats,
-    q_t: Floats,
-    position_factor: float,
-    velocity_factor: float,
-) -> FloatArray:
-    """Return the derivatives of the negative forces, shape (n, n)."""
-    contact, kinds, coordinates, velocities = _state(parameters, None, q, q_t)
-    return friction_derivatives_on_nodes(
-        kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
-    )[0]
-
-
-@compiled
-def jacobian_on_mounted(
-    parameters: Floats,
-    mbs: Any,
-    t: float,
-    item: int,
-    q: Floats,
-    q_t: Floats,
-    position_factor: float,
-    velocity_factor: float,
-) -> FloatArray:
-    """Return the same for a contact with ``Mounts``, whose numbers precede all other ``parameters``."""
-    rest, mounts = parameters[MOUNTS_SIZE:], parameters[:MOUNTS_SIZE]
-    contact, kinds, coordinates, velocities = _state(rest, mounts, q, q_t)
-    return friction_derivatives_on_nodes(
-        kinds, coordinates, velocities, -position_factor, -velocity_factor, contact
-    )[0]
-
-
-@compiled
-def _state(
-    parameters: Floats, mounts: Mounts | None, q: Floats, q_t: Floats
-) -> tuple[Contact, Kinds, FloatArray, FloatArray]:
-    contact, kinds = contact_of(parameters)
-    coordinates, velocities = np.empty(len(q)), np.empty(len(q))
-    for i in range(len(q)):
-        coordinates[i] = parameters[CONTACT_SIZE + 2 + i] + q[i]
-        velocities[i] = q_t[i]
-    return contact, (int(kinds[0]), int(kinds[1]), mounts), coordinates, velocities
 
 
 @compiled

@@ -21,11 +21,12 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
+from exudyn_models.forces.any_pair import Parameters, contact_of, parameters_of
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact, mean_radius
-from exudyn_models.forces.jit import compiled, taking_lists
-from exudyn_models.forces.laws.product import LAW, Law, friction_force_under
-from exudyn_models.forces.load_and_coefficient import AT_REST, LoadAndCoefficient
-from exudyn_models.forces.slip_kinematics import GROUND, ROTOR, Floats, Kinds
+from exudyn_models.forces.jit import FLOATS, as_arrays, compiled, entry_point
+from exudyn_models.forces.laws.product import AT_REST, LAW, friction_force_under
+from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
+from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, ROTOR, SIZES, Floats, Kinds
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
@@ -34,7 +35,7 @@ FREE = 1e-12
 ROUNDING = 1e-12
 """Friction, relative to the largest in a run, that a slack spring may show as the load of an open contact."""
 
-ON_ONE_AXIS = ((ROTOR, ROTOR, None), (GROUND, ROTOR, None))
+ON_ONE_AXIS = ((ROTOR, ROTOR, NO_MOUNTS), (GROUND, ROTOR, NO_MOUNTS))
 """``Kinds`` of bodies that turn about one axis."""
 
 
@@ -49,9 +50,9 @@ def functions_on_axis(kinds: Kinds, factors: LoadAndCoefficient) -> tuple[Any, A
     if factors.contact is not None:
         force = _constant(grounded, factors.contact)
     else:
-        law, size = (force_on_ground, 1) if grounded else (force_on_rotor, 2)
-        evaluate = taking_lists(law, 2, LAW, None, float, None, None, size)
-        force = partial(evaluate, [mean_radius(contact), contact[3]], factors.law)
+        at_mean_radius = mean_radius(contact), *contact[1:]
+        parameters = parameters_of(at_mean_radius, kinds, factors.law, np.zeros(2))
+        force = partial(entry_point(force_on_axis, LAW, None, float, None, None, FLOATS), parameters)
 
     def jacobian(
         mbs: Any,
@@ -99,28 +100,18 @@ def _constant(grounded: bool, contact: Contact) -> Any:
 
 
 @compiled
-def force_on_ground(
-    parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the moment on a rotor; ``parameters`` are mean radius (m) and ε (m/s)."""
-    return (_moment(parameters, law, t, q_t[0]),)
-
-
-@compiled
-def force_on_rotor(
-    parameters: Floats, law: Law, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the moments on both rotors."""
-    of_disc = _moment(parameters, law, t, q_t[1] - q_t[0])
-    return -of_disc, of_disc
-
-
-@compiled
-def _moment(parameters: Floats, law: Law, t: float, spin: float) -> float:
-    radius, epsilon = parameters
+def force_on_axis(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+    """Return the moments on one or two rotors, in the memory of ``q_t``, under a law; R is the mean radius."""
+    (radius, _, _, epsilon, _, _), (master, _, _), law = contact_of(parameters)
+    disc = SIZES[master]
+    velocities, _ = as_arrays(q_t, q_t, disc + 1)
+    spin = velocities[1] - velocities[0] if disc == 1 else velocities[0]
     speed = radius * abs(spin)
     limit = radius * friction_force_under(law, epsilon, t, 0.0, speed, spin)
-    return -math.copysign(limit * min(1.0, speed / epsilon), spin)
+    velocities[disc] = -math.copysign(limit * min(1.0, speed / epsilon), spin)
+    if disc == 1:
+        velocities[0] = -velocities[1]
+    return q_t
 
 
 def _slope(factors: LoadAndCoefficient, t: float, spin: float) -> float:

@@ -19,7 +19,6 @@ leave an error of ε^0.8; here all errors are of first order in ε.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -52,13 +51,6 @@ at δ would disturb Newton's method.
 
 CONTACT_SIZE = 6
 """Number of components of a ``Contact``."""
-
-
-@compiled
-def contact_of(parameters: Sequence[float]) -> tuple[Contact, Sequence[float]]:
-    """Return the ``Contact`` at the start of ``parameters``, and the rest."""
-    radius, points, friction, epsilon, held, inner = parameters[:CONTACT_SIZE]
-    return (radius, int(points), friction, epsilon, int(held), inner), parameters[CONTACT_SIZE:]
 
 
 def mean_radius(contact: Contact) -> float:

@@ -10,11 +10,17 @@ from typing import Any, TypeAlias, cast
 import numpy as np
 
 from exudyn_models.forces.friction_laws import NONE_HELD, Contact
-from exudyn_models.forces.jit import taking_lists
+from exudyn_models.forces.jit import entry_point
 from exudyn_models.forces.laws.curves import curve_of_table
 from exudyn_models.forces.laws.functions import LawFunction, checked_not_negative, law_function
 from exudyn_models.forces.laws.places import ring_places, table_of
-from exudyn_models.forces.laws.product import LAW, Law, friction_force_under, law_of
+from exudyn_models.forces.laws.product import (
+    LAW,
+    Law,
+    friction_force_slopes,
+    friction_force_under,
+    law_of,
+)
 from reference_model.systems import FloatArray, finite_number
 
 NumberOrFunction: TypeAlias = float | Callable[..., float]
@@ -22,15 +28,6 @@ NumberOrFunction: TypeAlias = float | Callable[..., float]
 
 Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArray
 """A coefficient, which may also be a table for ``curve_of_table``."""
-
-DIFFERENCE = 1e-5
-"""Relative step of the central differences of μN by the motion."""
-
-SLOWEST = 1e-9
-"""Slip speed in m/s below which this step stays constant."""
-
-AT_REST = 1e-200
-"""Relative spin in rad/s of a contact at rest that is about to slide."""
 
 
 class LoadAndCoefficient:
@@ -112,25 +109,10 @@ class LoadAndCoefficient:
         self, t: float, radius: float, slip_speed: float, relative_spin: float
     ) -> FloatArray:
         """Return ∂(μN)/∂(radius, slip speed, relative spin) in N/m, N s/m and N s, shape (3,)."""
-        rim, epsilon = self.contact_radius, max(self.geometry[3], SLOWEST)
-        motion = {"radius": radius, "slip_speed": slip_speed, "relative_spin": relative_spin}
-        scales = (
-            max(radius, rim),
-            max(slip_speed, epsilon),
-            max(abs(relative_spin), epsilon / rim if rim else 1.0),
-        )
-        result = np.zeros(3)
-        for i, (name, scale) in enumerate(zip(motion, scales, strict=True)):
-            if name in self._reads and (name != "radius" or radius > 0.0):  # no derivative on the axis
-                low, high = motion[name] - DIFFERENCE * scale, motion[name] + DIFFERENCE * scale
-                if motion[name] >= 0.0:  # the coefficient may jump at rest
-                    low = max(AT_REST, low)
-                else:
-                    high = min(-AT_REST, high)
-                change = self.friction_force(t, **motion | {name: high})
-                change -= self.friction_force(t, **motion | {name: low})
-                result[i] = change / (high - low)
-        return result
+        if self.law is None:
+            return np.zeros(3)
+        fixed = self.law, self.geometry[3], self.contact_radius
+        return np.array(_slopes()(*fixed, t, radius, slip_speed, relative_spin))
 
 
 def _with(contact: Contact, friction: float) -> Contact:
@@ -140,7 +122,12 @@ def _with(contact: Contact, friction: float) -> Contact:
 
 @cache
 def _of_python() -> Callable[..., Any]:
-    return taking_lists(friction_force_under, LAW, *[float] * 5)
+    return entry_point(friction_force_under, LAW, *[float] * 5)
+
+
+@cache
+def _slopes() -> Callable[..., Any]:
+    return entry_point(friction_force_slopes, LAW, *[float] * 6)
 
 
 def _coefficient(value: Coefficient) -> float | LawFunction | FloatArray:

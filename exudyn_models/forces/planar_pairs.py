@@ -6,146 +6,85 @@ The arguments are those of the functions in ``any_pair``.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from exudyn_models.forces.any_pair import NO_LAW, Parameters, contact_of, motion_of
 from exudyn_models.forces.friction_laws import (
-    contact_of,
     ring_friction,
     ring_friction_derivatives,
     slip_potential_of_contact,
 )
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.laws.product import Law, friction_force_under
-from exudyn_models.forces.slip_kinematics import GROUND, PLANAR, ROTOR, Floats, Kinds
+from exudyn_models.forces.laws.product import friction_force_under
+from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, PLANAR, ROTOR, SIZES
 from reference_model.systems import FloatArray
 
-
-@compiled
-def force_on_ground(
-    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the generalised forces on a planar disc."""
-    fx, fy, moment, _ = _friction(_on_ground(parameters, q, q_t), parameters, law, t)
-    return fx, fy, moment
+IN_THE_PLANE = tuple((master, PLANAR, NO_MOUNTS) for master in (GROUND, ROTOR, PLANAR))
+"""``Kinds`` of pairs that these functions support."""
 
 
 @compiled
-def force_on_rotor(
-    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the forces on a rotor and a planar disc."""
-    fx, fy, moment, master_moment = _friction(_on_rotor(parameters, q, q_t), parameters, law, t)
-    return master_moment, fx, fy, moment
+def force_in_the_plane(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+    """Return the generalised forces on both nodes, in the memory of ``q_t``."""
+    contact, kinds, law = contact_of(parameters)
+    coordinates, velocities = motion_of(parameters, q, q_t)
+    motion = _relative(SIZES[kinds[0]], coordinates, velocities)
+    dx, dy, angle, dvx, dvy, master_spin, disc_spin = motion
+    if law[0] != NO_LAW:
+        radius, points, _, epsilon, held, inner = contact
+        spin = disc_spin - master_spin
+        ux, uy = dvx + master_spin * dy, dvy - master_spin * dx
+        speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+        friction = friction_force_under(law, epsilon, t, math.sqrt(dx * dx + dy * dy), speed, spin)
+        contact = radius, points, friction, epsilon, held, inner
+    forces = velocities
+    at = SIZES[kinds[0]]
+    forces[at], forces[at + 1], forces[at + 2], master_moment = ring_friction(*motion, contact)
+    if at > 0:
+        forces[at - 1] = master_moment
+    if at > 1:
+        forces[0], forces[1] = -forces[at], -forces[at + 1]
+    return q_t
 
 
 @compiled
-def force_on_planar(
-    parameters: Floats, law: Law | None, mbs: Any, t: float, item: int, q: Floats, q_t: Floats
-) -> Floats:
-    """Return the forces on a planar master and a planar disc."""
-    fx, fy, moment, master_moment = _friction(_on_planar(parameters, q, q_t), parameters, law, t)
-    return -fx, -fy, master_moment, fx, fy, moment
-
-
-@compiled
-def jacobian_on_ground(
-    parameters: Floats,
+def jacobian_in_the_plane(
+    parameters: Parameters,
     mbs: Any,
     t: float,
     item: int,
-    q: Floats,
-    q_t: Floats,
+    q: Any,
+    q_t: Any,
     position_factor: float,
     velocity_factor: float,
 ) -> FloatArray:
-    """Return the derivatives of the negative forces, shape (3, 3)."""
-    contact, _ = contact_of(parameters)
-    derivatives = ring_friction_derivatives(*_on_ground(parameters, q, q_t), contact)
-    # The ground is a planar master without coordinates.
-    return _over_both_nodes(derivatives, position_factor, velocity_factor)[3:, 3:].copy()
+    """Return the derivatives of the negative forces, shape (n, n), under a load and a coefficient of time alone."""
+    contact, kinds, law = contact_of(parameters)
+    motion = _relative(SIZES[kinds[0]], *motion_of(parameters, q, q_t))
+    if law[0] != NO_LAW:
+        radius, points, _, epsilon, held, inner = contact
+        contact = radius, points, friction_force_under(law, epsilon, t, 0.0, 0.0, 0.0), epsilon, held, inner
+    derivatives = ring_friction_derivatives(*motion, contact)
+    # The ground is a planar master without coordinates, a rotor one without x and y.
+    first = SIZES[PLANAR] - SIZES[kinds[0]]
+    return _over_both_nodes(derivatives, position_factor, velocity_factor)[first:, first:].copy()
 
-
-@compiled
-def jacobian_on_rotor(
-    parameters: Floats,
-    mbs: Any,
-    t: float,
-    item: int,
-    q: Floats,
-    q_t: Floats,
-    position_factor: float,
-    velocity_factor: float,
-) -> FloatArray:
-    """Return the derivatives of the negative forces, shape (4, 4)."""
-    contact, _ = contact_of(parameters)
-    derivatives = ring_friction_derivatives(*_on_rotor(parameters, q, q_t), contact)
-    # A rotor is a planar master without x and y.
-    return _over_both_nodes(derivatives, position_factor, velocity_factor)[2:, 2:].copy()
-
-
-@compiled
-def jacobian_on_planar(
-    parameters: Floats,
-    mbs: Any,
-    t: float,
-    item: int,
-    q: Floats,
-    q_t: Floats,
-    position_factor: float,
-    velocity_factor: float,
-) -> FloatArray:
-    """Return the derivatives of the negative forces, shape (6, 6)."""
-    contact, _ = contact_of(parameters)
-    derivatives = ring_friction_derivatives(*_on_planar(parameters, q, q_t), contact)
-    return _over_both_nodes(derivatives, position_factor, velocity_factor)
-
-
-LAWS: dict[Kinds, tuple[Callable[..., Floats], Callable[..., FloatArray]]] = {
-    (GROUND, PLANAR, None): (force_on_ground, jacobian_on_ground),
-    (ROTOR, PLANAR, None): (force_on_rotor, jacobian_on_rotor),
-    (PLANAR, PLANAR, None): (force_on_planar, jacobian_on_planar),
-}
 
 Relative = tuple[float, float, float, float, float, float, float]
 """Relative motion: dx, dy, angle, dvx, dvy and both spins."""
 
 
 @compiled
-def _friction(
-    motion: Relative, parameters: Floats, law: Law | None, t: float
-) -> tuple[float, float, float, float]:
-    contact, _ = contact_of(parameters)
-    if law is None:
-        return ring_friction(*motion, contact)
-    dx, dy, angle, dvx, dvy, master_spin, disc_spin = motion
-    radius, points, _, epsilon, held, inner = contact
-    spin = disc_spin - master_spin
-    ux, uy = dvx + master_spin * dy, dvy - master_spin * dx
-    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
-    friction = friction_force_under(law, epsilon, t, math.sqrt(dx * dx + dy * dy), speed, spin)
-    return ring_friction(*motion, (radius, points, friction, epsilon, held, inner))
-
-
-@compiled
-def _on_ground(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
-    _, (_, _, x, y, angle) = contact_of(parameters)
-    return x + q[0], y + q[1], angle + q[2], q_t[0], q_t[1], 0.0, q_t[2]
-
-
-@compiled
-def _on_rotor(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
-    _, (_, _, _, x, y, angle) = contact_of(parameters)
-    return x + q[1], y + q[2], angle + q[3], q_t[1], q_t[2], q_t[0], q_t[3]
-
-
-@compiled
-def _on_planar(parameters: Floats, q: Floats, q_t: Floats) -> Relative:
-    _, (_, _, xm, ym, _, x, y, angle) = contact_of(parameters)
-    dx, dy = (x + q[3]) - (xm + q[0]), (y + q[4]) - (ym + q[1])
-    return dx, dy, angle + q[5], q_t[3] - q_t[0], q_t[4] - q_t[1], q_t[2], q_t[5]
+def _relative(at: int, coordinates: FloatArray, velocities: FloatArray) -> Relative:
+    """Return the relative motion of a disc whose coordinates start at index ``at``."""
+    x, y, vx, vy, master_spin = coordinates[at], coordinates[at + 1], velocities[at], velocities[at + 1], 0.0
+    if at > 0:
+        master_spin = velocities[at - 1]
+    if at > 1:
+        x, y, vx, vy = x - coordinates[0], y - coordinates[1], vx - velocities[0], vy - velocities[1]
+    return x, y, coordinates[at + 2], vx, vy, master_spin, velocities[at + 2]
 
 
 @compiled

@@ -9,13 +9,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from exudyn_models.forces.jit import KeptOnDisk, compiled, taking_lists
+from exudyn_models.forces.any_pair import Parameters
+from exudyn_models.forces.jit import FLOATS, KeptOnDisk, as_arrays, compiled, entry_point
+from exudyn_models.forces.laws.calls import number_at
+from exudyn_models.forces.laws.product import LAW
 from exudyn_models.forces.slip_kinematics import (
     IMAGINARY_STEP,
+    NO_MOUNTS,
     PLANAR,
     SIZES,
     TRANSLATIONS,
@@ -43,7 +48,7 @@ def support_functions(
     ``reference`` contains the reference coordinates of both, shape (n,). The model omits the first ``hidden``, which
     are zero.
     """
-    if kinds[0] == PLANAR and kinds[2] is None:
+    if kinds[0] == PLANAR and kinds[2] == NO_MOUNTS:
         force = _force_on_flat_base(hidden, reference, offset, law)
     else:
         force = _force_on_any_base(kinds, reference, offset, law)
@@ -51,17 +56,10 @@ def support_functions(
 
 
 def _force_on_flat_base(hidden: int, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
-    xb, yb, angle, x, y, *tilts = reference.tolist()
-    parameters = [*law, *offset, x - xb, y - yb, angle]
-    size = len(reference) - hidden
-    evaluate = taking_lists(_ON_FLAT_BASES[hidden], len(parameters), size, size)
-    rest = (0.0,) * len(tilts)
-
-    def force(mbs: Any, t: float, item: int, q: Sequence[float], q_t: Sequence[float]) -> Sequence[float]:
-        forces: tuple[float, ...] = evaluate(parameters, q, q_t)
-        return forces + rest
-
-    return force
+    xb, yb, angle, x, y, *_ = reference.tolist()
+    table = np.array([hidden, len(reference) - hidden, *law, *offset, x - xb, y - yb, angle])
+    evaluate = entry_point(force_in_the_plane, LAW, None, None, None, FLOATS, FLOATS)
+    return partial(evaluate, (float(table.ctypes.data), (table,)))  # the table lives as long as its address
 
 
 def _force_on_any_base(kinds: Kinds, reference: FloatArray, offset: Offset, law: Law) -> ForceFunction:
@@ -121,53 +119,36 @@ def elastic_energy(square: float, law: Law) -> float:
     return (stiffness * square + hardening * square * square / 2.0 + stop * beyond * beyond) / 2.0
 
 
-Parameters = Sequence[float]
-"""A ``Law``, an ``Offset``, and reference values of the disc's relative position and the base's angle."""
-
-
 @compiled
-def force_on_ground(parameters: Parameters, q: Sequence[float], q_t: Sequence[float]) -> tuple[float, float]:
-    """Return the force on a disc (N)."""
-    fx, fy, _ = _in_the_plane(parameters, q[0], q[1], q_t[0], q_t[1], 0.0, 0.0)
-    return fx, fy
+def force_in_the_plane(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
+    """Return the forces on both nodes, in the memory of ``q_t``, for a base that only turns about the z-axis.
 
-
-@compiled
-def forces_on_rotor(
-    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
-) -> tuple[float, float, float]:
-    """Return the moment on a rotor (N m) and the force on a disc (N)."""
-    fx, fy, moment = _in_the_plane(parameters, q[1], q[2], q_t[1], q_t[2], q[0], q_t[0])
-    return moment, fx, fy
-
-
-@compiled
-def forces_on_planar_base(
-    parameters: Parameters, q: Sequence[float], q_t: Sequence[float]
-) -> tuple[float, float, float, float, float]:
-    """Return force and moment on a planar body, and the force on a disc."""
-    dx, dy, dvx, dvy = q[3] - q[0], q[4] - q[1], q_t[3] - q_t[0], q_t[4] - q_t[1]
-    fx, fy, moment = _in_the_plane(parameters, dx, dy, dvx, dvy, q[2], q_t[2])
-    return -fx, -fy, moment, fx, fy
-
-
-@compiled
-def _in_the_plane(
-    parameters: Parameters, x: float, y: float, vx: float, vy: float, angle: float, spin: float
-) -> tuple[float, float, float]:
-    """Return force on the disc (N) and moment on the base (N m), in global axes.
-
-    Position (m) and velocity (m/s) are relative to the base; angle (rad) and spin (rad/s) are the base's.
+    The parameters are the address of the numbers of hidden and of other coordinates, a ``Law``, an ``Offset``, and
+    reference values of the disc's relative position and the base's angle.
     """
-    stiffness, hardening, gap, stop, damping, offset_x, offset_y, x0, y0, angle0 = parameters
-    x, y, cosine, sine = x0 + x, y0 + y, math.cos(angle0 + angle), math.sin(angle0 + angle)
+    at, _ = parameters
+    disc, size = SIZES[PLANAR] - int(number_at(at, 0)), int(number_at(at, 1))
+    positions, velocities = as_arrays(q, q_t, size)
+    x, y, vx, vy = positions[disc], positions[disc + 1], velocities[disc], velocities[disc + 1]
+    angle = spin = 0.0
+    if disc > 0:
+        angle, spin = positions[disc - 1], velocities[disc - 1]
+    if disc > 1:
+        x, y, vx, vy = x - positions[0], y - positions[1], vx - velocities[0], vy - velocities[1]
+    law = number_at(at, 2), number_at(at, 3), number_at(at, 4), number_at(at, 5), number_at(at, 6)
+    offset_x, offset_y, angle = number_at(at, 7), number_at(at, 8), number_at(at, 11) + angle
+    x, y, cosine, sine = number_at(at, 9) + x, number_at(at, 10) + y, math.cos(angle), math.sin(angle)
     wx, wy = x - cosine * offset_x + sine * offset_y, y - sine * offset_x - cosine * offset_y
-    secant = secant_stiffness(wx * wx + wy * wy, (stiffness, hardening, gap, stop, damping))
+    secant, damping = secant_stiffness(wx * wx + wy * wy, law), law[4]
     fx, fy = -secant * wx - damping * (vx + spin * y), -secant * wy - damping * (vy - spin * x)
-    return fx, fy, y * fx - x * fy
-
-
-_ON_FLAT_BASES = {ON_GROUND: force_on_ground, ON_ROTOR: forces_on_rotor, 0: forces_on_planar_base}
+    for i in range(size):
+        velocities[i] = 0.0
+    velocities[disc], velocities[disc + 1] = fx, fy
+    if disc > 0:
+        velocities[disc - 1] = y * fx - x * fy
+    if disc > 1:
+        velocities[0], velocities[1] = -fx, -fy
+    return q_t
 
 
 @compiled

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exudyn_models.forces.jit import KeptOnDisk, compiled, inlined
+from exudyn_models.forces.laws.calls import number_at
 
 ROTOR, PLANAR, ROTATION_VECTOR, TAIT_BRYAN, GROUND, EULER_PARAMETERS = 0, 1, 2, 3, 4, 5
 
@@ -49,17 +50,17 @@ ROUNDING = 1e-12
 
 MOUNT_SIZE = 24
 
-MOUNTS_SIZE = 2 * MOUNT_SIZE
+NO_MOUNTS = 0.0
 
-Mounts = Sequence[float]
-"""Place and axes of the contact on master and disc, ``MOUNT_SIZE`` numbers each.
+Mounts = float
+"""Address (see ``kept``) of place and axes of the contact on master and disc, ``MOUNT_SIZE`` numbers each.
 
-They are two frames, each a position in m and the x, y and z axes. The first is fixed: a rotor turns about its z axis,
-and the ground rests in it. The second is the frame of the contact in the axes of the body.
+These are two frames, each a position in m and the x, y and z axes. The first is fixed: a rotor turns about its z
+axis, and the ground rests in it. The second is the frame of the contact in the axes of the body.
 """
 
-Kinds = tuple[int, int, Mounts | None]
-"""Kinds of the nodes of master and disc, and the mounts of the contact; None if its frames are those of the nodes.
+Kinds = tuple[int, int, Mounts]
+"""Kinds of the nodes of master and disc, and mounts; ``NO_MOUNTS`` if its frames are those of the nodes.
 
 Rotors and the ground then have the global z axis through the origin.
 """
@@ -91,13 +92,13 @@ def slip_and_place(kinds: Kinds, coordinates: Array) -> tuple[Array, Axes, tuple
 
 @compiled
 def _slip_and_place(
-    master: int, disc: int, mounts: Mounts | None, coordinates: Array
+    master: int, disc: int, mounts: Mounts, coordinates: Array
 ) -> tuple[Array, Axes, tuple[Any, Any], tuple[Any, Any]]:
     size, before, first = SIZES[master], TRANSLATIONS[master], TRANSLATIONS[disc]
     place, axes, turning = frame(master, coordinates, 0)
     disc_place, disc_axes, disc_turning = frame(disc, coordinates, size)
     start, centre = place, disc_place
-    if mounts is not None:
+    if mounts != NO_MOUNTS:
         place, start, axes, turning = _mounted(master, mounts, 0, place, axes, turning)
         disc_place, centre, disc_axes, disc_turning = _mounted(
             disc, mounts, MOUNT_SIZE, disc_place, disc_axes, disc_turning
@@ -112,7 +113,7 @@ def _slip_and_place(
             result[i, size + k] = axis[k]
         for k in range(size - before):
             result[i, before + k] = -_product(lever, turning[k])
-        if mounts is not None:
+        if mounts != NO_MOUNTS:
             lever = _lever(disc_place, centre, axis)
             for k in range(SIZES[disc] - first):
                 result[i, size + first + k] = _product(lever, disc_turning[k])
@@ -139,22 +140,24 @@ def _mounted(
     """Return positions of a node and of the contact, the contact's axes, and how ω depends on the rates."""
     if TRANSLATIONS[kind] == 0:  # a rotor or the ground
         fixed = _axes_at(mounts, mount + 3)
-        place = (place[0] + mounts[mount], place[1] + mounts[mount + 1], place[2] + mounts[mount + 2])
+        x, y, z = _vector_at(mounts, mount)
+        place = (place[0] + x, place[1] + y, place[2] + z)
         axes = (_turned(axes[0], fixed), _turned(axes[1], fixed), _turned(axes[2], fixed))
         turning = (_turned(turning[0], fixed), turning[1], turning[2], turning[3])
-    x, y, z = _turned((mounts[mount + 12], mounts[mount + 13], mounts[mount + 14]), axes)
+    arm = _turned(_vector_at(mounts, mount + 12), axes)
     own = _axes_at(mounts, mount + 15)
-    centre = (place[0] + x, place[1] + y, place[2] + z)
+    centre = (place[0] + arm[0], place[1] + arm[1], place[2] + arm[2])
     return place, centre, (_turned(own[0], axes), _turned(own[1], axes), _turned(own[2], axes)), turning
 
 
 @compiled
 def _axes_at(mounts: Mounts, at: int) -> Axes:
-    return (
-        (mounts[at], mounts[at + 1], mounts[at + 2]),
-        (mounts[at + 3], mounts[at + 4], mounts[at + 5]),
-        (mounts[at + 6], mounts[at + 7], mounts[at + 8]),
-    )
+    return _vector_at(mounts, at), _vector_at(mounts, at + 3), _vector_at(mounts, at + 6)
+
+
+@compiled
+def _vector_at(mounts: Mounts, at: int) -> Vector:
+    return number_at(mounts, at), number_at(mounts, at + 1), number_at(mounts, at + 2)
 
 
 @compiled

@@ -13,9 +13,11 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
+from exudyn_models.forces.laws.calls import kept
 from exudyn_models.forces.slip_kinematics import (
     GROUND,
     KINDS,
+    NO_MOUNTS,
     PLANAR,
     ROTOR,
     SPATIAL,
@@ -105,7 +107,7 @@ def nodes_and_kinds(master: Side, disc: Side) -> tuple[tuple[Any, ...], Kinds]:
     # The place of a rotor along its axis matters only to a master that tilts.
     at_nodes = master.is_at_node and disc.is_at_node and (master.kind in FLAT or disc.start[2] == 0.0)
     plain = at_nodes or _share_an_axis(master, disc)
-    return nodes, (master.kind, disc.kind, None if plain else (*master.numbers, *disc.numbers))
+    return nodes, (master.kind, disc.kind, NO_MOUNTS if plain else kept((*master.numbers, *disc.numbers)))
 
 
 def kinds_at(mbs: Any, master: Side, disc: Side, places: FloatArray) -> list[Kinds]:

@@ -14,7 +14,7 @@ from typing import Any
 import exudyn as exu
 
 from exudyn_models.forces.laws.functions import checked_not_negative
-from exudyn_models.forces.slip_kinematics import PLANAR, ROTOR
+from exudyn_models.forces.slip_kinematics import NO_MOUNTS, PLANAR, ROTOR
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.parts.ring_friction import ContactPoints, checked_contact
 from exudyn_models.solver.items import items
@@ -89,7 +89,7 @@ def add_native_friction(
 
 def _checked_nodes(mbs: Any, master_node: Any, disc_node: Any) -> tuple[Any, Any]:
     sides = checked_sides(mbs, master_node, disc_node, (ROTOR, PLANAR), (PLANAR,))
-    if nodes_and_kinds(*sides)[1][2] is not None:
+    if nodes_and_kinds(*sides)[1][2] != NO_MOUNTS:
         raise ValueError(
             f"master_node {master_node!r}, disc_node {disc_node!r}: Exudyn's built-in contact sits at the nodes, and "
             "a rotor or a ground must have the global z-axis; use add_ring_friction for markers and other axes"

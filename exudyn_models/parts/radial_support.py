@@ -29,6 +29,7 @@ from exudyn_models.forces.radial_springs import (
 )
 from exudyn_models.forces.slip_kinematics import (
     GROUND,
+    NO_MOUNTS,
     PLANAR,
     ROTOR,
     SPATIAL,
@@ -64,7 +65,7 @@ class RadialSupport:
     def power(self, mbs: Any, t: float) -> float:
         """Return the heating power of the damper in W, for ``add_energy_balance``."""
         # On the ground with the global axes, ẇ is the node's velocity, which costs less.
-        if len(self.nodes) == 1 and self._kinds[2] is None:
+        if len(self.nodes) == 1 and self._kinds[2] == NO_MOUNTS:
             (place,) = places_of(mbs, self._connector, self.item)
             vx, vy, *_ = mbs.systemData.GetODE2Coordinates_t()[place].tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
@@ -183,9 +184,9 @@ def _kinds_and_hidden(kinds: Kinds) -> tuple[Kinds, int]:
     If there are no mounts, the ground and a rotor count as planar bodies with fixed coordinates.
     """
     base, disc, mounts = kinds
-    if mounts is not None or base not in (GROUND, ROTOR):
+    if mounts != NO_MOUNTS or base not in (GROUND, ROTOR):
         return kinds, 0
-    return (PLANAR, disc, None), ON_GROUND if base == GROUND else ON_ROTOR
+    return (PLANAR, disc, NO_MOUNTS), ON_GROUND if base == GROUND else ON_ROTOR
 
 
 def _checked_offset(offset: Sequence[float]) -> Offset:

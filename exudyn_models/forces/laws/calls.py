@@ -5,13 +5,17 @@ Addresses are passed as floats, whose 53 bits exceed the 48 bits of an address.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numba.core.cgutils
 import numba.core.datamodel.models
 import numba.extending
+import numpy as np
 from llvmlite import ir
 from numba.core import types
+
+from reference_model.systems import FloatArray
 
 extending: Any = numba.extending  # not fully typed
 cgutils: Any = numba.core.cgutils
@@ -22,26 +26,28 @@ ARGUMENTS = 4
 _WORD, _DOUBLE = ir.IntType(64), ir.DoubleType()
 
 
-class PythonFunction(types.Type):
-    """Any Python callable, opaque to compiled code."""
+class PythonObjects(types.Type):
+    """A tuple of Python objects, opaque to compiled code."""
 
     def __init__(self) -> None:
-        super().__init__("PythonFunction")
+        super().__init__("PythonObjects")
 
 
-python_function = PythonFunction()
+python_objects = PythonObjects()
 
-extending.register_model(PythonFunction)(numba.core.datamodel.models.OpaqueModel)
+extending.register_model(PythonObjects)(numba.core.datamodel.models.OpaqueModel)
 
 
-@extending.unbox(PythonFunction)  # type: ignore[untyped-decorator]
+@extending.unbox(PythonObjects)  # type: ignore[untyped-decorator]
 def _as_it_is(kind: Any, argument: Any, context: Any) -> Any:
     return extending.NativeValue(argument)
 
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
-def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
-    """Return the result of a Python function called with those of four numbers whose bits are set in ``places``.
+def result_of_python(
+    typing: Any, objects: Any, which: Any, places: Any, a: Any, b: Any, c: Any, d: Any
+) -> Any:
+    """Return the result of a function, one of ``objects``, of those of four numbers whose bits are set in ``places``.
 
     It is NaN for anything but a number. Errors are passed on.
     """
@@ -49,7 +55,9 @@ def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         api = context.get_python_api(builder)
-        callee, chosen, *numbers = arguments
+        functions, number, chosen, *numbers = arguments
+        get_item = ir.FunctionType(api.pyobj, [api.pyobj, _WORD])
+        callee = builder.call(api._get_function(get_item, name="PyTuple_GetItem"), [functions, number])
         # The callee may use the first place.
         stack = cgutils.alloca_once(builder, api.pyobj, size=ARGUMENTS + 1)
         count = cgutils.alloca_once_value(builder, _WORD(0))
@@ -78,7 +86,7 @@ def result_of_python(typing: Any, function: Any, places: Any, a: Any, b: Any, c:
             builder.store(_DOUBLE(float("nan")), value)  # a negative value is invalid anyway
         return builder.load(value)
 
-    return types.float64(function, types.int64, *floats), generate
+    return types.float64(objects, types.int64, types.int64, *floats), generate
 
 
 @extending.intrinsic  # type: ignore[untyped-decorator]
@@ -108,6 +116,22 @@ def number_at(typing: Any, address: Any, place: Any) -> Any:
         return builder.load(builder.gep(start, [index]))
 
     return types.float64(types.float64, types.int64), generate
+
+
+@cache
+def kept(numbers: tuple[float, ...]) -> float:
+    """Return the address of a copy of ``numbers`` that stays there."""
+    array = np.array(numbers)
+    _KEPT[float(array.ctypes.data)] = array
+    return float(array.ctypes.data)
+
+
+def kept_at(address: float) -> FloatArray:
+    """Return the numbers at the result of ``kept``, shape (n,)."""
+    return _KEPT[address]
+
+
+_KEPT: dict[float, FloatArray] = {}
 
 
 def address_of(function: Any) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any
@@ -38,7 +38,12 @@ class LawFunction:
     @property
     def places(self) -> float:
         """The ``arguments`` as bits of a number."""
-        return float(sum(1 << i for i, name in enumerate(ARGUMENTS) if name in self.arguments))
+        return bits_of(self.arguments)
+
+
+def bits_of(arguments: Collection[str]) -> float:
+    """Return some of ``ARGUMENTS`` as bits of a number."""
+    return float(sum(1 << i for i, name in enumerate(ARGUMENTS) if name in arguments))
 
 
 def law_function(name: str, function: Callable[..., float], unit: str) -> LawFunction:

@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.laws.calls import number_at
+from exudyn_models.forces.laws.calls import kept, kept_at, number_at
 from reference_model.systems import FloatArray, Place
 
 BEND = 4.0 / 3.0
@@ -41,18 +41,12 @@ def point_regularisation(epsilon: float, places: Sequence[Place]) -> float:
 @cache
 def table_of(places: tuple[Place, ...]) -> float:
     """Return the address of a table of δ/ε and of all ``places``."""
-    table = np.array([point_regularisation(1.0, places), *np.ravel(places)])
-    _KNOWN[float(table.ctypes.data)] = table
-    return float(table.ctypes.data)
-
-
-_KNOWN: dict[float, FloatArray] = {}
-"""Tables, kept alive at their addresses."""
+    return kept((point_regularisation(1.0, places), *np.ravel(places).tolist()))
 
 
 def places_in(table: float) -> FloatArray:
     """Return x, y (m) and share of all points, shape (n, 3)."""
-    return _KNOWN[table][1:].reshape(-1, 3)
+    return kept_at(table)[1:].reshape(-1, 3)
 
 
 def slip_maps(table: float, angle: float) -> FloatArray:

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
 from typing import Literal
 
 import numpy as np
 
 from exudyn_models.forces.jit import compiled
-from exudyn_models.forces.laws.calls import number_at
-from reference_model.systems import FloatArray, finite_number
+from exudyn_models.forces.laws.calls import kept, kept_at, number_at
+from reference_model.systems import finite_number
 
 Pressure = Literal["uniform", "wear"] | Callable[[float], float]
 """"uniform"; "wear", ∝ 1/r as in evenly worn linings; or a function of r in m, in any unit."""
@@ -35,7 +34,7 @@ def density_of(pressure: Pressure, inner: float, outer: float) -> int:
     if isinstance(pressure, str) and pressure == "uniform":
         return 0
     if isinstance(pressure, str) and pressure == "wear":
-        return -_kept((0.0,) * DEGREE + (1.0 / (outer - inner),)).ctypes.data
+        return -int(kept((0.0,) * DEGREE + (1.0 / (outer - inner),)))
     if not callable(pressure):
         raise ValueError(
             f"pressure = {pressure!r}: it must be 'uniform', 'wear' or a function of the radius in m"
@@ -54,13 +53,12 @@ def density_of(pressure: Pressure, inner: float, outer: float) -> int:
     coefficients = np.zeros(DEGREE + 1)
     coefficients[: len(power.coef)] = power.coef
     total = float(power.integ()(1.0) - power.integ()(0.0)) * (outer - inner)
-    return -_kept(tuple((coefficients[::-1] / total).tolist())).ctypes.data
+    return -int(kept(tuple((coefficients[::-1] / total).tolist())))
 
 
 def mean_radius_of(density: int, inner: float, outer: float) -> float:
     """Return ∫ r·d(r) dr in m."""
-    coefficients = next(known for known in _KNOWN if known.ctypes.data == -density)
-    share = np.polynomial.Polynomial(coefficients[::-1])
+    share = np.polynomial.Polynomial(kept_at(-density)[::-1])
     lever = share * np.polynomial.Polynomial([inner, outer - inner])
     return float(lever.integ()(1.0) - lever.integ()(0.0)) * (outer - inner)
 
@@ -74,16 +72,6 @@ def share_of_ring(density: int, radius: float, inner: float, outer: float) -> fl
     for i in range(1, DEGREE + 1):
         share = share * place + number_at(address, i)
     return float(share)
-
-
-_KNOWN: list[FloatArray] = []
-"""Coefficients from the highest power down, kept alive at fixed addresses."""
-
-
-@cache
-def _kept(coefficients: tuple[float, ...]) -> FloatArray:
-    _KNOWN.append(np.array(coefficients))
-    return _KNOWN[-1]
 
 
 def _checked(pressure: Callable[[float], float], radius: float) -> float:

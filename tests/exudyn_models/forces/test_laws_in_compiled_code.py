@@ -99,6 +99,15 @@ def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, functi
         force(mbs, 0.25, 0, *state)
 
 
+@pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar"), ("Tait-Bryan", "Tait-Bryan")])
+def test_anything_but_a_list_of_all_velocities_is_a_type_error(kinds):
+    mbs, friction = added(kinds, normal_load=lambda radius: 2.0)
+    force, size = friction._contact.functions["force"], len(friction._contact.reference)
+    for wrong in ([0.1] * (size - 1), [0.1] * 15, ["a"] * size, (0.1,) * size, None):
+        with pytest.raises(TypeError):
+            force(mbs, 0.7, 0, [0.1] * size, wrong)
+
+
 def test_a_table_outlives_what_it_was_made_from():
     contact = (0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12)
     laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
@@ -133,13 +142,14 @@ for one in gc.get_objects():
 """
 
 
-def test_a_second_process_compiles_nothing_that_takes_long():
+def test_a_second_process_compiles_nothing_that_takes_long(monkeypatch):
     """Functions that Python calls are kept on disk, also those of sensors and Jacobians."""
     folder = str(Path(__file__).parents[1])
-    for _ in range(2):
-        run = subprocess.run(
-            [sys.executable, "-c", USE_OF_ALL_PARTS, folder], capture_output=True, text=True, check=True
-        )
+    monkeypatch.setattr(sys, "argv", ["", folder])
+    exec(USE_OF_ALL_PARTS, {})  # the first process is this one
+    run = subprocess.run(
+        [sys.executable, "-c", USE_OF_ALL_PARTS, folder], capture_output=True, text=True, check=True
+    )
     assert set(run.stdout.split()) <= {
         "secant_stiffness",
         "elastic_energy",

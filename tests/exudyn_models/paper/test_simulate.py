@@ -1,10 +1,8 @@
 """Motions of the pin, the ring and six points: slip to the tolerance, stick to first order in ε, and their limits."""
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
 
+import exudyn as exu
 import numpy as np
 import pytest
 from plain_slip import slide
@@ -51,7 +49,7 @@ def largest(difference):
 @SLIPS
 def test_errors_while_slipping_fall_with_the_tolerance_at_every_output_time(name):
     """Against an integrator that has nothing to do with Exudyn."""
-    (system, start), times = SLIPPING[name], np.linspace(0.0, 40.0, 81)
+    (system, start), times = SLIPPING[name], np.linspace(0.0, 20.0, 41)
     expected = slide(system, start, times).y.T
     found = [simulate(system, start, times, tolerance=tolerance) for tolerance in (1e-5, 1e-7, 1e-9)]
     assert all(kinds(run) == ["slip"] for run in found)
@@ -90,12 +88,12 @@ def test_integrators_converge_at_their_order(name, integrator, order, step):
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3), errors
 
 
-@pytest.mark.parametrize(("name", "end"), [("pin", 100.0), ("points", 100.0)])
-def test_errors_of_the_built_in_contact_are_below_the_tolerance_and_of_first_order(name, end):
-    system, start = SLIPPING[name]
-    expected = slide(system, start, [0.0, end]).y[:, -1]
-    tolerances = 1e-6, 1e-7, 1e-8, 1e-9
-    found = [simulate_with_native_contact(system, start, [0.0, end], tolerance=one) for one in tolerances]
+@pytest.mark.parametrize("name", ["pin", "points"])
+def test_errors_of_the_built_in_contact_are_below_the_tolerance_and_of_first_order(name):
+    (system, start), times = SLIPPING[name], [0.0, 40.0]
+    expected = slide(system, start, times).y[:, -1]
+    tolerances = 1e-6, 1e-7, 1e-8
+    found = [simulate_with_native_contact(system, start, times, tolerance=one) for one in tolerances]
     errors = [largest(run.at_end - expected) for run in found]
     assert np.all(np.less(errors, tolerances)), errors
     assert np.polyfit(np.log(tolerances), np.log(errors), 1)[0] == pytest.approx(1.0, abs=0.1), errors
@@ -106,7 +104,7 @@ def test_errors_of_the_built_in_contact_are_below_the_tolerance_and_of_first_ord
     ("name", "engine"), [*((name, simulate) for name in STICKING), ("pin", simulate_with_native_contact)]
 )
 def test_stick_phases_have_errors_of_first_order_in_the_regularisation(name, engine):
-    (system, start), end = STICKING[name], 60.0 if name == "pin" else 12.0
+    (system, start), end = STICKING[name], 60.0 if name == "pin" else 6.0
     exact = reference_model.simulate(system, start, [0.0, end], tolerance=1e-11)
     expected = [kind for kind in kinds(exact) if kind != "pivot"]  # which are short at each release
     errors = []
@@ -135,10 +133,18 @@ def test_the_implicit_solver_passes_through_sticking(name):
     np.testing.assert_allclose(found.stick_times, exact.stick_times, rtol=0.0, atol=1e-3)
 
 
-@pytest.mark.parametrize("points", [None, 6])
-@pytest.mark.parametrize("change", [{}, {"damping": 0.2}, {"stiffness": 1.0}, {"shaft_damping": 0.001}])
-def test_what_is_thrown_on_a_resting_table_comes_to_rest_for_good_and_never_gains_energy(points, change):
-    ring = replace(TABLE, contact_points=points, friction_force=0.3, **change)
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"damping": 0.2},
+        {"stiffness": 1.0},
+        {"shaft_damping": 0.001},
+        {"contact_points": 6, "stiffness": 1.0},
+    ],
+)
+def test_what_is_thrown_on_a_resting_table_comes_to_rest_for_good_and_never_gains_energy(change):
+    ring = replace(TABLE, friction_force=0.3, **change)
     found = simulate(ring, THROWN, np.linspace(0.0, 6.0, 601))
     x, y, _, vx, vy, spin = found.states.T
     energy = 0.5 * ring.mass * (vx**2 + vy**2) + 0.5 * ring.polar_inertia * spin**2
@@ -180,7 +186,7 @@ def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
     exact = reference_model.simulate(disc, start, [0.0, 100.0], tolerance=1e-11)
     assert kinds(exact).count("pivot") == 2
     errors = []
-    for tolerance in (1e-8, 1e-9):
+    for tolerance in (1e-7, 1e-8):
         found = simulate(disc, start, [0.0, 100.0], tolerance=tolerance)
         assert kinds(found) == kinds(exact)
         errors.append(largest(found.at_end - exact.at_end))
@@ -188,23 +194,13 @@ def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
     assert errors[-1] < 2e-6
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {},
-        {"disc_speed": 0.0},
-        {"damping": 0.0},
-        {"stiffness": 0.0, "damping": 0.0},
-        {"shaft_damping": 0.0},
-        FREE,
-    ],
-)
-@pytest.mark.parametrize("name", ["pin", "ring", "points"])
+@pytest.mark.parametrize("change", [{}, {"stiffness": 0.0}, {"shaft_damping": 0.0}, FREE])
+@pytest.mark.parametrize("name", ["pin", "ring"])
 @SOLVERS
 def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, change, solver):
     system, start = SLIPPING[name]
     known = {key: value for key, value in change.items() if hasattr(system, key)}
-    system, times = replace(system, friction_force=0.0, **known), np.linspace(0.0, 10.0, 21)
+    system, times = replace(system, friction_force=0.0, **known), np.linspace(0.0, 5.0, 11)
     found, accuracy = simulate(system, start, times, solver=solver), 1e-10 if solver == "explicit" else 1e-5
     stiffness, damping = system.stiffness / system.mass, system.damping / system.mass
     matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness * np.eye(2), -damping * np.eye(2)]])
@@ -220,7 +216,7 @@ def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, chan
     assert kinds(found) == ["slip"]
 
 
-@pytest.mark.parametrize("name", STICKING)
+@pytest.mark.parametrize("name", ["pin", "ring", "six points"])
 def test_a_mirrored_motion_a_turned_one_and_another_clock_change_nothing_else(name):
     (system, start), delays = STICKING[name], np.linspace(0.0, 6.0, 13)
     expected = simulate(system, start, delays, tolerance=1e-8)
@@ -238,8 +234,7 @@ def test_a_mirrored_motion_a_turned_one_and_another_clock_change_nothing_else(na
         np.testing.assert_allclose(turned.states, expected.states + turn, rtol=0.0, atol=1e-8)
 
 
-@pytest.mark.parametrize("first", [-5.0, 1e6])
-@pytest.mark.parametrize("engine", [simulate, simulate_with_native_contact])
+@pytest.mark.parametrize(("engine", "first"), [(simulate, 1e6), (simulate_with_native_contact, -5.0)])
 def test_the_clock_at_the_start_does_not_matter(engine, first):
     (disc, start), delays = STICKING["six points"], np.linspace(0.0, 3.0, 7)
     moved, expected = engine(disc, start, first + delays), engine(disc, start, delays)
@@ -256,9 +251,9 @@ def test_the_clock_at_the_start_does_not_matter(engine, first):
 def test_a_coordinate_that_passes_minus_one_does_not_stop_the_solver():
     """Exudyn's error weight, absolute + relative·y, is zero at y = −1 if both tolerances are the same."""
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
+    start = [1.0, 0.0, 0.0, 1.0]  # inside of the whirl of radius 1.2: x and y pass −1 in every turn
+    exact = reference_model.simulate(pin, start, [0.0, 50.0], tolerance=1e-13).at_end
     for tolerance in (1e-10, 1e-11, 1e-12):
-        start = [1.0, 0.0, 0.0, 1.0]  # inside of the whirl of radius 1.2: x and y pass −1 in every turn
-        exact = reference_model.simulate(pin, start, [0.0, 50.0], tolerance=1e-13).at_end
         assert simulate(pin, start, [0.0, 50.0], tolerance=tolerance).at_end == pytest.approx(exact, abs=1e-9)
 
 
@@ -355,28 +350,14 @@ def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
         simulate(*STICKING["pin"], [0.0, 10.0], solver=solver, friction=friction_with(interrupted))
 
 
-def test_nothing_is_printed_and_no_file_is_written_nor_infinity_returned(tmp_path):
+def test_nothing_is_printed_and_no_file_is_written_nor_infinity_returned(tmp_path, monkeypatch, capfd):
     """RK44 is unstable for steps above 2.8·mε/μN, and a stiff spring makes it blow up."""
-    code = (
-        "import dataclasses\n"
-        "from exudyn_models import simulate, simulate_fixed_step\n"
-        "from reference_model import SimulationError\n"
-        "from reference_model.systems import PinOnDisc\n"
-        f"pin = {PIN!r}\n"
-        "for solver in ('explicit', 'implicit'):\n"
-        "    simulate(pin, [0.1, 0, 0.03, 0], [0, 12], tolerance=1e-7, solver=solver)\n"
-        "try:\n"
-        "    simulate_fixed_step(dataclasses.replace(pin, stiffness=1e6), [0.1, 0, 0, 0], [0, 1e3], step=0.1)\n"
-        "except SimulationError as error:\n"
-        "    assert 'not finite' in str(error)\n"
-        "else:\n"
-        "    raise SystemExit('no error')\n"
-    )
-    path = os.pathsep.join([os.getcwd(), *(os.path.abspath(p) for p in sys.path if p)])
-    environment = os.environ | {"PYTHONPATH": path}
-    run = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True
-    )
-    printed = [line for line in run.stderr.splitlines() if not line.startswith("Compiling for this machine")]
-    assert (run.returncode, run.stdout, printed) == (0, "", [])
+    monkeypatch.chdir(tmp_path)
+    exu.config.printToConsole = True
+    for solver in ("explicit", "implicit"):
+        simulate(*STICKING["pin"], [0.0, 12.0], tolerance=1e-7, solver=solver)
+    with pytest.raises(SimulationError, match="not finite"):
+        simulate_fixed_step(replace(PIN, stiffness=1e6), [0.1, 0.0, 0.0, 0.0], [0.0, 100.0], step=0.1)
+    printed = "".join(capfd.readouterr()).splitlines()
+    assert [line for line in printed if not line.startswith("Compiling for this machine")] == []
     assert list(tmp_path.iterdir()) == []
