@@ -60,6 +60,23 @@ def motion_of(parameters: Parameters, q: Any, q_t: Any) -> tuple[FloatArray, Flo
 
 
 @compiled
+def friction_factor(
+    law: Law,
+    contact: Contact,
+    t: float,
+    place: tuple[float, float],
+    slip: tuple[float, float, float],
+    angle: float,
+) -> float:
+    """Return μN in N, or 1 without a law, for ``place`` and ``angle`` of ``slip_and_place``."""
+    if law[0] == NO_LAW:
+        return 1.0
+    (x, y), (ux, uy, spin) = place, slip
+    speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
+    return friction_force_under(law, contact[3], t, math.sqrt(x * x + y * y), speed, spin)
+
+
+@compiled
 def force_on_any(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, q_t: Any) -> Any:
     """Return the generalised forces on both nodes, in the memory of ``q_t``.
 
@@ -71,11 +88,8 @@ def force_on_any(parameters: Parameters, mbs: Any, t: float, item: int, q: Any, 
     ux, uy, spin = slip_of_nodes(to_slip, velocities)
     angle = math.atan2(sine, cosine)
     fx, fy, moment = friction_of_slip(ux, uy, spin, angle, contact)
-    if law[0] != NO_LAW:
-        radius = math.sqrt(x * x + y * y)
-        speed = slip_potential_of_contact(ux, uy, spin, angle, contact)
-        friction = friction_force_under(law, contact[3], t, radius, speed, spin)
-        fx, fy, moment = friction * fx, friction * fy, friction * moment
+    factor = friction_factor(law, contact, t, (x, y), (ux, uy, spin), angle)
+    fx, fy, moment = factor * fx, factor * fy, factor * moment
     for k in range(len(velocities)):
         velocities[k] = fx * to_slip[0, k] + fy * to_slip[1, k] + moment * to_slip[2, k]
     return q_t

@@ -117,32 +117,16 @@ def entry_point(function: Callable[..., Any], *kinds: Any) -> Callable[..., Any]
 
 
 class KeptOnDisk:
-    """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types.
-
-    Numba would spend 20 to 50 μs on the types of nested tuples, and a millisecond on a version for other types. So it
-    remembers the version for each combination of Python types.
-    """
+    """A ``compiled`` function for calls from Python, compiled once per machine for each set of argument types."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function = cast(Any, function).py_func
         self._compiled: list[Callable[..., Any]] = []
-        self._known: dict[tuple[Any, ...], Callable[..., Any]] = {}
 
     def __call__(self, *arguments: Any) -> Any:
         """Return the result of the function."""
-        kinds = tuple(map(_python_types, arguments)) if len(self._compiled) > 1 else ()
-        if kinds in self._known:
-            with suppress(TypeError):
-                return self._known[kinds](*arguments)
         for compiled_function in self._compiled:
             with suppress(TypeError):
-                result = compiled_function(*arguments)
-                if kinds:
-                    self._known[kinds] = compiled_function
-                return result
+                return compiled_function(*arguments)
         self._compiled.append(compiled_for(tuple(map(numba.typeof, arguments)), self._function, SOURCES))
         return self._compiled[-1](*arguments)
-
-
-def _python_types(argument: Any) -> Any:
-    return tuple(map(type, argument)) if type(argument) is tuple else type(argument)

@@ -192,13 +192,12 @@ def test_a_load_is_given_the_distance_of_the_disc_from_the_masters_axis(kinds):
 
 @pytest.mark.parametrize("master", ["rotor", "planar"])
 @pytest.mark.parametrize("node", SPATIAL)
-@pytest.mark.parametrize("contact", ["ring", "points"])
-def test_a_spatial_disc_in_the_plane_moves_as_a_planar_one(master, node, contact):
+def test_a_spatial_disc_in_the_plane_moves_as_a_planar_one(master, node):
     flat = *DISC[:2], [0.5, 0.1, 0.0, 0.0, 0.0, 0.4], [-0.2, 0.3, 0.0, 0.0, 0.0, -1.0]
     ends = []
     for kind in ("planar", node):
         mbs, nodes = bodies_of((master, kind), (MASTER, flat))
-        add_ring_friction(mbs, *nodes, **RING | CONTACTS[contact])
+        add_ring_friction(mbs, *nodes, **RING | CONTACTS["points"])
         mbs.Assemble()
         run_explicitly(mbs, 0.4, 400)
         q, v = coordinates(mbs, nodes[1])

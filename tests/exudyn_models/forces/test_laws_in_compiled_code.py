@@ -12,8 +12,7 @@ import pytest
 from pairs_of_bodies import bodies_of
 
 from exudyn_models import add_ring_friction
-from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD, slip_potential_of_contact
-from exudyn_models.forces.jit import KeptOnDisk
+from exudyn_models.forces.friction_laws import CONTINUOUS, NONE_HELD
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
@@ -156,22 +155,3 @@ def test_a_second_process_compiles_nothing_that_takes_long(monkeypatch):
         "share_of_ring",
         "impl",
     }  # 0.1 s each
-
-
-def test_a_version_for_other_types_is_tried_once_per_combination_of_types():
-    """A failed attempt takes a millisecond, a thousand times as long as the call."""
-    tried = []
-
-    def version(kind):
-        def call(argument):
-            tried.append(kind)
-            if not isinstance(argument, kind):
-                raise TypeError
-            return argument
-
-        return call
-
-    kept = KeptOnDisk(slip_potential_of_contact)
-    kept._compiled = [version(str), version(tuple)]
-    assert [kept(argument) for argument in ((1,), (2,), "a", "b", (3,))] == [(1,), (2,), "a", "b", (3,)]
-    assert tried == [str, tuple, tuple, str, str, tuple]
