@@ -12,7 +12,7 @@ import numpy as np
 
 from exudyn_models.forces.any_pair import Parameters, contact_of, friction_factor, motion_of
 from exudyn_models.forces.friction_laws import Contact, ring_friction, ring_friction_derivatives
-from exudyn_models.forces.jit import compiled
+from exudyn_models.forces.jit import compiled, inlined
 from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, PLANAR, ROTOR, SIZES
 from reference_model.systems import FloatArray
 
@@ -55,7 +55,7 @@ Relative = tuple[float, float, float, float, float, float, float]
 """Relative motion: dx, dy, angle, dvx, dvy and both spins."""
 
 
-@compiled
+@inlined
 def _contact_and_motion(
     parameters: Parameters, t: float, q: Any, q_t: Any
 ) -> tuple[Contact, Relative, FloatArray, int]:
