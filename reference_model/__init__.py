@@ -3,10 +3,9 @@
 - ``plain``: the paper's equations as printed, integrated by SciPy; read it first;
 - ``systems``, ``support``, ``trajectory``: parameters, nonlinear supports and results;
 - ``simulation``: :func:`simulate`;
-- ``pushing``: the quasi-static motion of a body that a hand pushes over a plane;
 - ``contact``: friction laws and their limit surfaces;
 - ``formulas``: the paper's closed forms, harmonic balance, torque balances and ``power_balance``;
-- ``motion``: the event-driven simulation of slip and stick;
+- ``motion``: the event-driven simulation of slip and stick, and the quasi-static motion of a pushed body;
 - ``steady``: steady motions, their stability, and its boundaries;
 - ``orbits``: periodic motions by shooting, their branches, the release map and basin boundaries;
 - ``ensemble``: compiled simulation of one trajectory or many;
@@ -18,11 +17,11 @@ from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.contact.points import Points, PointsOnRing
 from reference_model.formulas.pin import sticking_radius
 from reference_model.formulas.power_balance import PowerBalance, power_balance
+from reference_model.motion.pushing import Pushing
 from reference_model.orbits import Orbit, last_whirl, modulated_cycle, whirl_branch, whirl_orbit
 from reference_model.orbits.basin_boundary import basin_boundary, boundary_point
 from reference_model.orbits.release_map import StickSlipOrbit, stick_slip_orbits
 from reference_model.orbits.shock import Shock, smallest_shock
-from reference_model.pushing import Pushing
 from reference_model.simulation import simulate
 from reference_model.steady.stability import onset_load
 from reference_model.steady.steady_states import (

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 import compare.output.figures as plots
+import compare.studies.drivetrain.coupled_clutches.theory as theory
 from compare.claims import ByEngine, Data, Figures, Measured, Study, observed_exponent
 from compare.claims.parameters import at_each
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Axes, axis, engine_style, engines_in, new_figure
-from compare.studies.drivetrain.coupled_clutches import theory
 from compare.studies.drivetrain.coupled_clutches.theory import EPSILONS, exact, published, with_our_contact
 from compare.studies.toolkit.torsional_chain import STUCK
 from reference_model.systems import FloatArray

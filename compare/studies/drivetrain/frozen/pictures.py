@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from scipy.linalg import expm
 
+import compare.studies.drivetrain.frozen.theory as frozen
 from compare.claims import ByEngine, Data, Figures
 from compare.output.figures import BLACK, GREY, Figure, axis, curve, engines_in, new_figure, points
-from compare.studies.drivetrain.frozen import theory as frozen
 from compare.studies.toolkit.drivetrain_bench import passenger_car
 
 MM = 1e3

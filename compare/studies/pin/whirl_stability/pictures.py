@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 import compare.output.figures as plots
+import compare.studies.pin.whirl_stability.study as study
 from compare.claims import ByEngine, Data, Figures
 from compare.claims.linearised_flow import real_and_imaginary
 from compare.claims.parameters import CENTRED
 from compare.output.figures import Axes, Figure, axis, curve, engines_in, new_figure, points
-from compare.studies.pin.whirl_stability import study
 from compare.studies.pin.whirl_stability.study import DAMPINGS, DEVIATION_TIMES, RATIOS, K
 from reference_model.formulas.pin import variational_matrix
 from reference_model.steady.stability import whirl_eigenvalues

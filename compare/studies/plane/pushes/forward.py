@@ -1,7 +1,7 @@
 """Pushes simulated forward: the hand follows its measured path, and the body slides on its feet.
 
 The hand is a point that pushes an edge of the triangle with friction. Two independent codes simulate it:
-``reference_model.pushing`` with exact friction and no inertia, and an Exudyn model with inertia, a stiff edge and
+``reference_model.Pushing`` with exact friction and no inertia, and an Exudyn model with inertia, a stiff edge and
 regularised friction.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from compare.studies.plane.pushes.reduction import Push
 from compare.studies.plane.pushes.theory import CENTRE, LEGS, MASS, MM, SLIDING_FORCES, contact_of, surface
-from reference_model.pushing import Pushing
+from reference_model.motion.pushing import Pushing
 
 HAND = 0.5
 """Friction coefficient of the hand on the edge, which the authors do not state.

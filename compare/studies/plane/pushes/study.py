@@ -7,11 +7,12 @@ from functools import cache, partial
 
 import numpy as np
 
+import compare.studies.plane.pushes.forward as forward
+import compare.studies.plane.pushes.theory as theory
 from compare.claims import Measured, Study
 from compare.claims.prose import Table
 from compare.claims.validation import Validation
 from compare.engines import Engine
-from compare.studies.plane.pushes import forward, theory
 from compare.studies.plane.pushes.reduction import Push
 from compare.studies.plane.pushes.theory import (
     CENTRE,
