@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from compare.claims.claim import THEORY
 from compare.output.outside_text import all_printable
 from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
@@ -78,8 +79,8 @@ def failures(results: Results) -> dict[Key, str]:
 
 
 def without_verdict(results: Results) -> tuple[str, ...]:
-    """Return the measured engines without any claim."""
-    known = {claim["engine"] for claim in _claims(results)}
+    """Return the measured engines without any claim; a study may have no claims about its theory."""
+    known = {THEORY, *(claim["engine"] for claim in _claims(results))}
     return tuple(dict.fromkeys(engine for _, engine in _units(results) if engine not in known))
 
 

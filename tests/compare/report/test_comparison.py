@@ -9,6 +9,7 @@ from fake_studies import AGREEMENT, FAILING, GOOD, VERDICTS, claim, fake, measur
 
 from compare.claims.study import Findings
 from compare.cli.app import status
+from compare.report.comparison import without_verdict
 from compare.report.write import write_report
 from compare.run.runner import run
 
@@ -117,6 +118,13 @@ def test_reports_without_verdicts_of_an_engine_do_not_pass(old, tmp_path, capsys
     failed = written(tmp_path, engine=FAILING)
     assert told(capsys, failed, failed)[0] == 4
     assert told(capsys, failed, old)[0] == 1
+
+
+def test_a_study_may_have_no_claims_about_its_theory():
+    unit = {"state": "finished"}
+    study = {"name": "fig04", "units": {"theory": unit, "good": unit}, "claims": [{"engine": "good"}]}
+    assert without_verdict({"studies": [study]}) == ()
+    assert without_verdict({"studies": [study | {"claims": []}]}) == ("good",)
 
 
 def test_known_failures_do_not_count(old, tmp_path, capsys):
