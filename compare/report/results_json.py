@@ -287,7 +287,7 @@ def _study(run: Run, study: Study, own: Matrix, paths: Mapping[str, str]) -> dic
 
 
 LEFT_OUT = ("id", "predicted", "measured", "difference", "numerical_error", "size", "axes")
-"""Parts of a claim that ``results.json`` contains elsewhere."""
+"""Fields of a claim that ``results.json`` stores in other places."""
 
 
 def _claim(identity: str, claim: Claim, **more: Any) -> dict[str, Any]:

@@ -35,7 +35,7 @@ UNTIL = 700.0  # duration in s, three periods of the modulation
 TIMES = np.linspace(0.0, UNTIL, 2801)
 
 TRIED, BOTH_STABLE, SAMPLES_A_TURN = (0.0072, 0.00725, 0.0073), 0.0073, 16
-"""X0 in m between which the critical X0 is interpolated, and slightly above it."""
+"""X0 in m around the critical X0, which is interpolated, one slightly above it, and samples per turn."""
 
 STUDY = Study.beside(
     __file__,

@@ -51,7 +51,7 @@ SOURCE = (
 )
 
 KNOWN = 4.0 * np.finfo(float).eps
-"""Accuracy of an exact motion relative to its largest number. A smaller true error is a coincidence of roundings."""
+"""Rounding error of an exact motion, relative to its largest number; a smaller error occurs only by chance."""
 
 EXACT = 100.0 * TRUTH
 """Tolerance of the reference, a thousandth of the smallest tolerance of a motion."""

@@ -39,7 +39,7 @@ turn, is of order one.
 """
 
 RUNS_TOLERANCE, CRITICAL_TOLERANCE = 5.0 * WORKING, WORKING / 5.0
-"""For runs, and for the critical velocity, whose error under a regularised law is about a hundred times larger."""
+"""Tolerances of runs and of the critical velocity, whose error is a hundred times larger if regularised."""
 
 SIDES_TOLERANCE, BESIDE = 1e-7, 2e-5
 """Tolerance and half width in m/s of the first search for the critical velocity and of the next one."""

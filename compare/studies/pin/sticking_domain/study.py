@@ -222,7 +222,7 @@ def largest_radii(engine: Engine, searched: Sequence[float]) -> Measurement:
 
 
 def _unless_missing(engine: Engine, values: FloatArray, errors: FloatArray) -> FloatArray:
-    """Return the errors of ``values``; a missing one is open if the engine creeps, and a mistake otherwise."""
+    """Return the errors of ``values``; a missing value makes the claim open if the engine creeps, else wrong."""
     missing = ~np.isfinite(values)
     if not np.any(missing):
         return errors
