@@ -172,7 +172,7 @@ def smooth_motion(system, start, epsilon, contact=None):
     slip = 1e-5 * epsilon
     found, report = odeint(
         rates, unknowns, TIMES, tfirst=True, rtol=1e-11, atol=[1e-13, 1e-13, slip, slip, 1e-13, slip][: len(start)],
-        mxstep=200_000, full_output=True,
+        mxstep=2_000_000, full_output=True,
     )  # fmt: skip
     assert report["message"] == "Integration successful.", report["message"]
     z, u = found[:, 0] + 1j * found[:, 1], found[:, 2] + 1j * found[:, 3]

@@ -39,7 +39,8 @@ def test_figure_shows_the_path_and_each_curve_with_its_unit(pin_motion, disc_mot
 def test_figure_shades_the_stick_phases(pin_motion):
     assert len(pin_motion.stick_phases) == 2
     for axes in pin_motion.plot(Figure()).axes[1:]:
-        spans = [[band.get_x(), band.get_x() + band.get_width()] for band in axes.patches]
+        to_data = axes.transData.inverted()
+        spans = [to_data.transform_bbox(band.get_window_extent()).intervalx for band in axes.patches]
         assert np.ravel(spans) == pytest.approx(pin_motion.stick_times)
 
 
