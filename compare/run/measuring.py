@@ -12,7 +12,7 @@ from typing import Any
 from compare.claims.study import Findings, Study
 from compare.engines import Engine, UnsupportedSystemError, engines
 from compare.output.outside_text import Failure, printable
-from compare.run.workers import Workers, attempted, failure
+from compare.run.workers import Workers, attempted
 from reference_model.systems import PinOnDisc
 
 START_UP = 60.0
@@ -103,12 +103,13 @@ def measured(
     only: Collection[str] = (),
     seed: int | None = None,
     within: float = math.inf,
-) -> Findings | Failure:
+) -> Findings:
     """Run the study's ``measure``, or its theory if ``engine`` is None.
 
     An engine given by name is imported here; ``seed`` is for its units. ``only`` selects claims as in
     ``Study.measure``. An exception costs only the claim that raised it, and a claim that would take longer than
-    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``.
+    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``. Raises ``TypeError`` if the result
+    of a study is not ``Findings``.
     """
     if isinstance(engine, str):
         engine = replace(engines([engine])[0], seed=seed)
@@ -124,17 +125,15 @@ def measured(
             late = f"would take about {float(f'{estimate:.2g}'):g} s with {engine.name}; use --level full"
             found = found.and_claim(sentence, late)
         else:
-            found = found.and_claim(sentence, _simulated(study, engine, (part,)))
+            found = found.and_claim(sentence, attempted(_simulated, study, engine, (part,)))
     return found
 
 
-def _simulated(study: Study, engine: Engine, only: Collection[str]) -> Findings | Failure:
+def _simulated(study: Study, engine: Engine, only: Collection[str]) -> Findings:
     try:
         return _checked(study.measure(engine, only=only))
     except UnsupportedSystemError as error:
         return Findings(not_simulated=printable(error))
-    except BaseException as error:  # including SystemExit of an engine
-        return failure(error)
 
 
 def _checked(findings: object) -> Findings:

@@ -224,7 +224,7 @@ class AxialStick:
         return forward, self.static_ratio * self.sliding_moment(t, -AT_REST)
 
     def without_rounding(self, friction: float) -> float:
-        """Return ``friction``, or zero if it is a rounding error."""
+        """Return ``friction``, or zero if it is a rounding error of the largest friction so far."""
         self.largest = max(self.largest, friction)
         return friction if friction > ROUNDING * self.largest else 0.0
 

@@ -25,10 +25,10 @@ from reference_model.contact.points import Points
 from reference_model.systems import finite_number, require_whole
 
 ACROSS_JUMP = 1e-9
-"""Distance of two spins on both sides of a jump of the moment, over the largest possible spin."""
+"""Distance of two spins on both sides of a jump of the moment, relative to the largest possible spin."""
 
 INSIDE = 1e-9
-"""Rounding error of the gap between hand and edge, over the length of the path."""
+"""Rounding error of the gap between hand and edge, relative to the length of the path."""
 
 
 @dataclass(frozen=True, eq=False)

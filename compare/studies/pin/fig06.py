@@ -36,7 +36,7 @@ CYCLE_LOAD, CYCLE_DEVIATION, CYCLE_TURNS = 0.102, 0.01, 5
 """μN in N between C·X0 and the end of the stick–slip cycle, relative distance from the cycle, and number of turns."""
 
 TOLERANCE, ON_THE_WAY = 10.0 * WORKING, 1e-8
-"""For claims except the end of the whirl, and for the branch, whose friction forces have errors below 1e-10 N."""
+"""Tolerances of claims other than the end of the whirl, and of the branch, whose μN are right to 1e-10 N."""
 
 INNERMOST = 0.012  # crossing of the x axis in m that ends the branch
 

@@ -22,7 +22,7 @@ def compared(predicted: ArrayLike, found: Measurement, **more: Any) -> Measured:
 def followed(
     engine: Engine, motions: Sequence[tuple[System, ArrayLike, ArrayLike]], tolerance: float, part: Any = ...
 ) -> Measurement:
-    """Return a ``part`` of the states of ``motions`` (system, initial state, times in s), equally large ones."""
+    """Return a ``part`` of the states of ``motions`` (system, initial state, times in s) of equal length."""
     return refined(
         lambda asked: [run.states[part] for run in engine.simulate_many(motions, tolerance=asked)], tolerance
     )

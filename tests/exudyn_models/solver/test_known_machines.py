@@ -292,7 +292,10 @@ def test_rounding_errors_of_the_load_do_not_close_a_contact(planar):
     node = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [1.0, 0.0, 0.0]) if planar else rotor(mbs, 1.0, 1.0)
     law = {"contact_radius": 0.1, "friction_coefficient": 0.3}
     loads = [(0.1, 1.0), (0.2, 0.0), (0.3, 1e-14), (0.4, 1e-3)]  # ends in s, N
-    load = lambda time: next(size for end, size in loads if time < end)  # noqa: E731
+
+    def load(time):
+        return next(size for end, size in loads if time < end)
+
     add_ring_friction(mbs, None, node, normal_load=load, **law)
     changes = changes_of(mbs, 0.399, 1e-3)
     assert [(pytest.approx(time, abs=1e-9), *modes) for time, _, *modes in changes] == [
