@@ -191,7 +191,8 @@ def _check_logs(folder: Path | None) -> None:
     with refused():
         agreeing, new = check_table(folder)
     with printing():
-        print(f"The table agrees with the logs of {len(agreeing)} series: {', '.join(agreeing) or 'none'}")
+        if agreeing:
+            print(f"The table agrees with the logs of {len(agreeing)} series: {', '.join(agreeing)}")
         for line in account(new):
             print(line)
 
