@@ -67,7 +67,7 @@ WAYS: dict[str, tuple[int, Callable[[int], Ensemble]]] = {
         16_000,
         lambda n: discs(n, None, SHORT),
     ),
-    "the same, until its end is certain": (2_000, lambda n: discs(n, None, LONG)),
+    "the same, until its outcome is certain": (2_000, lambda n: discs(n, None, LONG)),
     f"disc on six points, t = {SHORT:g} s": (8_000, lambda n: discs(n, 6, SHORT)),
 }
 """Number of trajectories and function for each row."""
