@@ -58,7 +58,7 @@ def export_pin(unit: Unit) -> None:
 
     \b
     Parameters in SI units: those of `friction-discs simulate pin`, the initial state x, y, vx, vy, and
-      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+      exact=1 (1: exact stick; 0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
     \b
     Example:
@@ -76,9 +76,9 @@ def export_disc(unit: Unit) -> None:
 
     \b
     Parameters in SI units: those of `friction-discs simulate disc`, the initial state x, y, angle, vx, vy, spin, and
-      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+      exact=1 (1: exact stick; 0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
-      contact_points=0 (continuous ring; single points from 3 on, which always creep)
+      contact_points=0 (0: continuous ring; 3 or more: points, which always creep)
     \b
     Example:
       friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu

@@ -166,7 +166,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             times = np.linspace(0.0, request.until, request.samples)
             write = write_csv if output is None else writer(output)
             if plot is not None and plot.suffix not in PICTURES:
-                raise ValueError(f"--plot {plot.name!r}: the file name must end in {', '.join(PICTURES)}")
+                raise ValueError(f"--plot {plot.name!r}: the file name must end in {' or '.join(PICTURES)}")
             for path in filter(None, (output, plot)):
                 check_file(path)
         phases = write is not write_csv or plot is not None

@@ -144,7 +144,7 @@ def _number_or_function(name: str, value: NumberOrFunction, unit: str) -> float 
 def _checked_static_ratio(value: float) -> float:
     ratio = finite_number("static_ratio", value)
     if ratio < 1.0:
-        raise ValueError(f"static_ratio = {ratio:g}: it must be >= 1, static over sliding friction")
+        raise ValueError(f"static_ratio = {ratio:g}: static divided by sliding friction must be >= 1")
     return ratio
 
 

@@ -256,9 +256,10 @@ def _checked_geometry(
         points = density_of(pressure, last, radius)
         epsilon = positive_number("regularisation", regularisation, "m/s")
     if held is not None and held not in range(1, 1 + points):
-        raise ValueError(
-            f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
+        allowed = (
+            f"None, or the number of a point, 1 to {points}" if points > 0 else "None without contact points"
         )
+        raise ValueError(f"held = {held}: it must be {allowed}")
     return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, last
 
 
@@ -271,9 +272,13 @@ def checked_contact(
         places = checked_places("contact_points", contact_points)
         if contact_radius is not None:
             raise ValueError(
-                f"contact_radius = {contact_radius}: it cannot be combined with places of points; leave it out"
+                f"contact_radius = {contact_radius}: it cannot be combined with a list of points; leave it out"
             )
         return max(math.hypot(x, y) for x, y, _ in places), places, epsilon
+    if contact_radius is None:
+        raise ValueError(
+            "contact_radius = None: pass contact_radius, both radii of an annulus, or a list of points"
+        )
     radius = finite_number("contact_radius", contact_radius)
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
@@ -283,8 +288,8 @@ def checked_contact(
         return radius, None, epsilon
     if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:
         raise ValueError(
-            f"contact_points = {contact_points}: it must be a whole number >= 1, places of points, or None for the "
-            "continuous ring"
+            f"contact_points = {contact_points}: it must be a whole number >= 1, a list of (x, y, share), or None "
+            "for the continuous ring"
         )
     return radius, ring_places(radius, int(contact_points) if radius > 0.0 else 1), epsilon
 

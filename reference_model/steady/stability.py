@@ -161,11 +161,13 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
     if disc.offset != 0.0:
-        raise ValueError(f"offset = {disc.offset:g} m: the centre rests on the axis only without an offset")
+        raise ValueError(
+            f"offset = {disc.offset:g} m: it must be 0, because otherwise the centre does not rest on the axis"
+        )
     if speed <= k:
         raise ValueError(
-            f"disc_speed = {disc.disc_speed:g} rad/s: the centred rotation is stable at every load up to the "
-            f"natural frequency {k:g} rad/s, in either sense"
+            f"disc_speed = {disc.disc_speed:g} rad/s: the centred rotation is stable at every load unless "
+            f"|disc_speed| exceeds the natural frequency {k:g} rad/s"
         )
     if disc.shaft_damping == 0.0 or disc.disc_speed == disc.shaft_speed:
         raise ValueError(

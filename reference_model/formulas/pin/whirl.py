@@ -92,8 +92,8 @@ def require_whirl(pin: PinOnDisc) -> None:
         return
     if abs(pin.disc_speed) <= pin.natural_frequency:
         raise ValueError(
-            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than "
-            f"the natural frequency {pin.natural_frequency:g} rad/s in either sense"
+            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if |disc_speed| exceeds the "
+            f"natural frequency {pin.natural_frequency:g} rad/s"
         )
 
 

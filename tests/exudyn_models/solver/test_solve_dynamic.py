@@ -56,7 +56,8 @@ def test_an_explicit_solver_is_refused_where_the_model_has_constraints(solver):
         numbers = [coordinate(mbs, None), coordinate(mbs, disc, place)]
         mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=numbers))
     with pytest.raises(
-        ValueError, match=f"solverType = {solver.name}: it is explicit and would ignore 2 constraint"
+        ValueError,
+        match=f"solverType = {solver.name}: explicit solvers ignore constraints, and this model has 2",
     ):
         solve_dynamic(mbs, settings(), solver)
     solve_dynamic(mbs, settings(), SOLVERS.GeneralizedAlpha)
