@@ -1,4 +1,4 @@
-"""Coefficients and loads as compiled code asks for them: functions of Python and of numba, and what they raise."""
+"""Coefficients and loads in compiled code: Python and numba functions, and their errors."""
 
 import math
 import subprocess
@@ -18,7 +18,7 @@ from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
 TABLE = [[0.0, 0.5], [0.05, 0.35], [0.2, 0.3], [1.0, 0.28], [40.0, 0.4]]
 PAIRS = [*product((None, "rotor"), ("rotor", "planar")), ("planar", "planar"), ("planar", "Tait-Bryan")]
-"""Pairs with functions of their own, and one of all others."""
+"""Pairs with specialised functions, and one example of the others."""
 
 
 def stribeck(slip_speed):
@@ -41,7 +41,7 @@ def added(kinds, **law):
 
 
 def forces(kinds, **law):
-    """Forces of the user function at ten states, shape (10, n)."""
+    """Return the forces of the user function at ten states, shape (10, n)."""
     mbs, friction = added(kinds, **law)
     force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
@@ -146,7 +146,7 @@ for one in gc.get_objects():
 
 
 def test_a_second_process_compiles_nothing_that_takes_long(monkeypatch):
-    """Functions that Python calls are kept on disk, also those of sensors and Jacobians."""
+    """Functions that Python calls are cached on disk, including those of sensors and Jacobians."""
     folder = str(Path(__file__).parents[1])
     monkeypatch.setattr(sys, "argv", ["", folder])
     exec(USE_OF_ALL_PARTS, {})  # the first process is this one
