@@ -1,4 +1,4 @@
-"""The paper names claims, figures and numbers that there are; a typesetter builds it in a workflow."""
+"""The paper refers only to existing claims, figures and numbers; a workflow typesets it."""
 
 import re
 import runpy

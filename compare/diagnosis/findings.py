@@ -57,8 +57,8 @@ class Creep:
 class History:
     """Dependence of friction on the motion before."""
 
-    static: float  # largest load over μN that friction holds from rest, at least 1
-    second: float  # distance of a second release over the exact one
+    static: float  # largest load/μN that friction holds from rest, at least 1
+    second: float  # distance of a second release, divided by the exact one
     second_error: float
     delay: float  # of the release from rest, in s
     delay_error: float
@@ -69,7 +69,7 @@ class History:
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces over the exact ones, and their errors; NaN where there is none.
+    """Forces divided by the exact ones, and their errors; NaN where there is none.
 
     They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
     """

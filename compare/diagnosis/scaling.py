@@ -34,7 +34,7 @@ class Scales:
     """Forces on slides over wide ranges."""
 
     conditions: FloatArray  # (n, 5): the ``VARIABLES`` in ``UNITS``; the disc speed is 0 on a plane at rest
-    forces: FloatArray  # (n, 2): mean friction force over μN
+    forces: FloatArray  # (n, 2): mean friction force/μN
     coarser: FloatArray  # (n, 2): the same at the rung before
     slips: FloatArray  # (n, 2): mean direction of slip
     radial: FloatArray  # (n, 2): mean direction from the axis to the body

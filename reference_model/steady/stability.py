@@ -28,7 +28,7 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
-    """Return the derivative of the right side of eq. 1 or 19 by the state for a sliding contact, (4, 4) or (6, 6).
+    """Return the Jacobian of the right side of eq. 1 or 19 in the state for a sliding contact, (4, 4) or (6, 6).
 
     Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the state
     is invalid or exactly at the stop of the support; or if a contact is given for a pin.
@@ -50,7 +50,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of u_x, u_y, S and φ by x, y, φ and by their rates.
+        # Derivatives of u_x, u_y, S and φ in x, y, φ and in their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]

@@ -126,7 +126,7 @@ class PointSticks(AxialStick):
 
     @property
     def visible_mode(self) -> Mode:
-        """Mode as a sensor shows it: locked if all points are, and otherwise that of one that slides."""
+        """Mode that a sensor shows: locked if all points are locked, else the mode of a sliding point."""
         modes = {part.visible_mode for part in self.active}
         sliding = modes & {Mode.FORWARD, Mode.BACKWARD}
         return next(iter(sliding or modes - {Mode.OPEN} or modes))

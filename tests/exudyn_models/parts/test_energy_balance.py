@@ -1,4 +1,4 @@
-"""Where the energy of a model goes, against closed forms and with parts left out."""
+"""Energy balances of models, against closed forms and with missing parts."""
 
 import math
 

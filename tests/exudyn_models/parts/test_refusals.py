@@ -1,4 +1,4 @@
-"""What no part can be is refused in a sentence: the parameter, its value, and what is allowed."""
+"""Errors for invalid arguments of all parts: the parameter, its value, and the allowed values."""
 
 import math
 

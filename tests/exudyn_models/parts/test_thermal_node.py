@@ -28,7 +28,7 @@ def run(mbs, end=0.5, steps=500, solver=exu.DynamicSolverType.RK67, go_on=False)
 
 
 def by_hand(t):
-    # C·(T − T0) = ½·J·(ω0² − ω²), so that ω' = −a·(b + c·ω²) with a tangent for its solution.
+    # C·(T − T0) = ½·J·(ω0² − ω²), so ω' = −a·(b + c·ω²), whose solution is a tangent.
     a, c = MU * LOAD * RADIUS / INERTIA, FADE * INERTIA / (2.0 * CAPACITY)
     b = 1.0 - c * SPEED**2
     return np.sqrt(b / c) * np.tan(np.arctan(SPEED * np.sqrt(c / b)) - a * np.sqrt(b * c) * t)
@@ -52,7 +52,7 @@ def test_heat_is_in_the_capacity_and_in_the_surroundings_to_rounding(solver):
     temperature, lost = mbs.GetSensorValues(sensor)
     total = float(mbs.GetSensorValues(heat))
     assert 0.1 < lost / total < 0.9
-    # Newton's own tolerance is 1e-8 of the coordinates.
+    # Newton's tolerance is 1e-8 of the coordinates.
     rounding = 1e-13 if solver == "RK44" else 1e-9
     assert CAPACITY * (temperature - 20.0) + lost == pytest.approx(total, rel=rounding)
 

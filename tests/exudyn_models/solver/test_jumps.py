@@ -1,4 +1,4 @@
-"""An implicit run starts with the power that friction has, and tells of a load that jumps in it."""
+"""An implicit run starts with the actual power of friction, and reports load jumps."""
 
 import warnings
 
@@ -37,7 +37,7 @@ def run(load, solver, *, step=STEP, unit=1.0, balance=True, breaks=()):
 
 @SOLVERS
 def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_linear(solver):
-    # The trapezoidal rule is exact then; without the first power it would be wrong by h/2·M·ω = 3 J.
+    # The trapezoidal rule is exact here; without the initial power its error would be h/2·M·ω = 3 J.
     _, balance = run(800.0, solver)
     assert balance.losses["brake"][-1] == pytest.approx(MOMENT * (50.0 - 48.0 * 0.125) * 0.25, rel=1e-10)
     assert np.max(np.abs(balance.residual)) < 1e-10 * balance.turnover
@@ -51,7 +51,7 @@ def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_
 def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance):
     (message,), _ = run(lambda time: 800.0 * (time > 0.1037), solver, unit=10.0, balance=balance)
     name = "brake" if balance else "heat"
-    # Within the step of 5 ms, by M·ω0 = 1200 W less what the step has braked already.
+    # The jump is within the step of 5 ms, by M·ω0 = 1200 W less the deceleration in the step.
     assert message.startswith(
         f"the power '{name}' jumps by 1.2e+03 W between t = 0.1 s and 0.105 s: the energy"
     )
@@ -78,7 +78,7 @@ def test_a_jump_that_is_small_compared_with_the_other_powers_is_noise(solver, lo
 
 
 def rise(width):
-    """A load that rises in the middle of a step over about ``width`` of them."""
+    """Return a load that rises in the middle of a step over about ``width`` steps."""
     return lambda time: 400.0 * (1.0 + np.tanh((time - 20.5 * STEP) / (width * STEP)))
 
 
@@ -90,7 +90,7 @@ def rise(width):
         (6000.0, 2.5e-3),  # slip ends
         (lambda time: 3e3 * time, 2.5e-3),
         (lambda time: 3e3 * np.sin(20.0 * time) ** 2, 2.5e-3),
-        (rise(0.7), STEP),  # changes by 3.4 times what it does in the steps beside
+        (rise(0.7), STEP),  # changes 3.4 times as much as in the neighbouring steps
         # The period is four steps, so the load changes in every other step.
         (lambda time: 800.0 + 300.0 * np.sin(np.pi / 2.0 * time / STEP + np.pi / 4.0), STEP),
     ],

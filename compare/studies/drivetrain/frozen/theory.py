@@ -186,7 +186,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
+    """Return the reference's lines against the speed and maps of the modulation, at every ``every``-th point."""
     car, centred = bench.passenger_car(), bench.centred_car()
     onset = bench.onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]
