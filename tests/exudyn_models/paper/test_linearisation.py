@@ -49,7 +49,7 @@ def test_every_equilibrium_has_the_eigenvalues_of_the_reference(system):
 
 @pytest.mark.parametrize("system", [PIN, *(replace(DISC, contact_points=points) for points in (3, 6, 24))])
 def test_any_slip_has_the_eigenvalues_of_the_plain_equations(system):
-    """With points, the angle stays in the linearisation."""
+    """The linearisation of a disc on points contains the angle."""
     state = np.array([0.05, 0.02, 0.01, -0.02] if system is PIN else [0.05, 0.02, 0.3, 0.01, -0.02, 1.3])
     law, step = plain.by_law(system.friction_force, contact_of(system)), 1e-5
 

@@ -42,7 +42,7 @@ RESTING = {
     "caught": (CAUGHT_DISC, CAUGHT, 3.1),
     "released": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
 }
-"""System, start and span in s of motions in which points of a disc come to rest or are released."""
+"""System, start and span in s of motions with rests or releases of single points of a disc."""
 FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7)
@@ -92,7 +92,7 @@ def test_forces_and_moments_of_both_bodies_are_those_of_the_law(kind, radius, po
     [
         ("thrown", ["slip", "pivot", "stick"], 0.9, 1.1),
         ("caught", ["slip", "pivot", "slip", "stick"], 0.9, math.inf),
-        # Single points stay at the Coulomb limit until release, after which slip grows like t² up to ε.
+        # Single points stay at the Coulomb limit until release; then slip grows like t² up to ε.
         ("released", ["stick", "slip"], 0.35, 0.55),
     ],
 )

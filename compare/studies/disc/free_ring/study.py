@@ -43,7 +43,8 @@ def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
-        """Return the share of the time to rest by which the centre rests after the rim, by two pairs of samples."""
+        """Return the delay of the centre's rest after the rim's, relative to the time to rest, by two pairs of
+        samples."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - REMAINING[:3])
