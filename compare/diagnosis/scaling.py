@@ -21,7 +21,7 @@ KEEPS = 0.98  # share of the initial speed below which something other than fric
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
 POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
-FEWEST = 3  # least number of slides beyond a threshold
+FEWEST = 3  # smallest number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
 
 VARIABLES = ("mass", "friction force", "slip speed", "disc speed", "distance from the axis")

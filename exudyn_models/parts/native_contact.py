@@ -112,7 +112,7 @@ def _add_sphere(
 ) -> Any:
     penetration = size / 2.0
     height = penetration - size
-    vectors: Any = exu.Vector3DList  # type hints as for items
+    vectors: Any = exu.Vector3DList  # its type hint rejects valid lists
     return mbs.AddObject(
         items.ObjectContactSphereTriangle(
             markerNumbers=markers,
