@@ -151,7 +151,7 @@ def test_the_engine_of_the_example_slides_as_the_reference_does():
     assert errors[1] < 0.1 * errors[0]
 
 
-def test_the_drivetrain_centres_its_clutch_disc_and_lets_it_whirl_against_its_stop_at_speed():
+def test_the_clutch_disc_centres_itself_and_whirls_against_its_stop_at_speed():
     example = run("06_drivetrain.py")
     motion, speed, radius, deflection = (example[n] for n in ("motion", "speed", "radius", "deflection"))
     assert np.max(np.abs(motion.energy.residual)) < 1e-6 * motion.energy.turnover
@@ -259,7 +259,7 @@ def test_the_study_of_the_guide_for_contributors_agrees_and_draws(tmp_path, monk
     figure.savefig(tmp_path / "drawn.png")
 
 
-def test_the_engine_of_the_documents_is_that_of_the_example():
+def test_the_documents_and_the_example_show_the_same_engine():
     (code,) = [code for code in code_of("docs/judge-your-engine.md") if "def simulate(pin" in code]
     assert code[code.index("def simulate") :] in (ROOT / "examples" / "05_your_own_engine.py").read_text()
 

@@ -80,7 +80,7 @@ def found(package, pattern):
     return {path.relative_to(ROOT / package) for path in (ROOT / package).glob(pattern)}
 
 
-def test_the_source_archive_has_every_file_but_what_belongs_to_the_repository():
+def test_the_source_archive_has_every_file_except_those_of_the_repository():
     """Packages, pyproject, README and licence are included automatically, the rest by ``MANIFEST.in``."""
     lines = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()
     named = {name for line in lines for name in line.split()[1:]}

@@ -151,7 +151,7 @@ class PointSticks(AxialStick):
         return np.asarray(np.einsum("pij,pi->j", maps, forces))
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return the smallest used share of capacity with which the points hold the load, or 1 if a point slides."""
+        """Return the smallest share of capacity that holds the load at the points, or 1 if a point slides."""
         if self.whole.on_axis:
             return self.whole.capacity_share(mbs, t)
         mode = self.visible_mode

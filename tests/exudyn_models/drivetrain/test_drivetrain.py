@@ -108,7 +108,7 @@ POSITIVE = ("engine_inertia", "disc_mass", "disc_inertia", "outer_radius", "vehi
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(PASSENGER_CAR)])
-def test_what_no_drivetrain_can_be_is_refused(name):
+def test_invalid_drivetrains_are_refused(name):
     with pytest.raises(ValueError, match=f"{name} = nan: it must be finite"):
         replace(PASSENGER_CAR, **{name: math.nan})
     if name == "offset":

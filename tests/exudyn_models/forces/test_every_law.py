@@ -213,7 +213,7 @@ SHARES["pressed at the rim"] = lambda r: r * towards_the_rim(r)
         ((0.2, 0.1, 2.5), 2e-4),  # with a resting point the sum is less accurate
     ],
 )
-def test_friction_is_what_its_points_add_up_to(name, slip, accuracy):
+def test_friction_is_the_sum_over_its_points(name, slip, accuracy):
     if name == "full disc":
         accuracy = 2e-4  # one of its points is always nearly at rest
     (outer, points, _, _, _, inner), _ = CONTACTS[name]
@@ -238,7 +238,7 @@ HELD["three feet, one held"] = contact_of(THREE_FEET, held=0)
     "contact", [*[pair[0] for pair in CONTACTS.values()], *HELD.values()], ids=[*CONTACTS, *HELD]
 )
 @pytest.mark.parametrize("size", [1.0, 1e-6], ids=["slip", "creep"])
-def test_derivatives_are_those_of_friction(contact, size):
+def test_derivatives_match_differences_of_friction(contact, size):
     """The exception is the slip of points that creep as a whole: it contains a share of the secant, for Newton."""
     rng = np.random.default_rng(5)
     blended = size < 1.0 and of_points(contact)

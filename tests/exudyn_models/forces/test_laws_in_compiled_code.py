@@ -87,7 +87,7 @@ def out_of_range(time):
 
 @pytest.mark.parametrize("function", [out_of_range, out_of_range.py_func], ids=["numba", "python"])
 @pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar"), ("Tait-Bryan", "Tait-Bryan")])
-def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, function):
+def test_errors_of_functions_are_passed_on_and_invalid_numbers_reported(kinds, function):
     mbs, friction = added(kinds, normal_load=function)
     force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
@@ -107,7 +107,7 @@ def test_anything_but_a_list_of_all_velocities_is_a_type_error(kinds):
             force(mbs, 0.7, 0, [0.1] * size, wrong)
 
 
-def test_a_table_outlives_what_it_was_made_from():
+def test_a_table_outlives_its_source():
     contact = (0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12)
     laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
     found = [law.friction_force(0.0, 0.0, 0.5, 0.0) for law in laws]

@@ -112,7 +112,7 @@ class Ramp:
     ],
 )
 @pytest.mark.parametrize("of_load", [False, True])
-def test_a_function_is_given_what_it_names(function, expected, of_load):
+def test_a_function_receives_the_arguments_that_it_names(function, expected, of_load):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
     factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
     assert factors.friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
@@ -200,7 +200,7 @@ def test_sensors_of_a_spinning_disc_show_its_braking():
     ("coefficient", "load"),
     [(MU, LOAD), (lambda slip_speed: MU * math.exp(-slip_speed), lambda time: LOAD * (1.0 + time))],
 )
-def test_sensor_of_the_radial_force_shows_what_moves_the_disc(coefficient, load):
+def test_the_radial_force_sensor_shows_the_force_that_moves_the_disc(coefficient, load):
     mbs = new_model()
     master = planar_body(mbs, 2.0, MASTER_INERTIA, [0.3, -0.2, 0.1], [0.1, 0.05, 2.0])
     disc = planar_body(mbs, MASS, INERTIA, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
@@ -242,7 +242,7 @@ NONSENSE = [
 
 @pytest.mark.parametrize(("name", "function", "message"), NONSENSE)
 @pytest.mark.parametrize("solver", ["RK44", "GeneralizedAlpha"])
-def test_a_function_that_returns_nonsense_ends_the_run_and_tells_where(name, function, message, solver):
+def test_an_invalid_result_of_a_function_ends_the_run_with_its_arguments(name, function, message, solver):
     mbs, *_ = spinning_disc(**{name: function})
     mbs.Assemble()
     with pytest.raises(exu.ExudynError, match=rf"{name}\({message}") as raised:

@@ -87,7 +87,7 @@ def curvature_error(reference, speed, inner, outer):
 
 
 @pytest.mark.parametrize(("inner", "outer"), RADII)
-def test_friction_of_an_annulus_is_that_of_the_reference(inner, outer):
+def test_friction_of_an_annulus_equals_the_reference(inner, outer):
     """At S = 1 rad/s the point at the radius U rests; U is in, near or far from the annulus."""
     reference, rng = Annulus(inner, outer, rings=40), np.random.default_rng(4)
     for speed in [*rng.uniform(0.9 * inner, 1.1 * outer, 60), *10.0 ** rng.uniform(-3.0, 1.0, 30)]:

@@ -40,7 +40,7 @@ def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
 
 
-def test_a_point_about_which_the_disc_turns_creeps_alone():
+def test_only_the_pivot_of_a_disc_creeps():
     disc = replace(RING, contact_points=6, disc_speed=0.0)
     for i in range(6):
         arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
@@ -97,7 +97,7 @@ def test_slip_that_only_passes_through_zero_is_no_sticking():
     assert [phase.kind for phase in detected_phases(CONTACT, steps)] == ["slip"]
 
 
-def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_of_the_bend():
+def test_stick_starts_at_extrapolated_zero_slip_and_ends_at_the_kink():
     steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
     steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero 4e-4 s later
     found = detected_phases(CONTACT, steps)

@@ -51,7 +51,7 @@ TOLERANCES = (1e-6, 1e-7)
 @pytest.mark.parametrize("kind", ["ground", "rotor", "planar"])
 @pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (0.3, 3), (None, FEET)])
 @pytest.mark.parametrize("epsilon", [1e-4, 1.5, 1e3])  # Coulomb friction, some of each, viscous friction
-def test_forces_and_moments_of_both_bodies_are_those_of_the_law(kind, radius, points, epsilon):
+def test_forces_and_moments_on_both_bodies_obey_the_law(kind, radius, points, epsilon):
     rng = np.random.default_rng(1)
     for _ in range(10):
         mbs, (place, velocity, z, v) = new_model(), rng.normal(size=(4, 3))
@@ -122,7 +122,7 @@ def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_t
         (replace(DISC, stiffness=0.0, contact_radius=0.5), 1.0, 1.0 - 0.5 * 0.01),
     ],
 )
-def test_the_contact_holds_however_far_a_body_goes(system, span, distance):
+def test_the_contact_persists_at_any_distance(system, span, distance):
     system = replace(system, friction_force=0.01, damping=0.0, disc_speed=0.0, offset=0.0)
     start = [0.0, 0.0, -1.0, 0.0]
     if isinstance(system, DiscOnDisc):

@@ -62,7 +62,7 @@ def test_changes_of_unit_leave_the_dimensionless_motion_the_same_at_the_same_cos
         assert 0.5 < steps < 2.0
 
 
-def test_the_regularisation_is_told_in_metres_per_second():
+def test_the_regularisation_is_reported_in_metres_per_second():
     scale = Scale(1e-3, 5e-3, 0.5)
     one = simulate(FIG5, CASES["pin"][1], [0.0, 1.0])
     other = simulate(scale.system(FIG5), scale.states(CASES["pin"][1]), [0.0, scale.time])
@@ -105,7 +105,7 @@ def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
     np.testing.assert_allclose(seen.accelerations[-1], fixed.accelerations[-1], rtol=0.0, atol=2e-11)
 
 
-def test_only_what_is_asked_for_is_kept_and_the_phases_are_the_same(monkeypatch):
+def test_only_requested_states_are_kept_and_the_phases_are_the_same(monkeypatch):
     arguments = FIG5, CASES["pin"][1], [0.0, 30.0]
     whole = simulate(*arguments)
     kept = []

@@ -144,7 +144,7 @@ def test_the_implicit_solver_passes_through_sticking(name):
         {"contact_points": 6, "stiffness": 1.0},
     ],
 )
-def test_what_is_thrown_on_a_resting_table_comes_to_rest_for_good_and_never_gains_energy(change):
+def test_a_body_thrown_on_a_resting_table_comes_to_permanent_rest_and_never_gains_energy(change):
     ring = replace(TABLE, friction_force=0.3, **change)
     found = simulate(ring, THROWN, np.linspace(0.0, 6.0, 601))
     x, y, _, vx, vy, spin = found.states.T
@@ -282,7 +282,7 @@ def test_sticking_with_nearly_all_of_the_friction_needs_few_steps():
     assert found.at_end[0] == pytest.approx(1.02 - 0.92 * 30.0 * found.solution.regularisation, abs=1e-7)
 
 
-def test_states_do_not_depend_on_which_other_times_are_asked_for_and_are_as_good_as_those_at_a_step():
+def test_states_do_not_depend_on_other_requested_times_and_are_as_accurate_as_at_a_step():
     system, start = STICKING["pin"]
     coarse, fine = (simulate(system, start, np.linspace(0.0, 12.0, count)) for count in (13, 1201))
     np.testing.assert_array_equal(fine.states[::100], coarse.states)
@@ -310,7 +310,7 @@ def friction_with(change):
 
 
 @SOLVERS
-def test_evaluations_are_those_that_were_made(solver):
+def test_the_number_of_evaluations_is_correct(solver):
     calls = []
 
     def counted(force):
@@ -322,7 +322,7 @@ def test_evaluations_are_those_that_were_made(solver):
 
 
 @SOLVERS
-def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
+def test_a_force_of_nan_raises_an_error_with_its_time(solver):
     def broken(force):
         return lambda mbs, t, item, q, q_t: force(mbs, t, item, q, q_t) if q[1] > 0.0 else [float("nan")] * 4
 
@@ -340,7 +340,7 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
 @pytest.mark.parametrize(
     ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
 )
-def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
+def test_an_error_inside_a_run_is_raised(solver, raised, seen):
     def interrupted(force):
         def function(*arguments):
             raise raised

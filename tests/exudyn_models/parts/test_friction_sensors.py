@@ -30,7 +30,7 @@ def told(torque, end, spin=0.0, step=1e-3, **contact):
     return stored[0][:, 0], *(values[:, 1] for values in stored)
 
 
-def test_a_contact_that_holds_tells_which_share_of_its_capacity_it_takes():
+def test_a_sticking_contact_reports_its_share_of_capacity():
     times, spin, share, mode = told(lambda t: 0.8 * CAPACITY * t, 1.0)
     settled = times > 0.01  # INERTIA·ε/(μN·R²) = 25 µs
     np.testing.assert_allclose(share[settled], 0.8 * times[settled], atol=1e-4)
@@ -92,7 +92,7 @@ def test_a_clutch_without_load_is_open():
     assert (mode[~opened] == 1.0).all()
 
 
-def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
+def test_a_spatial_disc_has_the_sensor_values_of_a_planar_one():
     mbs, nodes = bodies_of(("planar", "Tait-Bryan"))
     friction = add_ring_friction(mbs, *nodes, **RING)
     spin, share, mode = (friction.add_sensor(name) for name in QUANTITIES)

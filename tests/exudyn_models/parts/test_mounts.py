@@ -179,7 +179,7 @@ def assert_forces_are_those_of_exudyn(mbs, friction, contact):
 
 
 @pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
-def test_forces_on_50_mounts_are_those_of_exudyns_velocities(kinds):
+def test_forces_on_50_mounts_match_exudyns_velocities(kinds):
     for i in range(50):
         assert_forces_are_those_of_exudyn(*mounted_at_random(kinds, i))
 
@@ -322,7 +322,7 @@ def test_axes_across_each_other_are_refused_where_a_contact_is_added():
     "rotation", [2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", [[1.0, 0.0], [0.0]], np.full((3, 3), np.nan)]
 )
 @pytest.mark.parametrize("name", ["master_rotation", "disc_rotation"])
-def test_what_is_no_rotation_is_refused(name, rotation):
+def test_an_invalid_rotation_is_refused(name, rotation):
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
     with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):

@@ -84,7 +84,7 @@ def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load(spin)
     np.testing.assert_allclose(*shown, rtol=1e-9, atol=1e-12)
 
 
-def test_modes_and_heat_are_those_of_the_body_that_slides_pivots_and_rests():
+def test_sensors_show_modes_and_heat_of_a_body_that_slides_pivots_and_rests():
     motion = [0.2, 0.3, -4.0]
     mbs, _, contact = body_on_feet(motion)
     mode, share, heat = (contact.add_sensor(one) for one in ("mode", "capacity_share", "heat"))
@@ -172,7 +172,7 @@ def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_to
     assert [*force[:2], float(moment)] == pytest.approx(largest, rel=1e-4)
 
 
-def test_a_deleted_contact_lets_all_its_points_go():
+def test_a_deleted_contact_releases_all_points():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
     assert run(mbs, 0.1) == []

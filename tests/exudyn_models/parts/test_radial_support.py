@@ -42,7 +42,7 @@ def in_plane(mbs, node):
 @pytest.mark.parametrize("kinds", ON_BODIES, ids=" on ".join)
 @pytest.mark.parametrize("stop", [{}, STOP], ids=["hardening", "stop"])
 @pytest.mark.filterwarnings("ignore:the energy balance is off")  # the test asserts how far
-def test_two_bodies_keep_momenta_and_what_they_lose_is_in_the_springs_and_the_damper(kinds, stop):
+def test_two_bodies_conserve_momenta_and_their_energy_goes_to_springs_and_damper(kinds, stop):
     mbs, nodes, support = supported(kinds, **SUPPORT | stop)
     balance = add_energy_balance(
         mbs, gains={}, losses={"damper": support.power}, stored=[support.stored_energy]

@@ -80,7 +80,7 @@ def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
     assert thermal.temperature(mbs) > 30.0
 
 
-def test_what_is_hot_cools_down_by_the_exponential_function_and_another_source_heats_it():
+def test_a_hot_node_cools_exponentially_and_another_source_heats_it():
     mbs = new_model()
     mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
     hot = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0, surroundings=20.0, start=80.0)

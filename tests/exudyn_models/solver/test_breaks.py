@@ -85,7 +85,7 @@ def test_the_next_run_goes_on_from_the_end_if_it_is_asked_to():
         (["0.4 s"], r"breaks\[0\] = '0.4 s'"),
     ],
 )
-def test_what_are_no_breaks_is_refused(breaks, message):
+def test_invalid_breaks_are_refused(breaks, message):
     mbs, *_ = brake()
     with pytest.raises(ValueError, match=message):
         solve_dynamic(mbs, fixed_steps(6), breaks=breaks)

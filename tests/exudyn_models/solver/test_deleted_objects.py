@@ -45,7 +45,7 @@ def test_a_contact_rubs_and_measures_after_earlier_objects_were_deleted(deleted,
 
 @pytest.mark.parametrize("solve", [solve_dynamic, exu.MainSystem.SolveDynamic])
 @pytest.mark.parametrize("planar", [False, True])
-def test_a_deleted_contact_lets_go_of_what_it_held(planar, solve):
+def test_a_deleted_contact_releases_its_bodies(planar, solve):
     mbs = new_model()
     node = wheel(mbs, planar)
     friction = add_ring_friction(mbs, None, node, normal_load=800.0, **FRICTION)

@@ -48,7 +48,7 @@ def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_
 
 @SOLVERS
 @pytest.mark.parametrize("balance", [True, False])
-def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance):
+def test_a_load_jump_is_reported_with_its_time_and_the_remedy(solver, balance):
     (message,), _ = run(lambda time: 800.0 * (time > 0.1037), solver, unit=10.0, balance=balance)
     name = "brake" if balance else "heat"
     # The jump is within the step of 5 ms, by M·ω0 = 1200 W less the deceleration in the step.
@@ -100,7 +100,7 @@ def test_no_jump_is_reported_for_a_load_that_the_steps_resolve_or_for_the_end_of
 
 
 @SOLVERS
-def test_jumps_near_each_other_a_small_one_and_a_rise_within_a_step_are_told(solver):
+def test_close_jumps_a_small_jump_and_a_rise_within_a_step_are_reported(solver):
     jumps = 20.5 * STEP, 23.5 * STEP
     (message,), _ = run(lambda time: 400.0 * ((time > jumps[0]) + 2.0 * (time > jumps[1])), solver)
     assert "and powers do so in 2 steps of this run" in message
@@ -109,7 +109,7 @@ def test_jumps_near_each_other_a_small_one_and_a_rise_within_a_step_are_told(sol
 
 
 @pytest.mark.parametrize("step", range(5, 14))
-def test_a_jump_is_told_once_wherever_the_steps_looked_at_together_end(step, monkeypatch):
+def test_a_jump_is_reported_once_at_any_place_in_a_batch_of_steps(step, monkeypatch):
     monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
     load, solver = lambda time: 800.0 * (time > (step + 0.5) * STEP), exu.DynamicSolverType.TrapezoidalIndex2
     (message,), _ = run(load, solver)

@@ -124,7 +124,7 @@ def test_a_dry_pendulum_comes_to_rest_at_the_exact_angle_and_keeps_it():
     assert abs(mbs.systemData.GetODE2Coordinates()[2] - rests_at) < 1e-12
 
 
-def test_the_load_of_a_pivot_may_be_the_reaction_of_the_joint_which_depends_on_the_friction():
+def test_the_load_of_a_pivot_may_be_a_joint_reaction_that_depends_on_friction():
     assert max(swung(True, 2e-3)[1]) < 4e-5
 
 

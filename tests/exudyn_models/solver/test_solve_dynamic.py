@@ -64,7 +64,7 @@ def test_an_explicit_solver_is_refused_where_the_model_has_constraints(solver):
     assert coordinates(mbs, disc)[1] == pytest.approx([0.0, 0.0, 0.1])
 
 
-def test_a_state_that_is_not_finite_or_a_step_that_does_not_converge_ends_the_run_and_tells_when():
+def test_an_infinite_state_or_a_diverging_step_ends_the_run_with_its_time():
     mbs, disc = clutch()
     add_coordinate_force(mbs, disc, lambda t, u: math.nan if t > 0.503 else u)
     mbs.Assemble()
@@ -76,7 +76,7 @@ def test_a_state_that_is_not_finite_or_a_step_that_does_not_converge_ends_the_ru
         solve_dynamic(mbs, settings(), SOLVERS.GeneralizedAlpha)
 
 
-def test_a_body_without_mass_is_told():
+def test_a_body_without_mass_is_reported():
     mbs = new_model()
     node = rotor(mbs, 0.0, 1.0)
     add_coordinate_force(mbs, node, lambda t, u: 0.0)

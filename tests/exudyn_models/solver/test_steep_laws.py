@@ -52,13 +52,13 @@ def test_a_load_beyond_static_friction_rolls_back_as_by_hand(solver):
 
 
 @IMPLICIT
-def test_a_fixed_step_across_the_peak_is_told(solver):
+def test_a_fixed_step_across_the_peak_causes_a_warning(solver):
     with pytest.warns(RuntimeWarning, match="skips a peak of friction"):
         assert speed_after_a_stop(solver, 5.2, adaptive=False, **LAWS["steep table"]) < -0.1
 
 
 @IMPLICIT
-def test_no_peak_is_told_of_a_contact_that_slips_on_however_much_faster(solver):
+def test_a_contact_that_keeps_slipping_causes_no_warning(solver):
     """At 2ε the first step adds more slip than there was, on the falling side of the peak."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -137,14 +137,14 @@ def two_discs(place, velocity, **contact):
     ids=["small ring", "ring", "points", "annulus"],
 )
 @pytest.mark.parametrize("velocity", [[0.0, 0.0, 0.0], [0.3, -0.2, 5.0]], ids=["stuck", "slipping"])
-def test_limit_of_two_discs_is_that_of_the_inertias_along_the_contact(contact, by_hand, velocity):
+def test_the_limit_of_two_discs_depends_on_the_inertias_along_the_contact(contact, by_hand, velocity):
     mbs, _, _ = two_discs([0.0, 0.0], velocity, **contact)
     expected = INTERVALS["RK44"] / (FRICTION / EPSILON * by_hand)
     assert largest_stable_step(mbs, SOLVERS.RK44) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("kind", [items.NodeRigidBodyRotVecLG, items.NodeRigidBodyRxyz])
-def test_limit_of_spatial_bodies_is_that_of_planar_ones_wherever_they_slip(kind):
+def test_spatial_and_planar_bodies_have_the_same_limit(kind):
     """The master turns about its own axis at the distance d, which adds d²/J to 1/m across that distance."""
     place, velocity = [0.06, -0.08], [0.2, 0.1, 3.0]
     flat = largest_stable_step(two_discs(place, velocity)[0], SOLVERS.RK67)
@@ -199,7 +199,7 @@ def warned(mbs, *arguments):
 
 
 @pytest.mark.parametrize("solver", ["ExplicitEuler", "RK44", "VelocityVerlet"])
-def test_a_step_beyond_the_limit_is_told_before_the_run_and_one_below_is_not(solver):
+def test_only_a_step_beyond_the_limit_causes_a_warning_before_the_run(solver):
     limit = INTERVALS[solver] / INTERVALS["RK44"] * WITHOUT_NEIGHBOURS / 2.0
     kind = getattr(SOLVERS, solver)
     assert not warned(row_of_rotors(2)[0], settings(0.9995 * limit, 1000), kind)
@@ -223,7 +223,7 @@ def test_a_solver_or_a_model_without_that_limit_is_left_alone(solver):
 
 
 @pytest.mark.parametrize("what", ["normal_load", "friction_coefficient"])
-def test_a_load_or_coefficient_that_grows_is_told_when_it_is_too_large(what):
+def test_a_growing_load_or_coefficient_causes_a_warning_at_the_limit(what):
     """The warning comes within 1 % of the run; the limit at time 0 would be four times the step."""
     step = WITHOUT_NEIGHBOURS / 2.0
     growing = {what: lambda time: CONTACT[what] * (0.25 + time / (1000.0 * step))}
@@ -243,7 +243,7 @@ def test_a_load_that_is_changed_counts_from_then_on():
 @pytest.mark.parametrize(
     "load", [FRICTION, lambda time: FRICTION * (time > 0.0)], ids=["before", "in the run"]
 )
-def test_a_warning_that_is_an_error_ends_the_run_as_what_it_is(load):
+def test_a_warning_turned_into_an_error_ends_the_run_unchanged(load):
     mbs, _, _ = row_of_rotors(2, normal_load=load)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -43,7 +43,7 @@ def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
-        """Return how much later the centre rests than the rim, as a share of the duration, by two pairs of samples."""
+        """Return how much later the centre rests than the rim, as a share of the duration, from two sample pairs."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - REMAINING[:3])
