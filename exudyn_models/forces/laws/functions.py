@@ -101,7 +101,12 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
             if parameter.name not in fixed:
                 taken.add(parameter.name)
         elif parameter.default is parameter.empty:  # *arguments and **options have none
-            raise ValueError(f"{name} takes `{parameter}`: a function may take {allowed}")
+            hint = (
+                "; a coefficient may take temperature with a thermal_node"
+                if parameter.name == "temperature"
+                else ""
+            )
+            raise ValueError(f"{name} takes `{parameter}`: a function may take {allowed}{hint}")
     arguments = tuple(argument for argument in ARGUMENTS if argument in taken)
     first = parameters[: len(arguments)]
     positional = all(parameter.kind == parameter.POSITIONAL_OR_KEYWORD for parameter in first)

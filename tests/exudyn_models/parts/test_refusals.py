@@ -72,7 +72,7 @@ WRONG = [
         {"normal_load": numba.njit(lambda time: UNKNOWN.a)},
         "normal_load is a numba function that cannot be compiled",
     ),
-    (RING, {"friction_coefficient": lambda temperature: 0.1}, "takes `temperature`"),
+    (RING, {"friction_coefficient": lambda temperature: 0.1}, "may take temperature with a thermal_node"),
     (RING, {"thermal_node": 3}, "thermal_node = 3: it must be a result of add_thermal_node"),
     (RING, {"pressure": "wear"}, "pressure = 'wear': it needs an annulus"),
     (ANNULUS, {"inner_radius": -0.1}, "inner_radius = -0.1 m: it must be >= 0"),

@@ -51,7 +51,7 @@ def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_
 def test_a_load_jump_is_reported_with_its_time_and_the_remedy(solver, balance):
     (message,), _ = run(lambda time: 800.0 * (time > 0.1037), solver, unit=10.0, balance=balance)
     name = "brake" if balance else "heat"
-    # The jump is within the step of 5 ms, by M·ω0 = 1200 W less the deceleration in the step.
+    # The jump within the step of 5 ms is M·ω0 = 1200 W, less the effect of the deceleration in the step.
     assert message.startswith(
         f"the power '{name}' jumps by 1.2e+03 W between t = 0.1 s and 0.105 s: the energy"
     )

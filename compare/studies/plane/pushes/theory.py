@@ -203,8 +203,8 @@ def uncertainties(pushes: tuple[Push, ...], of: Difference = force_error) -> Unc
         changes = {
             **dict.fromkeys(("x", "y"), shift),
             "turn": turn,
-            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # of one pose
-            **dict.fromkeys(("force_x", "force_y"), push.noise),  # of the first sample, the offset
+            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # error of one pose
+            **dict.fromkeys(("force_x", "force_y"), push.noise),  # noise of the first sample, the offset
         }
         moved = [replace(push, **{name: getattr(push, name) + change}) for name, change in changes.items()]
         data.append(_size([of(other, coulomb) - base for other in moved]))
