@@ -186,10 +186,7 @@ def friction_discs(
       friction-discs list
       friction-discs report
       friction-discs matrix --engine reference
-      friction-discs plan --level quick
-      friction-discs diff report-of-main report
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
-      friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs sweep basin pin
       friction-discs export-fmu clutch --set plates=4 --output clutch.fmu
       friction-discs errata

@@ -58,7 +58,7 @@ def export_pin(unit: Unit) -> None:
 
     \b
     Parameters: those of `friction-discs simulate pin`, the initial state x, y (m), vx, vy (m/s), and
-      exact=1 (1: exact stick; 0: creeps below the slip speed regularisation)
+      exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
     \b
     Example:
@@ -77,7 +77,7 @@ def export_disc(unit: Unit) -> None:
     \b
     Parameters: those of `friction-discs simulate disc`, the initial state x, y (m), angle (rad), vx, vy (m/s),
       spin (rad/s), and
-      exact=1 (1: exact stick; 0: creeps below the slip speed regularisation)
+      exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
       contact_points=0 (0: continuous ring; 3 or more: points, which always creep)
     \b

@@ -97,7 +97,6 @@ def simulate_system() -> None:
     \b
     Examples:
       friction-discs simulate pin --output whirl.json
-      friction-discs simulate disc --help
     """
 
 

@@ -98,7 +98,6 @@ def sweep_basin(
     Examples:
       friction-discs sweep basin pin --x x=-0.3:0.5:1000 --y vx=-0.4:0.4:1000
       friction-discs sweep basin pin --random 20000 --seed 7 --output shares
-      friction-discs sweep basin disc --set contact_points=6 --start spin=1.2 --x x=-0.2:0.2:129 --y y=-0.2:0.2:129
     """
     from compare.sweep.plan import Basin, RandomBasin
     from compare.sweep.quantities import Axis, components
