@@ -28,10 +28,10 @@ ALIKE = 0.1
 """Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
 
 SAME_DELAY = 0.2  # largest relative difference of equal delays
-CHATTERS = 3.0  # least ratio of velocity to creep of a block that chatters
+CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
 MOTION, MASS = "Wrong motion", "Wrong mass"
-"""Beginnings of a verdict about other parts than friction."""
+"""Beginnings of a verdict that does not concern friction."""
 
 
 class Remark(NamedTuple):
