@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,22 +30,22 @@ class Declared:
 
     function: Callable[..., Measured | None]
     sentence: str
-    equation: str
-    kind: Kind
-    unit: str
-    resolution: float | None
-    note: str
-    basis: Basis
-    implied_by: str
-    named: Mapping[str, int | None]
-    swept: tuple[str, ...]
-    each: Mapping[str, Any]
+    kind: Kind = "formula"
+    basis: Basis = ""  # type: ignore[assignment]  # the usual one, see ``Claim``
+    equation: str = ""
+    unit: str = ""
+    resolution: float | None = None
+    note: str = ""
+    implied_by: str = ""
+    named: Mapping[str, int | None] = field(default_factory=dict)
+    swept: Collection[str] = ()
+    each: Mapping[str, Any] = field(default_factory=dict)
     duration: float = 0.0
 
     @property
     def of_engine(self) -> bool:
-        """True if the claim is about an engine."""
-        return takes_engine(self.function)
+        """True if the claim is about an engine: the first argument of its function."""
+        return next(iter(inspect.signature(self.function).parameters), "") == "engine"
 
     @property
     def place(self) -> tuple[Path, int]:
@@ -72,8 +72,3 @@ class Declared:
         """Return the permanent id of the claim, such as "fig06/rests"."""
         parts = (study, self.function.__name__.strip("_"), case)
         return "/".join(slug(part) for part in parts if part)
-
-
-def takes_engine(function: Callable[..., Any]) -> bool:
-    """Return whether the first argument is an engine."""
-    return next(iter(inspect.signature(function).parameters), "") == "engine"

@@ -11,8 +11,8 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
-from compare.claims.declared import Declared, takes_engine
+from compare.claims.claim import THEORY, Claim, ErrorBudget, Verdict
+from compare.claims.declared import Declared
 from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
@@ -181,39 +181,25 @@ class Study:
         self,
         sentence: str,
         *,
-        equation: str = "",
-        kind: Kind = "formula",
-        unit: str = "",
-        resolution: float | None = None,
-        note: str = "",
-        basis: Basis | None = None,
         implied_by: Callable[..., Any] | None = None,
-        named: Mapping[str, int | None] | None = None,
-        swept: Sequence[str] = (),
         each: Mapping[str, Any] | Sequence[str] = (),
-        duration: float = 0.0,
+        **more: Any,
     ) -> Callable[[Measure], Measure]:
         """Declare that the decorated function measures ``sentence``; the function is unchanged.
 
-        The parameters are those of :class:`Declared`; ``implied_by`` is the function of another claim of this study,
-        and ``each`` may be a sequence of names.
+        The parameters and ``more`` are fields of :class:`Declared`; ``implied_by`` is the function of another claim
+        of this study, and ``each`` may be a sequence of names.
         """
 
         def declare(function: Measure) -> Measure:
             declared = Declared(
-                function=function,
-                sentence=sentence,
-                equation=equation,
-                kind=kind,
-                unit=unit,
-                resolution=resolution,
-                note=note,
-                basis=basis or usual_basis(kind, "" if takes_engine(function) else THEORY),
-                implied_by="" if implied_by is None else self._declared_by(implied_by).sentence,
-                named=dict(named or {}),
-                swept=tuple(swept),
-                each=dict(each) if isinstance(each, Mapping) else {name: name for name in each},
-                duration=duration,
+                function,
+                sentence,
+                implied_by=""
+                if implied_by is None
+                else next(one.sentence for one in self.declared if one.function is implied_by),
+                each=each if isinstance(each, Mapping) else {name: name for name in each},
+                **more,
             )
             for case, _ in declared.cases():
                 if (identity := declared.identity(self.name, case)) in self.identities:
@@ -227,9 +213,6 @@ class Study:
     def identities(self) -> set[str]:
         """Permanent ids of all claims."""
         return {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
-
-    def _declared_by(self, function: Callable[..., Any]) -> Declared:
-        return next(one for one in self.declared if one.function is function)
 
     @property
     def has_theory(self) -> bool:

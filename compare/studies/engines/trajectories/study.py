@@ -5,12 +5,11 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
+from compare.claims import TRUTH, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import at_each, components_of, parameters_of
 from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
@@ -30,7 +29,6 @@ from compare.studies.engines.trajectories.theory import (
     at_bounds,
     at_nodes,
     by_reference,
-    equation_of,
     forces,
     gauss,
     late,
@@ -333,14 +331,3 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
 
 def started(motion: Motion) -> str:
     return f"To t = {motion.until:g} s from {motion.start}."
-
-
-def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
-    declared = []
-    for one in STUDY.declared:
-        (like,) = next(iter(one.each.values()))
-        mine = {
-            name: (motion,) for name, motion in motions.items() if equation_of(motion) == equation_of(like)
-        }
-        declared += [replace(one, each=mine)] if mine else []
-    return replace(STUDY, declared=declared).measure(engine)

@@ -190,12 +190,6 @@ def forces(body: System, states: FloatArray) -> FloatArray:
     return np.apply_along_axis(force, -1, states)
 
 
-def equation_of(motion: Motion) -> str:
-    if isinstance(motion.system, PinOnDisc):
-        return "(1)"
-    return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
-
-
 def samples_in_stick(run: Trajectory) -> list[int]:
     """Return the index of the middle sample of each stick phase that ends by release."""
     found = []
