@@ -20,7 +20,7 @@ from compare.claims.prose import Prose, Table
 from compare.claims.validation import Validation
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Figure
-from compare.output.outside_text import Failure
+from compare.output.outside_text import Failure, printable
 from reference_model.orbits import NoOrbitError
 from reference_model.systems import FloatArray, System
 
@@ -239,7 +239,7 @@ class Study:
                     ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
                     found, note = decided(engine, ask, _is_open)
                 except UnsupportedSystemError as error:
-                    lacking.append(str(error))
+                    lacking.append(printable(error))
                     continue
                 if found is not None:
                     claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))

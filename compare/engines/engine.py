@@ -157,7 +157,10 @@ class Engine:
 
     @property
     def _asked(self) -> Callable[..., Any]:
-        return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
+        function = getattr(
+            self.function, "imported", self.function
+        )  # calling it costs no frame of ``ByName``
+        return function if self.seed is None else InOtherUnits(function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
         if not self.simulates(system):
