@@ -1,7 +1,5 @@
 """A claim before its measurement, as declared by ``Study.claim``."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Measure the claims of one study about one engine, for reports and for pytest."""
 
-from __future__ import annotations
-
 import functools
 import math
 import time

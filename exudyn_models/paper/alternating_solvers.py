@@ -1,7 +1,5 @@
 """Motions that alternate between slip and creep, each with its own solver and axes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

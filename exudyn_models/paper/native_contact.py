@@ -1,7 +1,5 @@
 """The paper's pin and disc with Exudyn's own contact: the same motion by independent code."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any

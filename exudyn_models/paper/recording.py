@@ -1,7 +1,5 @@
 """The recorded states of a motion, and the steps that determine its phases."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from exudyn_models.paper.creep import RegularisedContact

@@ -1,7 +1,5 @@
 """Axes that turn about the master disc's axis. A sticking body rests in axes that turn with the disc."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Figs. 5, 6, 8 and 11 at the size and speed of a clutch."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Discs that slide and spin on a plane at rest: a ring, points and a full disc."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence

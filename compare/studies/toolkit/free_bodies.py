@@ -14,8 +14,6 @@ Its error is of second order because F and G are derivatives of one function.
 Units are m and s, and g is 1 m/s².
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

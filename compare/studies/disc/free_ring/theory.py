@@ -7,8 +7,6 @@ For c < 1/2 there is no terminal δ*: spinning dies out faster, W/U ~ t^(1/(2c) 
 c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio converges more slowly than any power.
 """
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math

@@ -1,7 +1,5 @@
 """Exact motions as references for errors, and the shift of a release by creep."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math

@@ -1,7 +1,5 @@
 """Random motions with an exact solution, or solved by the reference at a far tighter tolerance."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math

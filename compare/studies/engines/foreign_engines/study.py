@@ -1,7 +1,5 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 from typing import Any
 

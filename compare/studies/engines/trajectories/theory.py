@@ -4,8 +4,6 @@ The paper's m, J and C are all one, so an engine may confuse them. Here no two p
 motions cover the whole range.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import dataclass, replace

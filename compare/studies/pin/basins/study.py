@@ -1,7 +1,5 @@
 """Ends of many starts, and the boundary between them: the stable set of a stick–slip orbit."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Claims on the pushes, and their validation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache, partial
 
