@@ -11,7 +11,7 @@ from exudyn_models.forces.laws.places import point_regularisation
 from exudyn_models.paper.alternating_solvers import Friction, Part
 from exudyn_models.paper.creep import WHOLE, RegularisedContact
 from exudyn_models.paper.scales import support_energy
-from exudyn_models.paper.simulate import METHODS, Run
+from exudyn_models.paper.simulate import METHOD, Run
 from exudyn_models.parts.native_contact import add_native_friction
 from exudyn_models.parts.ring_friction import checked_contact
 from reference_model.systems import (
@@ -38,7 +38,7 @@ def simulate_with_native_contact(
     run = Run.of(system, state, grid, checked_tolerance(tolerance), None)
     reach = _reach(system, state, float(grid[-1] - grid[0])) / run.units.length
     friction = Friction(partial(_add_friction, reach=reach), _creeping)
-    return run.trajectory(f"{METHODS['explicit']}, built-in contact", run.explicit(), friction)
+    return run.trajectory(f"{METHOD}, built-in contact", run.explicit(), friction)
 
 
 def _creeping(contact: RegularisedContact, state: list[float]) -> Part | None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Literal
 
 from numpy.typing import ArrayLike
 
@@ -53,9 +52,7 @@ LARGEST_STEP = 6.0
 NEWTON_TOLERANCE = 1e-9
 """Tolerance of Newton's residual, relative to the forces at the start."""
 
-Solver = Literal["explicit", "implicit"]
-
-METHODS = {"explicit": "Exudyn DOPRI5, generalised-α while sticking", "implicit": "Exudyn generalised-α"}
+METHOD = "Exudyn DOPRI5, generalised-α while sticking"
 
 
 def simulate(
@@ -65,10 +62,12 @@ def simulate(
     *,
     tolerance: float = 1e-9,
     regularisation: float | None = None,
-    solver: Solver = "explicit",
     friction: Friction = RING_FRICTION,
 ) -> Trajectory:
     """Return the motion of ``system`` from ``initial_state`` at ``times[0]`` at all ``times``.
+
+    The solver is DOPRI5, with generalised-α while the contact or one of its points sticks and the law is stiff. Stick
+    takes some 40 steps per turn, pivoting about a point steps ~ √ε.
 
     Parameters
     ----------
@@ -79,15 +78,11 @@ def simulate(
         the last time.
     tolerance
         Accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``. While the contact
-        slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
+        slips, the error stays near it. Stick and pivoting add errors of first order in the regularisation.
     regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as
         ``solution.regularisation``. Keep it well above the tolerance. For very soft springs pass ε explicitly,
         because μN/√(mass·stiffness) then counts as the speed, however slow the motion.
-    solver : "explicit" or "implicit"
-        "explicit" is DOPRI5, with generalised-α while the contact or one of its points sticks and the law is stiff.
-        Stick takes some 40 steps per turn, pivoting about a point steps ~ √ε. "implicit" is generalised-α throughout,
-        of second order, with steps ~ √tolerance and an error of about a thousand times the tolerance.
     friction
         Adds the friction between the discs to the model, which is built in the motion's own units.
 
@@ -102,13 +97,9 @@ def simulate(
     state = checked_state(system, initial_state)
     grid = checked_times(times)
     tolerance = checked_tolerance(tolerance)
-    if solver not in METHODS:
-        raise ValueError(f"solver = {solver!r}: it must be 'explicit' or 'implicit'")
     epsilon = None if regularisation is None else positive_number("regularisation", regularisation, "m/s")
     run = Run.of(system, state, grid, tolerance, epsilon)
-    return run.trajectory(
-        METHODS[solver], run.explicit() if solver == "explicit" else run.implicit(), friction
-    )
+    return run.trajectory(METHOD, run.explicit(), friction)
 
 
 def simulate_fixed_step(
@@ -191,11 +182,6 @@ class Run:
         local *= self.scales.motion
         local = max(local, 2.0 * self.scales.angle_rounding)  # rounding of large angles
         return SlipSolver("DOPRI5", LARGEST_STEP * self.tolerance**0.2 * self.scales.time, local)
-
-    def implicit(self) -> SlipSolver:
-        """Return generalised-α with a step that follows the tolerance."""
-        step = 100.0 * math.sqrt(self.tolerance) * self.scales.time
-        return SlipSolver("GeneralizedAlpha", step, NEWTON_TOLERANCE * self.scales.force)
 
     def trajectory(self, method: str, solver: SlipSolver, friction: Friction) -> Trajectory:
         """Return the motion in SI units; ``method`` is its description."""

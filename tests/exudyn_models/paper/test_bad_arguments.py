@@ -27,7 +27,6 @@ WRONG = [
     (simulate, FIG5, {"regularisation": 0.0}, "regularisation = 0 m/s"),
     (simulate, FIG11, {"regularisation": -1e-6}, "regularisation = -1e-06 m/s"),
     (simulate, FIG5, {"regularisation": np.inf}, "regularisation = inf"),
-    (simulate, FIG11, {"solver": "magic"}, "solver = 'magic': it must be 'explicit' or 'implicit'"),
     (
         simulate_fixed_step,
         FIG5,

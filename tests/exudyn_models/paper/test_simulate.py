@@ -35,7 +35,6 @@ FREE = {"stiffness": 0.0, "damping": 0.0, "shaft_damping": 0.0, "disc_speed": 0.
 TABLE = replace(FIG11, polar_inertia=0.0144, friction_force=0.09, **FREE)  # a ring of J = mR² on a table
 THROWN = [0.0, 0.0, 0.3, 0.3, 0.1, 2.0]
 SLIPS = pytest.mark.parametrize("name", SLIPPING)
-SOLVERS = pytest.mark.parametrize("solver", ["explicit", "implicit"])
 
 
 def kinds(trajectory):
@@ -56,18 +55,6 @@ def test_errors_while_slipping_fall_with_the_tolerance_at_every_output_time(name
     errors = [largest(run.states - expected) for run in found]
     assert np.all(np.diff(errors) < 0.0), errors
     assert errors[-1] < 5e-9
-
-
-@SLIPS
-def test_the_implicit_solver_has_an_error_of_first_order_in_the_tolerance(name):
-    (system, start), times = SLIPPING[name], np.linspace(0.0, 5.0, 11)
-    expected = slide(system, start, times).y.T
-    errors = [
-        largest(simulate(system, start, times, tolerance=tolerance, solver="implicit").states - expected)
-        for tolerance in (1e-6, 1e-8)
-    ]
-    assert np.log10(errors[0] / errors[1]) / 2.0 == pytest.approx(1.0, abs=0.15), errors
-    assert errors[1] < 1e-4
 
 
 @SLIPS
@@ -122,15 +109,6 @@ def test_stick_phases_have_errors_of_first_order_in_the_regularisation(name, eng
     errors = errors[:, :-1] if name == "pin" else errors  # which comes to rest at the same place in the end
     np.testing.assert_allclose(np.log10(errors[:-1] / errors[1:]), 1.0, atol=0.1, err_msg=str(errors))
     assert errors[-1].max() < 2e-4
-
-
-@pytest.mark.parametrize("name", ["pin", "ring", "six points"])
-def test_the_implicit_solver_passes_through_sticking(name):
-    system, start = STICKING[name]
-    found = simulate(system, start, [0.0, 12.0], tolerance=1e-7, solver="implicit")
-    exact = reference_model.simulate(system, start, [0.0, 12.0], tolerance=1e-9)
-    assert len(found.stick_phases) == 2
-    np.testing.assert_allclose(found.stick_times, exact.stick_times, rtol=0.0, atol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -196,12 +174,11 @@ def test_long_pivots_have_errors_of_first_order_in_the_regularisation():
 
 @pytest.mark.parametrize("change", [{}, {"stiffness": 0.0}, {"shaft_damping": 0.0}, FREE])
 @pytest.mark.parametrize("name", ["pin", "ring"])
-@SOLVERS
-def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, change, solver):
+def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, change):
     system, start = SLIPPING[name]
     known = {key: value for key, value in change.items() if hasattr(system, key)}
     system, times = replace(system, friction_force=0.0, **known), np.linspace(0.0, 5.0, 11)
-    found, accuracy = simulate(system, start, times, solver=solver), 1e-10 if solver == "explicit" else 1e-5
+    found, accuracy = simulate(system, start, times), 1e-10
     stiffness, damping = system.stiffness / system.mass, system.damping / system.mass
     matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness * np.eye(2), -damping * np.eye(2)]])
     rest = np.array([system.offset, 0.0, 0.0, 0.0])  # without a spring it has no effect
@@ -308,20 +285,18 @@ def friction_with(change):
     return Friction(add, RegularisedContact.creeping)
 
 
-@SOLVERS
-def test_evaluations_are_those_that_were_made(solver):
+def test_evaluations_are_those_that_were_made():
     calls = []
 
     def counted(force):
         return lambda *arguments: calls.append(1) or force(*arguments)
 
     friction = friction_with(counted)
-    found = simulate(*STICKING["pin"], [0.0, 12.0], tolerance=1e-7, solver=solver, friction=friction)
+    found = simulate(*STICKING["pin"], [0.0, 12.0], tolerance=1e-7, friction=friction)
     assert found.solution.evaluations == pytest.approx(len(calls), rel=0.01)
 
 
-@SOLVERS
-def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
+def test_a_force_that_is_not_a_number_raises_and_tells_when():
     def broken(force):
         return lambda mbs, t, item, q, q_t: force(mbs, t, item, q, q_t) if q[1] > 0.0 else [float("nan")] * 4
 
@@ -330,16 +305,15 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
     with pytest.raises(
         SimulationError, match=r"failed (\d+\.?\d*) s after the start: .*; use a smaller"
     ) as told:
-        simulate(*STICKING["pin"], [0.0, 10.0], solver=solver, friction=friction_with(broken))
+        simulate(*STICKING["pin"], [0.0, 10.0], friction=friction_with(broken))
     time = float(str(told.value).split("failed ")[1].split(" s")[0])
     assert time == pytest.approx(crossing, abs=0.1)
 
 
-@SOLVERS
 @pytest.mark.parametrize(
     ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
 )
-def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
+def test_what_is_raised_inside_of_a_run_comes_out_of_it(raised, seen):
     def interrupted(force):
         def function(*arguments):
             raise raised
@@ -347,15 +321,14 @@ def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
         return function
 
     with pytest.raises(seen):
-        simulate(*STICKING["pin"], [0.0, 10.0], solver=solver, friction=friction_with(interrupted))
+        simulate(*STICKING["pin"], [0.0, 10.0], friction=friction_with(interrupted))
 
 
 def test_nothing_is_printed_and_no_file_is_written_nor_infinity_returned(tmp_path, monkeypatch, capfd):
     """RK44 is unstable for steps above 2.8·mε/μN, and a stiff spring makes it blow up."""
     monkeypatch.chdir(tmp_path)
     exu.config.printToConsole = True
-    for solver in ("explicit", "implicit"):
-        simulate(*STICKING["pin"], [0.0, 12.0], tolerance=1e-7, solver=solver)
+    simulate(*STICKING["pin"], [0.0, 12.0], tolerance=1e-7)
     with pytest.raises(SimulationError, match="not finite"):
         simulate_fixed_step(replace(PIN, stiffness=1e6), [0.1, 0.0, 0.0, 0.0], [0.0, 100.0], step=0.1)
     printed = "".join(capfd.readouterr()).splitlines()
