@@ -1,7 +1,5 @@
 """An engine: a function that simulates, and the kinds of systems that it supports."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Iterable
