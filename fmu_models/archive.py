@@ -1,7 +1,5 @@
 """Units as files: sources, headers of the standard, descriptions, and a library if there is a compiler."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil

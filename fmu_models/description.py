@@ -1,7 +1,5 @@
 """``modelDescription.xml`` of a model for FMI 2.0 and 3.0, and ``buildDescription.xml`` for FMI 3.0."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from xml.etree import ElementTree as Xml

@@ -1,7 +1,5 @@
 """C header and tables of a model: its variables, and the quadrature rule for an annulus."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

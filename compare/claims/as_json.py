@@ -3,8 +3,6 @@
 NaN and infinity become "nan", "inf" and "-inf". All numbers are restored exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass

@@ -1,7 +1,5 @@
 """A claim: a measured and a predicted number, and the difference allowed between them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field

@@ -3,8 +3,6 @@
 "Printed" refers to the text we worked from, see ``TEXT``.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

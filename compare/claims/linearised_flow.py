@@ -1,7 +1,5 @@
 """Linearised flow of an engine, its eigenvalues from simulations, and their comparison."""
 
-from __future__ import annotations
-
 import functools
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Result of a claim's function: numbers, their errors and their names."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Parameter sets of the paper, and the parameters that repeat a claim."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import asdict, replace
 

@@ -1,7 +1,5 @@
 """Shares of initial states by their end states, with bounds."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

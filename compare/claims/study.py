@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -11,16 +12,15 @@ from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 
-from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict, usual_basis
-from compare.claims.declared import Declared, takes_engine
+from compare.claims.claim import THEORY, Basis, Claim, ErrorBudget, Kind, Verdict
 from compare.claims.error_estimates import decided
 from compare.claims.measured import Measured
 from compare.claims.parameters import parameters_of
-from compare.claims.prose import Prose, Table
+from compare.claims.prose import Prose, Table, slug
 from compare.claims.validation import Validation
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import Figure
-from compare.output.outside_text import Failure
+from compare.output.outside_text import Failure, printable
 from reference_model.orbits import NoOrbitError
 from reference_model.systems import FloatArray, System
 
@@ -83,6 +83,67 @@ class Recorded:
     adapter: str = ""
     advice: str = ""
     whirl: float = math.nan
+
+
+@dataclass(frozen=True)
+class Declared:
+    """All properties of a claim that do not depend on the engine.
+
+    - ``function``: ``function(engine) -> Measured``, without an argument for the theory, or None if the claim does
+      not apply to the engine. In a family it also takes a value of ``each``.
+    - ``resolution``: largest total error of a conclusive agreement; None if the measurement contains it.
+    - ``swept``: parameters of the system that the claim varies.
+    - ``each``: names and values of the members of a family; empty for a single claim.
+    - ``duration``: total duration in s of a long claim's motions, weighted for finer steps, for the quick level.
+
+    All others are those of :class:`compare.claims.claim.Claim`. In a family, braces in the sentences stand for the
+    member's name.
+    """
+
+    function: Callable[..., Measured | None]
+    sentence: str
+    kind: Kind = "formula"
+    basis: Basis = ""  # type: ignore[assignment]  # the usual one, see ``Claim``
+    equation: str = ""
+    unit: str = ""
+    resolution: float | None = None
+    note: str = ""
+    implied_by: str = ""
+    named: Mapping[str, int | None] = field(default_factory=dict)
+    swept: Collection[str] = ()
+    each: Mapping[str, Any] = field(default_factory=dict)
+    duration: float = 0.0
+
+    @property
+    def of_engine(self) -> bool:
+        """True if the claim is about an engine: the first argument of its function."""
+        return next(iter(inspect.signature(self.function).parameters), "") == "engine"
+
+    @property
+    def place(self) -> tuple[Path, int]:
+        """File and line of the function."""
+        code = inspect.unwrap(self.function).__code__
+        return Path(code.co_filename), code.co_firstlineno
+
+    def cases(self) -> Iterator[tuple[str, tuple[Any, ...]]]:
+        """Yield each member of the family with additional arguments of its function."""
+        if not self.each:
+            yield "", ()
+        for name, value in self.each.items():
+            yield name, (value,)
+
+    def sentence_of(self, case: str) -> str:
+        """Return the sentence of a member of the family."""
+        return self.sentence.format(case) if self.each else self.sentence
+
+    def part(self, case: str) -> str:
+        """Return the selector "function/case" of a member of the family, or "function" of a single claim."""
+        return f"{self.function.__name__}/{case}" if self.each else self.function.__name__
+
+    def identity(self, study: str, case: str) -> str:
+        """Return the permanent id of the claim, such as "fig06/rests"."""
+        parts = (study, self.function.__name__.strip("_"), case)
+        return "/".join(slug(part) for part in parts if part)
 
 
 PROVIDED = ("figures", "animations", "curves", "tables", "recorded", "validations")
@@ -181,39 +242,25 @@ class Study:
         self,
         sentence: str,
         *,
-        equation: str = "",
-        kind: Kind = "formula",
-        unit: str = "",
-        resolution: float | None = None,
-        note: str = "",
-        basis: Basis | None = None,
         implied_by: Callable[..., Any] | None = None,
-        named: Mapping[str, int | None] | None = None,
-        swept: Sequence[str] = (),
         each: Mapping[str, Any] | Sequence[str] = (),
-        duration: float = 0.0,
+        **more: Any,
     ) -> Callable[[Measure], Measure]:
         """Declare that the decorated function measures ``sentence``; the function is unchanged.
 
-        The parameters are those of :class:`Declared`; ``implied_by`` is the function of another claim of this study,
-        and ``each`` may be a sequence of names.
+        The parameters and ``more`` are fields of :class:`Declared`; ``implied_by`` is the function of another claim
+        of this study, and ``each`` may be a sequence of names.
         """
 
         def declare(function: Measure) -> Measure:
             declared = Declared(
-                function=function,
-                sentence=sentence,
-                equation=equation,
-                kind=kind,
-                unit=unit,
-                resolution=resolution,
-                note=note,
-                basis=basis or usual_basis(kind, "" if takes_engine(function) else THEORY),
-                implied_by="" if implied_by is None else self._declared_by(implied_by).sentence,
-                named=dict(named or {}),
-                swept=tuple(swept),
-                each=dict(each) if isinstance(each, Mapping) else {name: name for name in each},
-                duration=duration,
+                function,
+                sentence,
+                implied_by=""
+                if implied_by is None
+                else next(one.sentence for one in self.declared if one.function is implied_by),
+                each=each if isinstance(each, Mapping) else {name: name for name in each},
+                **more,
             )
             for case, _ in declared.cases():
                 if (identity := declared.identity(self.name, case)) in self.identities:
@@ -227,9 +274,6 @@ class Study:
     def identities(self) -> set[str]:
         """Permanent ids of all claims."""
         return {one.identity(self.name, case) for one in self.declared for case, _ in one.cases()}
-
-    def _declared_by(self, function: Callable[..., Any]) -> Declared:
-        return next(one for one in self.declared if one.function is function)
 
     @property
     def has_theory(self) -> bool:
@@ -256,7 +300,7 @@ class Study:
                     ask = partial(self._asked, declared, case, arguments, (few or {}).get(name, {}))
                     found, note = decided(engine, ask, _is_open)
                 except UnsupportedSystemError as error:
-                    lacking.append(str(error))
+                    lacking.append(printable(error))
                     continue
                 if found is not None:
                     claims.append(replace(found[0], note=f"{found[0].note} {note}".strip()))

@@ -4,8 +4,6 @@ It is not a verdict, because a friction law describes a real contact only to som
 of the difference the known uncertainties explain (ASME V&V 20-2009).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

@@ -1,7 +1,5 @@
 """``friction-discs diff``: the differences of two reports."""
 
-from __future__ import annotations
-
 from collections import Counter
 from pathlib import Path
 from typing import Annotated

@@ -1,7 +1,5 @@
 """``friction-discs export-fmu pin | disc | clutch``: a contact as a functional mock-up unit (FMU)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, cast

@@ -1,7 +1,5 @@
 """Trajectories as CSV or JSON files."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Parts of an engine's diagnosis, measured separately, so a hanging part does not affect the others."""
 
-from __future__ import annotations
-
 import functools
 import math
 import time

@@ -4,8 +4,6 @@ An anisotropic law replaces Coulomb's circle by a polygon: the force points to t
 the slip. The box is a square with sides across the axes.
 """
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math

@@ -1,7 +1,5 @@
 """A row of the matrix: results for one engine, and sentences that explain them."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import json

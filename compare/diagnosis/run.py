@@ -1,7 +1,5 @@
 """Diagnosis of engines by parts that run in worker processes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Friction force against mass, load, speed and place: the law that explains its deviations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Sentences that explain the results for one engine."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Checks of the trajectories that an engine returns, before a study sees them."""
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Iterable, Sequence
 

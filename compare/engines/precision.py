@@ -5,8 +5,6 @@ different at each tolerance, propagates as rounding does (stochastic arithmetic:
 Simulation 35, 1993).
 """
 
-from __future__ import annotations
-
 import math
 import zlib
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Engines by name: those of this project, of installed packages, and functions of modules."""
 
-from __future__ import annotations
-
 import functools
 import importlib
 import os

@@ -4,8 +4,6 @@ The studies' masses are mostly 1 kg and speeds below 2 m/s; an engine may be wro
 powers of two, so an engine without absolute constants returns the same digits.
 """
 
-from __future__ import annotations
-
 import functools
 import itertools
 import zlib

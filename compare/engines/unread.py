@@ -1,7 +1,5 @@
 """Parameters that a Python engine never reads, found by recording every access."""
 
-from __future__ import annotations
-
 import functools
 import inspect
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Foreign engines: the cases that measure them, and their recorded results."""
 
-from __future__ import annotations
-
 import functools
 import json
 from collections.abc import Callable, Mapping

@@ -18,8 +18,6 @@ Formulas are thin black lines above the engines' broad lines (``curve``) or holl
 results remain visible. Import matplotlib only inside functions, because the command line must start without it.
 """
 
-from __future__ import annotations
-
 import io
 import zlib
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """Picture of a limit surface: the forces and moments that a contact can hold."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Text from outside the project: engines, programs, models, exceptions, files and the command line."""
 
-from __future__ import annotations
-
 import difflib
 import re
 import signal

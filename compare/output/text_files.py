@@ -1,7 +1,5 @@
 """Files that are never incomplete: written under a temporary name and then renamed."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The first screen of the report: a grade and a sentence for each engine, derived from its claims."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape

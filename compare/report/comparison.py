@@ -1,7 +1,5 @@
 """Differences between two reports: numbers moved beyond their error bars, verdicts, new and missing claims."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace

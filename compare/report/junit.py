@@ -1,7 +1,5 @@
 """``junit.xml``: one test case for each claim and engine, for servers that show test results."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 
 from compare.claims.claim import Claim

@@ -10,9 +10,8 @@ from pathlib import Path
 from typing import Literal
 
 from compare.claims.claim import GRADES, THEORY, Claim, Evidence, Grade, Verdict
-from compare.claims.declared import Declared
 from compare.claims.prose import slug
-from compare.claims.study import Findings, Recorded, Study
+from compare.claims.study import Declared, Findings, Recorded, Study
 from compare.claims.validation import Validation
 from compare.engines import repeated_by, shares_code
 from compare.report.numbers import deciding, in_short

@@ -1,7 +1,5 @@
 """``index.html``: one page with all texts and numbers; pictures are separate files."""
 
-from __future__ import annotations
-
 import functools
 import shlex
 from collections import Counter

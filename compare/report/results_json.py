@@ -4,8 +4,6 @@ It contains the verdict of each claim and engine with the numbers of the decidin
 tables, which ``read_results`` adds.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Writes the files of a report: page, results for programs, figures and arrays."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

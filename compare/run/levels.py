@@ -1,7 +1,5 @@
 """Levels of a report or of pytest: time limits, and the seed of the units of motions."""
 
-from __future__ import annotations
-
 LIMITS = {"quick": 17.0, "full": 120.0}
 """Time limits in s for one study of one engine in pytest, by level. The quick level has about seven studies."""
 

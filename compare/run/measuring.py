@@ -1,7 +1,5 @@
 """Measure the claims of one study about one engine, for reports and for pytest."""
 
-from __future__ import annotations
-
 import functools
 import math
 import time
@@ -10,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from compare.claims.study import Findings, Study
-from compare.engines import Engine, UnsupportedSystemError, engines
-from compare.output.outside_text import Failure, printable
+from compare.engines import Engine, engines
+from compare.output.outside_text import Failure
 from compare.run.workers import Workers, attempted
 from reference_model.systems import PinOnDisc
 
@@ -108,15 +106,14 @@ def measured(
 
     An engine given by name is imported here; ``seed`` is for its units. ``only`` selects claims as in
     ``Study.measure``. An exception costs only the claim that raised it, and a claim that would take longer than
-    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``. Raises ``TypeError`` if the result
-    of a study is not ``Findings``.
+    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``.
     """
     if isinstance(engine, str):
         engine = replace(engines([engine])[0], seed=seed)
     if engine is None:
-        return _checked(study.measure_theory(only=only) if study.has_theory else None)
+        return study.measure_theory(only=only)
     if not (parts := study.sentences()):
-        return _simulated(study, engine, only)
+        return study.measure(engine, only=only)
     found = Findings()
     for sentence, part in parts.items():
         if only and part not in only:
@@ -125,21 +122,8 @@ def measured(
             late = f"would take about {float(f'{estimate:.2g}'):g} s with {engine.name}; use --level full"
             found = found.and_claim(sentence, late)
         else:
-            found = found.and_claim(sentence, attempted(_simulated, study, engine, (part,)))
+            found = found.and_claim(sentence, attempted(study.measure, engine, only=(part,)))
     return found
-
-
-def _simulated(study: Study, engine: Engine, only: Collection[str]) -> Findings:
-    try:
-        return _checked(study.measure(engine, only=only))
-    except UnsupportedSystemError as error:
-        return Findings(not_simulated=printable(error))
-
-
-def _checked(findings: object) -> Findings:
-    if not isinstance(findings, Findings):
-        raise TypeError(f"the study returned {type(findings).__name__}, but must return Findings")
-    return replace(findings, not_simulated=printable(findings.not_simulated))
 
 
 PACED = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.0, friction_force=0.1, disc_speed=0.0, offset=0.0)

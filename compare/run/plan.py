@@ -4,8 +4,6 @@ A recording engine gives exact and then slightly wrong answers. If its questions
 them.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Sequence

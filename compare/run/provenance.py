@@ -1,7 +1,5 @@
 """Provenance of results: commit, versions and machine, and one digest of all that they depend on."""
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import importlib.util

@@ -1,7 +1,5 @@
 """Run studies with engines: in parallel, with separate failures, and nothing lost at Ctrl-C."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Collection, Generator, Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace

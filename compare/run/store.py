@@ -1,7 +1,5 @@
 """Findings and drawings on disk, valid for the version of the code that made them."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json

@@ -284,8 +284,10 @@ def _serve(connection: Connection) -> None:
         os.dup2(STANDARD_ERROR, STANDARD_OUTPUT)
     try:
         while True:
-            message = connection.recv_bytes()
-            value = attempted(_unpickled_call, message)
+            value = attempted(pickle.loads, connection.recv_bytes())
+            if not isinstance(value, Failure):
+                function, arguments = value
+                value = attempted(function, *arguments)
             if os.getpid() != here:  # a copy that an engine has forked must not answer too
                 os._exit(1)
             try:
@@ -306,15 +308,10 @@ def _end_with_parent() -> None:
         os._exit(1)
 
 
-def _unpickled_call(message: bytes) -> Any:
-    function, arguments = pickle.loads(message)
-    return function(*arguments)
-
-
-def attempted(function: Callable[..., Any], *arguments: Any) -> Any:
+def attempted(function: Callable[..., Any], *arguments: Any, **options: Any) -> Any:
     """Return the result of the call, or a ``Failure`` if it raises."""
     try:
-        return function(*arguments)
+        return function(*arguments, **options)
     except BaseException as error:  # including SystemExit, so the process survives
         return failure(error)
 

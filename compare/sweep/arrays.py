@@ -3,8 +3,6 @@
 Every piece has a crc32c checksum, so reading a damaged piece raises an error.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterable, Mapping, Sequence

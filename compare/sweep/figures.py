@@ -1,7 +1,5 @@
 """Figures of sweeps, drawn from their stores."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import Any
 

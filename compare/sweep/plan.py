@@ -3,8 +3,6 @@
 A refined basin has a round of trajectories for each step of the refinement; other plans have one round.
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass

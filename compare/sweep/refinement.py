@@ -6,8 +6,6 @@ into a mixed cell with corners that were not simulated. These are then simulated
 of the finest grid were simulated*. Structures between points of the coarse grid are not detected.
 """
 
-from __future__ import annotations
-
 from collections.abc import Generator
 from typing import TypeAlias
 

@@ -1,7 +1,5 @@
 """Results of a sweep as text."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

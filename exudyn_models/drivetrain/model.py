@@ -4,8 +4,6 @@ Engine and flywheel press on both facings of the clutch disc on the gearbox's in
 and may be offset. A torsional spring and damper connect the disc to the gearbox and the vehicle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

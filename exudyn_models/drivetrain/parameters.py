@@ -1,7 +1,5 @@
 """Parameters of a drivetrain: engine with flywheel, dry clutch and vehicle, and the torques on them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields

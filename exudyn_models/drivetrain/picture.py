@@ -3,8 +3,6 @@
 The clutch cover is cut open, and radial motion is enlarged because a tenth of a millimetre would be invisible.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

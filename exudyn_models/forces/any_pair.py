@@ -1,7 +1,5 @@
 """Friction on any pair of nodes: generalised forces by the transposed slip Jacobian, and their derivatives."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -16,8 +16,6 @@ leave an error of ε^0.8; here all errors are of first order in ε.
   ``laws/places``, ensures that at P = ε no two points are slower than 4δ/3.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ For a list of 14 coordinates, numba spends 180 ns on finding types, and Python 6
 ``entry_point`` and ``FLOATS`` avoid both, and one version serves lists of any length.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache

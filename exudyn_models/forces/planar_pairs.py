@@ -4,8 +4,6 @@ The arguments are those of the functions in ``any_pair``. A force costs 0.55 (pi
 0.35 to 0.6 times, and the first contact takes half as long to compile.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

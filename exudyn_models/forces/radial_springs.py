@@ -5,8 +5,6 @@ last term only beyond the gap. ẇ is the slip J(q)·q̇ of ``slip_kinematics``,
 base. Closed forms for a base that only turns about the z-axis cost less.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

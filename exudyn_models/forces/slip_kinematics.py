@@ -13,8 +13,6 @@ J consists of sums, products, sines and cosines, whose derivatives follow exactl
 Array elements are assigned one by one, because the error message for a wrong slice would double the compile time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

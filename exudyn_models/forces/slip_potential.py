@@ -10,8 +10,6 @@ that of the curvatures like n^(−6). With 12 rings the errors are 4e-10 and 5e-
 outside the annulus the error is 1e-14, and larger only within a thousandth of its edge.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

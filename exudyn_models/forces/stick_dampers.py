@@ -9,8 +9,6 @@ For P > ε one of several points can stick alone while the disc pivots about it.
 μN over the δ of ``friction_laws``.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 Rotors on one axis with a constant friction force need no compiled code.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache, partial
 from typing import Any

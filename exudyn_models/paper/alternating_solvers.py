@@ -1,7 +1,5 @@
 """Motions that alternate between slip and creep, each with its own solver and axes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -14,9 +12,8 @@ from numpy.typing import NDArray
 from exudyn_models.paper.creep import RELAXATIONS, WHOLE, RegularisedContact
 from exudyn_models.paper.dense_output import creep_between, creep_until
 from exudyn_models.paper.model import build_model
-from exudyn_models.paper.recording import Recording
+from exudyn_models.paper.recording import FIXED, Axes, Recording
 from exudyn_models.paper.scales import time_scale
-from exudyn_models.paper.turning_axes import FIXED, Axes
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIRST_STEP, StepCount, Steps, solve
 from reference_model.systems import DiscOnDisc, FloatArray, System

@@ -1,7 +1,5 @@
 """States between the steps of a solver."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Eigenvalues of small motions about a state, by Exudyn's linearisation."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

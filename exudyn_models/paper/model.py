@@ -1,7 +1,5 @@
 """The pin (Fig. 2, eq. 1) and the disc (Fig. 7, eq. 19 to 21) as multibody models."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import exudyn as exu

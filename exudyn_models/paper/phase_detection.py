@@ -1,7 +1,5 @@
 """Slip, pivot and stick phases, detected from the motion under the regularised law."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 from typing import Any, Literal

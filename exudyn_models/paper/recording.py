@@ -1,16 +1,67 @@
-"""The recorded states of a motion, and the steps that determine its phases."""
+"""The recorded states of a motion in turning and fixed axes, and the steps that determine its phases."""
 
-from __future__ import annotations
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from exudyn_models.paper.creep import RegularisedContact
 from exudyn_models.paper.dense_output import states_at
 from exudyn_models.paper.phase_detection import detected_phases, essential_steps
-from exudyn_models.paper.turning_axes import Axes
 from exudyn_models.solver.solver_run import Steps
 from reference_model.systems import FloatArray
 from reference_model.trajectory import Phase
+
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Axes that turn with ``speed`` (rad/s) and coincide with the fixed ones at the time ``since`` (s).
+
+    A sticking body rests in axes that turn with the master disc.
+    """
+
+    speed: float
+    since: float = 0.0
+
+    def start(self, state: FloatArray) -> FloatArray:
+        """Transform a state, shape (4,) or (6,), at the time ``since`` to these axes."""
+        return np.asarray(self._added(np.zeros(1), state[None, :], -self.speed)[0])
+
+    def fixed_states(self, times: FloatArray, states: FloatArray) -> FloatArray:
+        """Transform ``states``, shape (n, 4 or 6), at ``times``, shape (n,), to fixed axes."""
+        return self._added(self.speed * (times - self.since), states, self.speed)
+
+    def fixed_steps(self, steps: Steps) -> Steps:
+        """Transform ``steps`` to fixed axes."""
+        z, v, a = (_complex(part) for part in (*np.split(steps.states, 2, axis=1), steps.accelerations))
+        turn = np.exp(1j * self.speed * (steps.times - self.since))
+        accelerations = steps.accelerations.copy()
+        fixed = turn * (a + 2j * self.speed * v - self.speed**2 * z)
+        accelerations[:, 0], accelerations[:, 1] = fixed.real, fixed.imag
+        return Steps(
+            steps.times, self.fixed_states(steps.times, steps.states), accelerations, steps.evaluations
+        )
+
+    def _added(self, angles: FloatArray, states: FloatArray, speed: float) -> FloatArray:
+        """Return ``states`` with an added rotation through ``angles``, shape (n,), at ``speed`` (rad/s)."""
+        positions, velocities = (part.copy() for part in np.split(states, 2, axis=1))
+        turn = np.exp(1j * angles)
+        z, v = turn * _complex(positions), turn * _complex(velocities)
+        v = v + 1j * speed * z
+        positions[:, 0], positions[:, 1], velocities[:, 0], velocities[:, 1] = z.real, z.imag, v.real, v.imag
+        positions[:, 2:] += angles[:, None]
+        velocities[:, 2:] += speed
+        return np.hstack((positions, velocities))
+
+
+FIXED = Axes(0.0)
+
+
+def _complex(vectors: FloatArray) -> ComplexArray:
+    return np.asarray(vectors[:, 0] + 1j * vectors[:, 1])
+
 
 MOST_KEPT = 50_000
 """Largest number of stored steps; beyond it, steps without information about phases are dropped."""

@@ -17,8 +17,7 @@ from exudyn_models.paper.alternating_solvers import (
     solve_in_turns,
 )
 from exudyn_models.paper.creep import RegularisedContact
-from exudyn_models.paper.nondimensional import Units
-from exudyn_models.paper.scales import Scales
+from exudyn_models.paper.scales import Scales, Units
 from exudyn_models.parts.ring_friction import add_ring_friction
 from exudyn_models.solver.solver_run import FIXED_STEP
 from reference_model.systems import (
@@ -78,7 +77,7 @@ def simulate(
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
     tolerance
-        Requested accuracy, relative to the motion's own length and speed, see ``nondimensional``. While the contact
+        Requested accuracy, relative to the motion's own length and speed, see ``scales``. While the contact
         slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
     regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as

@@ -7,8 +7,6 @@ Rotors on one axis have no such moment. Under a constant load they use ``ObjectC
 with the law of ``axial_pairs``, which takes a fraction of the time of a Python function.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``mbs.CreateRingFriction`` and ``mbs.CreateRadialSupport``: the parts as functions in Exudyn's style."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ For any bodies and force laws, gains equal losses plus the change of the stored 
 along with all coordinates, so works are as accurate as the motion.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The handle of a friction contact in a model, and its sensors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -4,8 +4,6 @@ A body is given by its node, its object, or a marker on it, which places the con
 ``Kinds`` and ``Mounts`` for compiled code. If frames make no difference, there are no mounts, so closed forms apply.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

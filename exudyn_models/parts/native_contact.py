@@ -5,8 +5,6 @@ normal force is constant. Exudyn's friction −μN·v/max(|v|, ε) of the touchi
 ``add_ring_friction`` for points.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from typing import Any

@@ -8,8 +8,6 @@ A linear support on the ground is Exudyn's ``CartesianSpringDamper``, which take
 function. Any other is a massless ``ObjectGenericODE2``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal, cast, get_args

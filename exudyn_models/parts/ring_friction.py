@@ -30,8 +30,6 @@ reverses twice within a step goes undetected. Several points stick separately, e
 joints hold the disc on the contact's axis.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from functools import partial

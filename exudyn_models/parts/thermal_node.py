@@ -4,8 +4,6 @@ C·Ṫ = ΣP − G·(T − T₀), with the powers P of all contacts that heat it
 solvers keep the linear invariant C·(T − T_start) + loss = heat to rounding.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field

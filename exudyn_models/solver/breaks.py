@@ -1,7 +1,5 @@
 """Runs that stop where a load jumps and then continue."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Generator, Sequence
 from typing import Any

@@ -4,8 +4,6 @@ They are stored in ``mbs.sys`` by the names of their connectors, because objects
 starts their numbers again.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Exudyn's items, and functions that add frequent ones."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

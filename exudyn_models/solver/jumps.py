@@ -4,8 +4,6 @@ Coulomb friction causes no jump of a power, because slip is zero where stick beg
 step, but hardly changes in its neighbours, indicates a load jump or motion that the steps do not resolve.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable, Sequence
 from typing import Any

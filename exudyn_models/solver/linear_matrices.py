@@ -1,7 +1,5 @@
 """Mass, stiffness and damping matrices of an assembled model, from Exudyn's derivatives."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any

@@ -5,8 +5,6 @@
 - If a step is rejected, generalised-α keeps its algorithmic accelerations, which changes all velocities.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager

@@ -13,8 +13,6 @@
   (``stick.switching``). Sensors have an additional row at each of these times.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from contextlib import ExitStack, closing

@@ -4,8 +4,6 @@ Exudyn's implicit solvers start them with stored values: zero, or at a break the
 turns this into an error of half a step times the missing rate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any

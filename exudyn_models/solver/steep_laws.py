@@ -4,8 +4,6 @@ If friction falls within the slip change of a step, Newton's method may find a c
 passed its peak and runs away.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from contextlib import AbstractContextManager, nullcontext

@@ -16,8 +16,9 @@ from compare.claims.claim import Claim, ErrorBudget
 from compare.claims.parameters import FIG5, FIG11
 from compare.claims.prose import Prose
 from compare.claims.study import Findings, Recorded, Study
-from compare.engines import Engine
+from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import axis, curve, engines_in, new_figure, points
+from compare.output.outside_text import printable
 from compare.report.animation import gif
 from reference_model.trajectory import Phase, Solution, Trajectory
 
@@ -26,7 +27,10 @@ LOADS = np.linspace(0.0, 0.1, 21)
 
 class Fake(Study):
     def measure(self, engine, few=None, only=()):
-        return self.provided["measure"](engine)
+        try:
+            return self.provided["measure"](engine)
+        except UnsupportedSystemError as error:
+            return Findings(not_simulated=printable(error))
 
     @property
     def has_theory(self):
@@ -236,11 +240,5 @@ UNDRAWABLE = fake(
     "undrawable", "A figure that fails", "None.", measure_agreement, provided={"figures": draw_wrongly}
 )
 
-
-def measure_nothing(engine):
-    return None
-
-
-NO_FINDINGS = fake("no-findings", "A mistake in a study", "None.", measure_nothing)
 
 ALL = (VERDICTS, AGREEMENT, INCONCLUSIVE, COUNTED, DEATH, UNENDING, UNDRAWABLE, PARTLY, RING_ONLY)

@@ -63,7 +63,7 @@ class WorkerHere:
 
     def result(self) -> workers.Done:
         key, self.key = self.key, None
-        return workers.Done(key, workers.attempted(workers._unpickled_call, self.message), 0.0)
+        return workers.Done(key, workers.attempted(self.message[0], *self.message[1]), 0.0)
 
     def end(self) -> None:
         pass

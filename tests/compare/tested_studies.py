@@ -365,7 +365,6 @@ IN_EPSILON = ("first_stick", "later_events", "state")
 ENGINE_CONVERGENCE = Tested(
     STUDY["engine-convergence"],
     sound=("exudyn",),
-    few_of_faults=few({"with_work": False}, "sliding", "sticking", "steps"),
     gross={
         "half of the exponent": Engine("reference", lazy),
         "errors that stay": Engine("reference", staying_at_1e_7),

@@ -7,8 +7,6 @@ length of its impulse, a cone. Its torque limit is 0, because contact is at poin
 - Box2D's angles grow without bound and lose digits in long spins, so the adapter counts whole turns.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -12,8 +12,6 @@ Friction opposes the slip at the end of a step. With the cone off, it is bounded
 friction on a disc deviates from the direction of slip by R²·m/J, because each component has its own mobility.
 """
 
-from __future__ import annotations
-
 from importlib.metadata import version
 from typing import Any
 

@@ -9,8 +9,6 @@ demo, friction is a pivot joint whose force limit bounds the length of the impul
 - Several points need 50 iterations, five times the default.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import pymunk

@@ -9,8 +9,6 @@ Measured with 6.20.0. The pin or disc is a body on a planar joint. The motion of
 - At a solver tolerance of 1e-12 of an impulse, rounding can prevent convergence.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -14,8 +14,6 @@ motion.
 - Drake's springs between bodies act along a line, so the support is a bushing.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Installed foreign engines by name, for example ``mujoco`` or ``mujoco:pyramid``."""
 
-from __future__ import annotations
-
 import functools
 import importlib
 from importlib.metadata import version

@@ -4,8 +4,6 @@ Written for Newton 1.8.0, in single precision. A ball that cannot turn is presse
 = 1. The plate is kinematic.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from importlib.metadata import version
 from typing import Any

@@ -8,8 +8,6 @@ friction does not tip the body. The plate is a kinematic body that turns at ω.
 - Steps are semi-implicit, so friction opposes the slip at their end. Springs, dampers and shaft are forces.
 """
 
-from __future__ import annotations
-
 import cmath
 from importlib.metadata import version
 

@@ -1,7 +1,5 @@
 """Common code of the foreign engines: checks, steps, contact points, our friction law, and results."""
 
-from __future__ import annotations
-
 import cmath
 import math
 import time

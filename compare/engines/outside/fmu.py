@@ -4,8 +4,6 @@
 others, stick is found from states.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 import itertools

@@ -3,8 +3,6 @@
 ``docs/judge-your-engine.md`` specifies them. All digits of numbers are written.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import reprlib

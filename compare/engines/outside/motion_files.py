@@ -4,8 +4,6 @@
 and ``0f3a.csv`` its answer.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import json

@@ -1,7 +1,5 @@
 """``exec:COMMAND``: a program in any language as an engine, connected by lines of JSON."""
 
-from __future__ import annotations
-
 import importlib
 import os
 import re

@@ -5,8 +5,6 @@ The outputs ``NAMES`` count sticks and releases and give their last times and th
 step with several events of a kind is rejected and halved.
 """
 
-from __future__ import annotations
-
 import cmath
 from collections.abc import Callable, Mapping
 from typing import Any, ClassVar, Literal

@@ -1,7 +1,5 @@
 """Final motions of thousands of discs around Fig. 11, under the curves of the stability map."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Two rotors and a clutch in Exudyn: judder, heat, temperature and the energy balance."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

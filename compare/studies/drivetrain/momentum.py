@@ -4,8 +4,6 @@ Friction, an elastic shaft attached off-centre, and a torsional spring connect t
 lacks the moment of its force about a body, or acts on two bodies along different axes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Figs. 5, 6, 8 and 11 at the size and speed of a clutch."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -9,11 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from compare.claims import TRUTH, WORKING, ByEngine, Data, Figures, Measured, Study, refined
+from compare.claims import TRUTH, Measured, Study, refined
 from compare.claims.parameters import FIG4, FIG5, FIG8
 from compare.engines import Engine
 from compare.engines.units import in_units
-from compare.output.figures import BLACK, PURPLE, axis, engines_in, new_figure, points
 from compare.studies.toolkit.deviations import remaining_transient
 from compare.studies.toolkit.fig11 import DISCS, integrated
 from reference_model import Orbit, Trajectory, self_centred_equilibria, simulate, whirl_orbit
@@ -83,8 +80,8 @@ def scaled(system: System) -> System:
 
 
 @functools.cache
-def exact_motion() -> Trajectory:
-    return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH)
+def exact_events() -> FloatArray:
+    return simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, SAMPLES), tolerance=TRUTH).stick_times
 
 
 @functools.cache
@@ -92,24 +89,8 @@ def exact_whirl() -> Orbit:
     return whirl_orbit(WHIRLING)
 
 
-def curves() -> Data:
-    exact = exact_motion()
-    path = simulate(FIG5, TO_REST, np.linspace(0.0, UNTIL, 10 * SAMPLES))
-    return {
-        "states": exact.states,
-        "path": path.states[:, :2],
-        "sticks": exact.stick_times,
-        "rest": np.array(equilibrium_position(FIG5)),
-    }
-
-
-STUDY = Study.beside(
-    __file__,
-    "clutch-scale",
-    source=SOURCE.format("Fig. 5"),
-    system=scaled(FIG5),
-    seconds=1.5,
-)
+SOURCE_5 = SOURCE.format("Fig. 5")
+STUDY = Study.beside(__file__, "clutch-scale", source=SOURCE_5, system=scaled(FIG5), seconds=1.5)
 
 
 def at_clutch(
@@ -152,16 +133,11 @@ def rests(engine: Engine) -> Measured:
     )
     rate = -max(value.real for value in equilibrium_eigenvalues(FIG5))
     left = remaining_transient(places[:40], places[-1], rate, 20.0)
-    motion = to_rest(engine, WORKING)
     return Measured(
         predicted=np.array(equilibrium_position(FIG5)) / FIG5.offset,
         value=places[-1],
         error=float(np.max(error[-1] + left)),
         components=("x/X0", "y/X0"),
-        data={
-            "states": motion.states / CLUTCH.states(np.ones(4)),
-            "sticks": motion.stick_times / CLUTCH.time,
-        },
     )
 
 
@@ -175,7 +151,7 @@ def rests(engine: Engine) -> Measured:
     "at the paper's scale. A missing or additional stick phase makes all numbers missing.",
 )
 def sticks(engine: Engine) -> Measured:
-    predicted = exact_motion().stick_times
+    predicted = exact_events()
 
     def measured(tolerance: float) -> FloatArray:
         found = to_rest(engine, tolerance).stick_times / CLUTCH.time
@@ -295,12 +271,10 @@ def shares(starts: int = ENSEMBLE) -> Measured:
     from reference_model.ensemble import EndState, simulate_ensemble
 
     drawn = np.random.default_rng(SEED).uniform(-1.0, 1.0, (starts, 4)) * [0.3, 0.3, 0.3, 0.3]
+    motions = (FIG5, drawn, 1.0), (scaled(FIG5), CLUTCH.states(drawn), CLUTCH.time)
     ends = [
         simulate_ensemble(system, states, duration=time * ENSEMBLE_UNTIL).end
-        for system, states, time in (
-            (FIG5, drawn, 1.0),
-            (scaled(FIG5), CLUTCH.states(drawn), CLUTCH.time),
-        )
+        for system, states, time in motions
     ]
     kinds = (EndState.SELF_CENTRED, EndState.WHIRL)
     share = np.array([[np.mean(found == kind) for kind in kinds] for found in ends])
@@ -312,35 +286,3 @@ def shares(starts: int = ENSEMBLE) -> Measured:
         components=("share of the equilibrium", "share of the whirl", "share with another end"),
         note=f"{starts} starts.",
     )
-
-
-def draw(data: ByEngine) -> Figures:
-    figure, (plane, history) = new_figure(ncols=2, width=11.0)
-    exact = data.get("theory", {})
-    micrometres = 1e6 * CLUTCH.length
-    milliseconds = 1e3 * CLUTCH.time
-    times = milliseconds * np.linspace(0.0, UNTIL, SAMPLES)
-    if exact:
-        x, y = micrometres * exact["path"].T
-        plane.plot(x, y, color=BLACK, linewidth=0.8, label="Fig. 5, lengths times 1e-3")
-        plane.plot(
-            *(micrometres * exact["rest"]), marker="*", markersize=12.0, color=PURPLE, label="rest by (3)"
-        )
-        for start, end in milliseconds * exact["sticks"].reshape(-1, 2):
-            history.axvspan(start, end, color=PURPLE, alpha=0.15, linewidth=0.0)
-    for engine in engines_in(data):
-        found = data[engine]["states"]
-        plane.plot(*(micrometres * found[::8, :2].T), **points(engine, markersize=3.0))
-        if exact:
-            apart = np.hypot(*(found - exact["states"])[:, :2].T) / FIG5.offset
-            history.semilogy(times[1::4], np.maximum(apart[1::4], 1e-16), **points(engine, linestyle=":"))
-    plane.set(xlabel=axis("x", "µm"), ylabel=axis("y", "µm"), aspect="equal")
-    if plane.lines:
-        plane.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
-    history.set(xlabel=axis("t", "ms"), ylabel="distance from the line / X0")
-    if history.lines:
-        history.legend(loc="upper right")
-    return {"clutch-scale": figure}
-
-
-STUDY.provides(figures=draw, curves=curves)

@@ -1,7 +1,5 @@
 """Energy balance: the work of the drive equals heat plus stored energy."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

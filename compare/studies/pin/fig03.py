@@ -1,7 +1,5 @@
 """Fig. 3 and eqs. (3) to (5): the pin at rest in space on the semicircle."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Fig. 4: the shift of the whirl by a small offset, (18), and the exact first-order response."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import replace

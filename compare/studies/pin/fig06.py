@@ -1,7 +1,5 @@
 """Fig. 6: equilibrium, permanent stick and whirl against the friction force."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

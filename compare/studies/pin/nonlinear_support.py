@@ -1,7 +1,5 @@
 """A support that hardens or has a stop, which limits the amplitude."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Discs that slide and spin on a plane at rest: a ring, points and a full disc."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -13,6 +11,8 @@ import numpy as np
 from compare.claims import ByEngine, Figures, Measured, Study, refined
 from compare.engines import Engine, UnsupportedSystemError
 from compare.output.figures import axis, curve, engines_in, new_figure, points
+from compare.studies.toolkit.free_bodies import on_a_table
+from compare.studies.toolkit.random_systems import state_of
 from reference_model import simulate
 from reference_model.contact.annulus import Annulus
 from reference_model.systems import DiscOnDisc, FloatArray
@@ -49,24 +49,12 @@ class Throw:
 
     def disc(self, contact_points: int | None = None) -> DiscOnDisc:
         """Return the disc."""
-        return DiscOnDisc(
-            mass=MASS,
-            polar_inertia=self.inertia * MASS * RADIUS**2,
-            stiffness=0.0,
-            damping=0.0,
-            friction_force=FRICTION,
-            disc_speed=0.0,
-            contact_radius=RADIUS,
-            shaft_damping=0.0,
-            shaft_speed=0.0,
-            contact_points=contact_points,
-        )
+        return on_a_table(MASS, self.inertia, RADIUS, FRICTION, contact_points)
 
     @property
     def state(self) -> FloatArray:
         """Initial state, shape (6,)."""
-        velocity = cmath.rect(self.sliding, HEADING)
-        return np.array([0.0, 0.0, 0.0, velocity.real, velocity.imag, self.rim / RADIUS])
+        return state_of(0j, cmath.rect(self.sliding, HEADING), spin=self.rim / RADIUS)
 
     @property
     def time(self) -> float:

@@ -1,7 +1,5 @@
 """Remaining transients and eigenvalues of small deviations from a steady motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Disc of Fig. 11: initial state, (19) as plain equations, and parameter planes."""
 
-from __future__ import annotations
-
 import functools
 from dataclasses import replace
 

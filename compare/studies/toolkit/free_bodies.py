@@ -1,4 +1,4 @@
-"""Rings that slide and spin freely until they rest.
+"""Discs that slide and spin freely until they rest.
 
 Let U be the slip of the centre, W = R|φ̇| the rim speed, g = μN/m and c = J/(mR²). Then (19) without springs, dampers
 and shaft is
@@ -14,8 +14,6 @@ Its error is of second order because F and G are derivatives of one function.
 Units are m and s, and g is 1 m/s².
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass
@@ -27,7 +25,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from reference_model.contact.elliptic import mean_directions
-from reference_model.systems import FloatArray
+from reference_model.systems import DiscOnDisc, FloatArray
 
 NEAR = 1e-7
 """|δ − δ*| below which δ counts as constant; its square is the relative error of the remaining time."""
@@ -96,3 +94,21 @@ class Slowing:
         total = total + left * np.array([1.0, 0.5 * terminal * rim, 0.5 * rim])
         time, slid, turned = total.tolist()
         return Stop(time, slid, turned, left)
+
+
+def on_a_table(
+    mass: float, inertia: float, radius: float, friction: float, points: int | None = None
+) -> DiscOnDisc:
+    """Return a disc without springs, dampers and shaft on a master disc at rest; ``inertia`` is J/(mR²)."""
+    return DiscOnDisc(
+        mass=mass,
+        polar_inertia=inertia * mass * radius**2,
+        stiffness=0.0,
+        damping=0.0,
+        friction_force=friction,
+        disc_speed=0.0,
+        contact_radius=radius,
+        shaft_damping=0.0,
+        shaft_speed=0.0,
+        contact_points=points,
+    )

@@ -1,7 +1,5 @@
 """Measurements that several studies make in the same way."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

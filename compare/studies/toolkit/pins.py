@@ -1,7 +1,5 @@
 """Stuck pins, and whirls as periodic orbits of an engine."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Mapping, Sequence

@@ -3,8 +3,6 @@
 Sizes, rates and ratios have log-uniform distributions; signs and directions have uniform ones.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import asdict

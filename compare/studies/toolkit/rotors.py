@@ -1,7 +1,5 @@
 """Rotors about one axis in Exudyn, with a sensor on each speed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

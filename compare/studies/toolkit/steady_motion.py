@@ -4,8 +4,6 @@ The centre rests or, without offset, moves on a circle around the axis. In axes 
 continuous ring is in equilibrium, and n points add a ripple with a period of 2π/n of the disc's turn.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Executors of tasks: this process, or the workers of a Dask cluster."""
 
-from __future__ import annotations
-
 import asyncio
 import importlib
 import itertools

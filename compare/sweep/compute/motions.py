@@ -1,7 +1,5 @@
 """Groups the ends of many starts into motions, and connects motions of successive values into branches."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Hashable, Sequence
 from typing import NamedTuple, TypeVar
 

@@ -1,7 +1,5 @@
 """Results of a sweep as labelled arrays; workers write them block by block."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple

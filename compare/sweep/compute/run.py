@@ -1,7 +1,5 @@
 """Runs a sweep: rounds of chunks, a check by the plain reference, labelled arrays."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Sobol indices of results for uncertain quantities (Saltelli et al. 2010), computed block by block."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import reduce

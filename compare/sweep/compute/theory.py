@@ -1,7 +1,5 @@
 """Theory by formulas and continuation: motions along one parameter, and curves in the plane of a map."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from contextlib import suppress

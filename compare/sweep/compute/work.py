@@ -1,7 +1,5 @@
 """Tasks of a sweep, as functions that other processes and machines can import."""
 
-from __future__ import annotations
-
 import math
 from contextlib import suppress
 from dataclasses import dataclass, replace

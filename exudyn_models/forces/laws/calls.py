@@ -3,8 +3,6 @@
 Addresses are passed as floats, whose 53 bits exceed the 48 bits of an address.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Coefficients of friction as functions of the slip speed: a table, and a peak at rest."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

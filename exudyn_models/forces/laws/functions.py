@@ -1,7 +1,5 @@
 """Coefficients and loads as functions: their arguments and checks of their results."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass

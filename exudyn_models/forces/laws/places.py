@@ -1,7 +1,5 @@
 """Places of contact points and their shares of the load, for compiled code."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

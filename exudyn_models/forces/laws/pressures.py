@@ -4,8 +4,6 @@ The share of the load on the ring from r to r + dr is d(r)·dr, d ∝ p·r. It i
 at the outer radius, that the quadrature in ``slip_potential`` integrates exactly.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Literal

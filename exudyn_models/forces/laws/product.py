@@ -1,7 +1,5 @@
 """The friction force μN in compiled code, where μ or N is a table or a function."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Locked contacts of a model at one time: the slips they hold, and their forces."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -4,8 +4,6 @@ A contact in the plane begins to slide normal to the limit surface, with the sli
 millionth of a step.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -9,8 +9,6 @@ are B⁺·J·q̇ = 0. The joints carry an undetermined share of the load, so the
 limit surface of the potential P(B·v).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field

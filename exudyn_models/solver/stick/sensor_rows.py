@@ -1,7 +1,5 @@
 """Rows of sensors at multiples of their period, in a run of many parts."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -4,8 +4,6 @@ The direction of friction turns ever faster as the slip vanishes. Steps shrink w
 as resting, and grow again after its release.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Slip of a contact, its rate and its friction, compiled for the switching of exact stick."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

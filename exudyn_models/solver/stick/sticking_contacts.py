@@ -1,7 +1,5 @@
 """Contacts that stick exactly in an assembled model: their modes, and when each mode ends."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass

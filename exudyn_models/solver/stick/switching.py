@@ -4,8 +4,6 @@ Between two changes the equations are smooth. A step that passes a change is rep
 ``mode_choice`` chooses the modes. ``sliding_steps`` chooses the steps of contacts that slide in the plane.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

@@ -76,11 +76,6 @@ def test_number_and_time_limit_of_the_processes_are_those_of_the_run(tmp_path, m
     assert made == [(3, 7.0)]
 
 
-def test_a_result_that_is_not_findings_is_reported(tmp_path, in_this_process):
-    found = run((fake.NO_FINDINGS,), (fake.GOOD,), folder=tmp_path).outcomes["no-findings", "good"]
-    assert found.reason == "TypeError: the study returned NoneType, but must return Findings"
-
-
 def test_resume_computes_only_missing_results_of_the_same_code(tmp_path, monkeypatch, in_this_process):
     path = tmp_path / "count"
     monkeypatch.setenv("COUNT", str(path))

@@ -12,8 +12,7 @@ from compare.claims.parameters import FIG5, FIG11
 from compare.studies.engines.clutch_scale import Scale
 from exudyn_models import simulate, simulate_with_native_contact
 from exudyn_models.paper.model import build_model
-from exudyn_models.paper.recording import Recording
-from exudyn_models.paper.turning_axes import Axes
+from exudyn_models.paper.recording import Axes, Recording
 from exudyn_models.solver.solver_run import solve
 from reference_model import SimulationError
 

@@ -4,5 +4,3 @@ from compare.studies.disc.contact_laws.pictures import draw
 from compare.studies.disc.contact_laws.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

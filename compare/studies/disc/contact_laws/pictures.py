@@ -1,7 +1,5 @@
 """Figures."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import compare.output.figures as plots

@@ -1,7 +1,5 @@
 """Friction in an engine, and contact laws against the integral, each other and the textbook."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Differences of the contact laws from each other and from the integral (20)."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Sequence

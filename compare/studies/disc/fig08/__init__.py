@@ -4,5 +4,3 @@ from compare.studies.disc.fig08.pictures import curves, draw
 from compare.studies.disc.fig08.study import STUDY
 
 STUDY.provides(figures=draw, curves=curves)
-
-__all__ = ["STUDY"]

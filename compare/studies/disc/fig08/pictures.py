@@ -1,7 +1,5 @@
 """Curves and figures."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

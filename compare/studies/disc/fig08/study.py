@@ -1,7 +1,5 @@
 """Steady states by (23) to (26), and an engine's motions near them."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

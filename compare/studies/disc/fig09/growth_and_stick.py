@@ -1,7 +1,5 @@
 """Claims on growing deviations, on stick, on six contact points, and without an engine."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Claims on whirls and on the self-centred equilibrium."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

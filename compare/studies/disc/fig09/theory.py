@@ -1,7 +1,5 @@
 """Branches of all motions against the friction force, and their ends."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

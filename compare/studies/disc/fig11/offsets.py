@@ -1,7 +1,5 @@
 """Claims on motions with an offset, and on six points."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

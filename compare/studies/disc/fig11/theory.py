@@ -1,7 +1,5 @@
 """The whirl and its modes, the modulated cycle, and the branches against the offset."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -1,7 +1,5 @@
 """Claims on sliding, the growth of small deviations from the whirl, and the modulated cycle."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

@@ -4,5 +4,3 @@ from compare.studies.disc.free_ring.pictures import draw
 from compare.studies.disc.free_ring.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

@@ -1,7 +1,5 @@
 """Figures."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from compare.claims import ByEngine, Figures

@@ -1,7 +1,5 @@
 """Claims on the end of sliding and spinning, on rest, heat and the final ratio."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

@@ -7,12 +7,10 @@ For c < 1/2 there is no terminal δ*: spinning dies out faster, W/U ~ t^(1/(2c) 
 c > 2 sliding dies out faster, U/W ~ t^(c/2 − 1). At c = 1/2 and c = 2 the ratio converges more slowly than any power.
 """
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,21 +18,12 @@ from numpy.typing import ArrayLike
 from compare.claims import WORKING, Data
 from compare.claims.parameters import FIG8
 from compare.engines import Engine
-from compare.studies.toolkit.free_bodies import NEAR, Slowing
+from compare.studies.toolkit.free_bodies import NEAR, Slowing, on_a_table
+from compare.studies.toolkit.random_systems import state_of
 from reference_model import Trajectory
 from reference_model.systems import DiscOnDisc, FloatArray
 
-TABLE = replace(
-    FIG8,
-    polar_inertia=FIG8.mass * FIG8.contact_radius**2,
-    stiffness=0.0,
-    damping=0.0,
-    shaft_damping=0.0,
-    friction_force=0.1,
-    disc_speed=0.0,
-    shaft_speed=0.0,
-    offset=0.0,
-)
+TABLE = on_a_table(FIG8.mass, 1.0, FIG8.contact_radius, friction=0.1)
 """The ring of Fig. 8 without springs, dampers and shaft on a master disc at rest, J = mR²."""
 
 DECELERATION = TABLE.friction_force / TABLE.mass  # g in m/s²
@@ -52,7 +41,7 @@ class Throw:
     @property
     def disc(self) -> DiscOnDisc:
         """The disc."""
-        return replace(TABLE, polar_inertia=self.inertia * TABLE.mass * TABLE.contact_radius**2)
+        return on_a_table(TABLE.mass, self.inertia, TABLE.contact_radius, TABLE.friction_force)
 
     @property
     def sliding(self) -> float:
@@ -67,8 +56,7 @@ class Throw:
     @property
     def state(self) -> FloatArray:
         """Initial state, shape (6,)."""
-        velocity = cmath.rect(self.sliding, HEADING)
-        return np.array([0.0, 0.0, 0.0, velocity.real, velocity.imag, self.rim / TABLE.contact_radius])
+        return state_of(0j, cmath.rect(self.sliding, HEADING), spin=self.rim / TABLE.contact_radius)
 
     @property
     def name(self) -> str:

@@ -1,7 +1,5 @@
 """Claims on the borders of the map."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """Simulations in the regions of the map and next to its borders."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Iterator, Sequence

@@ -1,7 +1,5 @@
 """Curves of the stability map, and eigenvalues that check them."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Mapping, Sequence

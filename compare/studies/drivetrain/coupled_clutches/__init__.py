@@ -1,5 +1,3 @@
 """Four rotors and three clutches, Modelica's example."""
 
-from compare.studies.drivetrain.coupled_clutches.study import STUDY
-
-__all__ = ["STUDY"]
+from compare.studies.drivetrain.coupled_clutches.study import STUDY as STUDY

@@ -1,7 +1,5 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """The exact and the published motion, and the rotors in Exudyn."""
 
-from __future__ import annotations
-
 import csv
 import functools
 import math

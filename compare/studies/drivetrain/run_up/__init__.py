@@ -4,5 +4,3 @@ from compare.studies.drivetrain.run_up.pictures import animations, draw
 from compare.studies.drivetrain.run_up.study import STUDY
 
 STUDY.provides(figures=draw, animations=animations)
-
-__all__ = ["STUDY"]

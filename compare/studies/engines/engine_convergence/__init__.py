@@ -4,5 +4,3 @@ from compare.studies.engines.engine_convergence.pictures import draw
 from compare.studies.engines.engine_convergence.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure
+from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE, axis, curve, engines_in, new_figure, points
 from compare.studies.engines.engine_convergence.theory import SOLVERS
 
 if TYPE_CHECKING:
@@ -18,13 +18,8 @@ if TYPE_CHECKING:
 
 
 def draw(data: ByEngine) -> Figures:
-    figures = {
-        "engine-convergence-tolerance": _draw_tolerance(data),
-        "engine-convergence-work": _draw_work(data),
-    }
-    if "exudyn" in data:
-        figures = {"engine-convergence-orders": _draw_orders(data["exudyn"])} | figures
-    return figures
+    orders = {"engine-convergence-orders": _draw_orders(data["exudyn"])} if "exudyn" in data else {}
+    return orders | {"engine-convergence-tolerance": _draw_tolerance(data)}
 
 
 def _power(panel: Axes, x: ArrayLike, through: tuple[float, float], power: int, label: str) -> None:
@@ -44,7 +39,7 @@ def _marked(look: Mapping[str, Any], label: str, **changes: Any) -> dict[str, An
 def _draw_orders(found: Data) -> Figure:
     figure, (steps, smoothing) = new_figure(ncols=2, width=9.6, height=4.4)
     for solver in SOLVERS:
-        h, errors = found[f"{solver.name}: steps"], found[f"{solver.name}: sliding"][:, 0]
+        h, errors = found[f"{solver.name}: steps"], found[f"{solver.name}: sliding"]
         steps.loglog(h, errors, **_marked(solver.look, solver.name))
         if solver.name != "TrapezoidalIndex2":  # its errors equal those of generalised-α to 2 %
             _power(steps, h[[0, -1]], (h[-1], errors[-1]), solver.order, f"$h^{solver.order}$")
@@ -85,53 +80,10 @@ def _draw_tolerance(data: ByEngine) -> Figure:
     ):
         for engine in engines_in(data):
             tolerances, errors = data[engine][f"{kind}: tolerances"], data[engine][f"{kind}: errors"]
-            panel.loglog(tolerances, errors, **_marks(engine))
+            panel.loglog(tolerances, errors, **points(engine, markersize=4.5))
             middle = len(errors) // 2
             _power(panel, tolerances[[0, -1]], (tolerances[middle], errors[middle]), 1, "")
         panel.plot([], [], **curve("theory", "proportional"))
         panel.set(xlabel="tolerance", ylabel=f"error in {unit}", title=title)
-    _legend_below(figure, panels)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
-
-
-def _draw_work(data: ByEngine) -> Figure:
-    from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
-
-    figure, panels = new_figure(ncols=2, nrows=2, width=9.6, height=7.0, sharey="col")
-    for row, (column, scale, label) in enumerate(((1, 1.0, "evaluations"), (2, 1e3, "processor time in ms"))):
-        for panel, kind, title in zip(
-            panels[2 * row : 2 * row + 2],
-            ("sliding", "stick-slip"),
-            ("Sliding pin, 2 × 20 s", "Nine stick phases, 60 s"),
-            strict=True,
-        ):
-            for engine in engines_in(data):
-                rows = data[engine][f"work: {kind}"]
-                panel.loglog(scale * rows[:, column], rows[:, 0], **_marks(engine, line=True))
-            for solver in SOLVERS:
-                name = f"{solver.name}: {kind}"
-                if "exudyn" in data and name in data["exudyn"]:
-                    rows = data["exudyn"][name]
-                    style = _marked(
-                        solver.look, f"Exudyn {solver.name}, fixed step", linestyle=":", linewidth=0.9
-                    )
-                    panel.loglog(scale * rows[:, column], rows[:, 0], **style)
-            panel.set(xlabel=label, ylabel="error in m, m/s", title=title if row == 0 else "")
-            panel.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            panel.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-            panel.xaxis.set_minor_formatter(NullFormatter())
-    _legend_below(figure, panels)
-    return figure
-
-
-def _marks(engine: str, *, line: bool = False) -> dict[str, Any]:
-    style = curve(engine, marker="o" if engine == "reference" else "x", markersize=4.5, linewidth=1.4)
-    return style if line else style | {"linestyle": "none", "markerfacecolor": "none"}
-
-
-def _legend_below(figure: Figure, panels: tuple[Axes, ...]) -> None:
-    found: dict[str, Any] = {}
-    for panel in panels:
-        handles, labels = panel.get_legend_handles_labels()
-        found = dict(zip(labels, handles, strict=True)) | found
-    figure.legend(found.values(), found.keys(), loc="outside lower center", ncols=3)

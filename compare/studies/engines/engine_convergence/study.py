@@ -1,7 +1,5 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable
@@ -10,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 import compare.studies.engines.engine_convergence.theory as theory
-from compare.claims import COARSENING, TRUTH, Data, Measured, Study, extrapolated_order, observed_exponent
+from compare.claims import COARSENING, TRUTH, Measured, Study, extrapolated_order, observed_exponent
 from compare.claims.parameters import FIG5, FIG5_STARTS, at_each
 from compare.engines import Engine
 from reference_model import simulate
@@ -32,17 +30,12 @@ STUDY = Study.beside(__file__, "engine-convergence", system=FIG5, only=("referen
     "is smaller by one power of the step. Least squares with this term. Numerical error: 95 % interval from the "
     "scatter. Model error: the effect of the term.",
 )
-def sliding(engine: Engine, with_work: bool = True) -> Measured:
+def sliding(engine: Engine) -> Measured:
     scan = theory.SCANS[engine.name]
-    errors = np.array([theory.of_sliding(engine.simulate, tolerance=t)[0] for t in scan.sliding.tolist()])
+    errors = np.array([theory.of_sliding(engine.simulate, tolerance=t) for t in scan.sliding.tolist()])
     exponent, numerical, model = observed_exponent(
         scan.sliding, errors, next_term=1.0 / scan.order, noise=theory.sliding_truth()[1]
     )
-    data: Data = {"sliding: tolerances": scan.sliding, "sliding: errors": errors}
-    if with_work:
-        data["work: sliding"] = np.array(
-            [theory.of_sliding(engine.simulate, tolerance=t) for t in scan.work.tolist()]
-        )
     return Measured(
         predicted=1.0,
         value=exponent,
@@ -50,7 +43,7 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
         model=model,
         source=theory.SLIDING_SOURCE + f"; {_range_of(scan.sliding, 'tolerance')}",
         note=f"Here n is {scan.order}.",
-        data=data,
+        data={"sliding: tolerances": scan.sliding, "sliding: errors": errors},
     )
 
 
@@ -63,7 +56,7 @@ def sliding(engine: Engine, with_work: bool = True) -> Measured:
     f"{TRUTH:g}. Exponent and errors as for the sliding pin.",
     basis="reference",
 )
-def sticking(engine: Engine, with_work: bool = True) -> Measured:
+def sticking(engine: Engine) -> Measured:
     scan = theory.SCANS[engine.name]
     exact, noise = _exact_events()
     errors = np.array(
@@ -75,11 +68,6 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
     exponent, numerical, model = observed_exponent(
         scan.sticking, errors, next_term=scan.sticking_term, noise=noise
     )
-    data: Data = {"sticking: tolerances": scan.sticking, "sticking: errors": errors}
-    if with_work:
-        data["work: stick-slip"] = np.array(
-            [theory.of_stick_slip(engine.simulate, tolerance=t) for t in scan.work.tolist()]
-        )
     return Measured(
         predicted=1.0,
         value=exponent,
@@ -88,7 +76,7 @@ def sticking(engine: Engine, with_work: bool = True) -> Measured:
         parameters={"until": theory.STICKING_UNTIL},
         source=f"Fig. 5 with {len(theory.STICKING_STARTS)} starts x = 0.1, vx from 0 to 0.06; "
         + _range_of(scan.sticking, "tolerance"),
-        data=data,
+        data={"sticking: tolerances": scan.sticking, "sticking: errors": errors},
     )
 
 
@@ -124,25 +112,15 @@ def of_every_order(function: Callable[..., Measured | None]) -> Callable[..., Me
 
 
 @of_every_order
-def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Measured | None:
+def steps(engine: Engine, solver: theory.Solver) -> Measured | None:
     if engine.name != "exudyn":
         return None
     import exudyn_models  # deferred: the command line must start without it
 
     run = exudyn_models.simulate_fixed_step
-    rows = np.array([theory.of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
-    order, numerical, model = extrapolated_order(rows[:, 0], theory.sliding_truth()[1])
-    observed = ", ".join(f"{value:.3f}" for value in np.log2(rows[:-1, 0] / rows[1:, 0]))
-    data: Data = {f"{solver.name}: steps": np.array(solver.steps), f"{solver.name}: sliding": rows}
-    if with_work and solver.sticks:
-        data[f"{solver.name}: stick-slip"] = np.array(
-            [
-                theory.of_stick_slip(
-                    run, integrator=solver.name, step=h, regularisation=theory.smallest_regularisation(h)
-                )
-                for h in theory.WORK_STEPS
-            ]
-        )
+    errors = np.array([theory.of_sliding(run, integrator=solver.name, step=h) for h in solver.steps])
+    order, numerical, model = extrapolated_order(errors, theory.sliding_truth()[1])
+    observed = ", ".join(f"{value:.3f}" for value in np.log2(errors[:-1] / errors[1:]))
     return Measured(
         predicted=solver.order,
         value=order,
@@ -150,7 +128,7 @@ def steps(engine: Engine, solver: theory.Solver, with_work: bool = True) -> Meas
         model=model,
         source=theory.SLIDING_SOURCE,
         note=f"{at_each('h', solver.steps)} s: {observed}.",
-        data=data,
+        data={f"{solver.name}: steps": np.array(solver.steps), f"{solver.name}: sliding": errors},
     )
 
 

@@ -1,21 +1,18 @@
 """Exact motions as references for errors, and the shift of a release by creep."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from compare.claims import TRUTH, WORKING
-from compare.claims.parameters import FIG5, FIG5_STARTS
+from compare.claims import WORKING
+from compare.claims.parameters import FIG5
 from compare.output.figures import BLUE, GREEN, ORANGE, PURPLE
-from reference_model import Phase, PinOnDisc, Trajectory, simulate
+from reference_model import Phase, PinOnDisc, Trajectory
 from reference_model.motion.pin_equations import simulate_polar_form
 from reference_model.systems import FloatArray
 
@@ -38,7 +35,7 @@ def _tolerances(largest: float, smallest: float, per_decade: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class Scan:
-    """Tolerances for both exponents and for the plot of error against work, and the expected next terms.
+    """Tolerances for both exponents, and the expected next terms.
 
     Errors are of this ``order`` in the step, which is ~ tolerance^(1/order). The next term is smaller by one power of
     the step; if the pin sticks, by ``sticking_term`` powers of the tolerance.
@@ -48,7 +45,6 @@ class Scan:
     sliding: FloatArray
     sticking: FloatArray
     sticking_term: float
-    work: FloatArray
 
 
 SCANS = {
@@ -57,14 +53,12 @@ SCANS = {
         sliding=_tolerances(1e-4, 10**-10.5, 8),
         sticking=_tolerances(1e-4, 10**-10.5, 2),
         sticking_term=1 / 8,
-        work=_tolerances(1e-4, 1e-11, 1),
     ),
     "exudyn": Scan(
         order=5,
         sliding=_tolerances(1e-4, 1e-10, 4),
         sticking=_tolerances(1e-6, 1e-8, 2),
         sticking_term=1.0,  # ε = 100·tolerance has a larger effect than the step, so the next term is ε²
-        work=_tolerances(1e-4, 1e-9, 1),
     ),
 }
 
@@ -80,18 +74,6 @@ CREEP_REGULARISATIONS = (1.6e-3, 8e-4, 4e-4)
 
 TOLERANCE = WORKING / 10
 """So small that ε dominates all other errors."""
-
-STICK_SLIP_TIMES = np.linspace(0.0, 60.0, 61)
-"""Times in s, until after the last of nine stick phases."""
-
-WORK_STEPS = (0.04, 0.02, 0.01, 0.005)
-"""Steps in s through stick phases, where ε must be proportional to the step."""
-
-
-def smallest_regularisation(step: float) -> float:
-    """Return ε (m/s) such that RK44, stable up to 2.8·mε/μN, resolves stick."""
-    return step * FIG5.friction_force / FIG5.mass / 1.5
-
 
 SLIDING_SOURCE = "Fig. 5; starts (0.9, 0, 0, 0.9) and (1.2, 0, 0, 1.2) are our choice: 20 s without stick"
 
@@ -114,12 +96,6 @@ def sliding_truth() -> tuple[FloatArray, float]:
 
     truth: FloatArray = states(3e-14)
     return truth, root_mean_square(truth - states(2e-13))
-
-
-@functools.cache
-def stick_slip_truth() -> FloatArray:
-    """Return the reference's states on the way to the whirl of Fig. 5, shape (time, 4)."""
-    return simulate(FIG5, FIG5_STARTS["whirl"], STICK_SLIP_TIMES, tolerance=TRUTH).states
 
 
 def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
@@ -145,24 +121,10 @@ def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
 Simulate = Callable[..., Trajectory]
 
 
-def of_sliding(run: Simulate, **how: Any) -> tuple[float, float, float]:
-    """Simulate the sliding pins; return their error (m, m/s), evaluations, and processor time (s)."""
-    return _cost(run, SLIDING_STARTS, SLIDING_TIMES, sliding_truth()[0], **how)
-
-
-def of_stick_slip(run: Simulate, **how: Any) -> tuple[float, float, float]:
-    """Return the same numbers for the way to the whirl of Fig. 5."""
-    return _cost(run, (FIG5_STARTS["whirl"],), STICK_SLIP_TIMES, stick_slip_truth(), **how)
-
-
-def _cost(
-    run: Simulate, starts: Iterable[tuple[float, ...]], times: FloatArray, truth: FloatArray, **how: Any
-) -> tuple[float, float, float]:
-    began = time.process_time()  # independent of other processes, unlike wall time
-    trajectories = [run(FIG5, start, times, **how) for start in starts]
-    spent = time.process_time() - began
-    error = root_mean_square(np.array([trajectory.states for trajectory in trajectories]) - truth)
-    return error, sum(trajectory.solution.evaluations for trajectory in trajectories), spent
+def of_sliding(run: Simulate, **how: Any) -> float:
+    """Simulate the sliding pins; return their error (m, m/s)."""
+    states = [run(FIG5, start, SLIDING_TIMES, **how).states for start in SLIDING_STARTS]
+    return root_mean_square(np.array(states) - sliding_truth()[0])
 
 
 def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
@@ -170,37 +132,22 @@ def gap(found: FloatArray, exact: FloatArray) -> FloatArray:
     return np.abs(found - exact) if found.shape == exact.shape else np.full(exact.shape, np.nan)
 
 
+STEPS = (0.4, 0.2, 0.1, 0.05, 0.025)
+
+
 @dataclass(frozen=True)
 class Solver:
-    """A solver at fixed steps (s); if ``sticks``, the figure also shows its work with stick phases."""
+    """A solver at fixed steps (s)."""
 
     name: str
     order: int
     steps: tuple[float, ...]
     look: Mapping[str, Any]
-    sticks: bool = False
 
 
 SOLVERS = (
-    Solver(
-        "RK44",
-        4,
-        (0.4, 0.2, 0.1, 0.05, 0.025),
-        {"color": BLUE, "marker": "o", "markersize": 6.0},
-        sticks=True,
-    ),
+    Solver("RK44", 4, STEPS, {"color": BLUE, "marker": "o", "markersize": 6.0}),
     Solver("RK67", 6, (0.8, 0.4, 0.2, 0.1, 0.05), {"color": GREEN, "marker": "s", "markersize": 5.5}),
-    Solver(
-        "GeneralizedAlpha",
-        2,
-        (0.4, 0.2, 0.1, 0.05, 0.025),
-        {"color": ORANGE, "marker": "^", "markersize": 8.0},
-        sticks=True,
-    ),
-    Solver(
-        "TrapezoidalIndex2",
-        2,
-        (0.4, 0.2, 0.1, 0.05, 0.025),
-        {"color": PURPLE, "marker": "x", "markersize": 4.5},
-    ),
+    Solver("GeneralizedAlpha", 2, STEPS, {"color": ORANGE, "marker": "^", "markersize": 8.0}),
+    Solver("TrapezoidalIndex2", 2, STEPS, {"color": PURPLE, "marker": "x", "markersize": 4.5}),
 )

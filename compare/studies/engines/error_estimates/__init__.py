@@ -1,5 +1,3 @@
 """Reliability of error bars: true errors of random motions compared with their estimates."""
 
-from compare.studies.engines.error_estimates.study import STUDY
-
-__all__ = ["STUDY"]
+from compare.studies.engines.error_estimates.study import STUDY as STUDY

@@ -1,7 +1,5 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np
@@ -9,7 +7,7 @@ import numpy as np
 import compare.studies.engines.error_estimates.theory as theory
 from compare.claims import COARSENING, ROUNDING, SAFETY, ByEngine, Figures, Measured, Study
 from compare.engines import Engine
-from compare.output.figures import BLACK, Axes, Figure, curve, engine_style, engines_in, new_figure, points
+from compare.output.figures import Axes, curve, engines_in, new_figure, points
 from compare.studies.toolkit.random_systems import between
 
 PROPORTIONAL = SAFETY * (1.0 - 1.0 / COARSENING)
@@ -23,13 +21,7 @@ KNOWN_FROM = (
 STUDY = Study.beside(
     __file__,
     "error-estimates",
-    words={
-        "safety": f"{SAFETY:g}",
-        "coarsening": f"{COARSENING:g}",
-        "low": f"{100 - 100 * theory.LEAST_COVERAGE:g}",
-        "high": f"{100 * theory.LEAST_COVERAGE:g}",
-        "most": f"{theory.MOST_OVER_ESTIMATE:g}",
-    },
+    words={"safety": f"{SAFETY:g}", "coarsening": f"{COARSENING:g}"},
     source=theory.SOURCE,
     seconds=3.5,
 )
@@ -72,7 +64,6 @@ def over_estimate(engine: Engine, kind: str, motions: int = theory.MOTIONS) -> M
         model=theory.MOST_OVER_ESTIMATE - PROPORTIONAL,
         parameters={"motions": found.motions, "seed": theory.SEED},
         note=f"{len(found.errors)} numbers from {found.motions} motions.",
-        data={f"{kind}: ratios": found.ratios},
     )
 
 
@@ -99,17 +90,10 @@ def simulated(engine: Engine) -> tuple[str, ...]:
     )
 
 
-SMALLEST, LARGEST = 0.3, 3e3
-"""Range of the ratios; an arrow stands for larger ones."""
-
 COLUMNS = 3
 
 
 def draw(data: ByEngine) -> Figures:
-    return {"error-estimates": _scatter(data), "error-estimates-spread": _spread(data)}
-
-
-def _scatter(data: ByEngine) -> Figure:
     kinds = list(theory.PROBLEMS)
     rows = -(-len(kinds) // COLUMNS)
     figure, panels = new_figure(ncols=COLUMNS, nrows=rows, width=10.0, height=2.9 * rows)
@@ -130,7 +114,7 @@ def _scatter(data: ByEngine) -> Figure:
     figure.supxlabel("true error, relative to the largest number", fontsize=11.0)
     figure.supylabel("estimate, relative to the largest number", fontsize=11.0)
     panels[0].legend(loc="upper left", fontsize=9.0)
-    return figure
+    return {"error-estimates": figure}
 
 
 def _draw_bounds(panel: Axes, seen: np.ndarray) -> None:
@@ -139,32 +123,6 @@ def _draw_bounds(panel: Axes, seen: np.ndarray) -> None:
     label = f"{theory.MOST_OVER_ESTIMATE:g} times"
     panel.plot(ends, theory.MOST_OVER_ESTIMATE * ends, **curve("theory", label, linestyle=":"))
     panel.set(xlim=ends, ylim=ends)
-
-
-def _spread(data: ByEngine) -> Figure:
-    figure, (panel,) = new_figure(width=7.0, height=4.4)
-    names, kinds = engines_in(data), list(theory.PROBLEMS)
-    shares = (1.0 - theory.LEAST_COVERAGE, 0.5, theory.LEAST_COVERAGE)
-    for i, engine in enumerate(names):
-        shift, colour = 0.5 * ((i + 0.5) / len(names) - 0.5), engine_style(engine).colour
-        label = engine
-        for row, kind in enumerate(kinds):
-            if f"{kind}: ratios" not in data[engine]:
-                continue
-            low, middle, high = np.quantile(data[engine][f"{kind}: ratios"], shares)
-            panel.plot([low, min(high, LARGEST)], 2 * [row + shift], color=colour, linewidth=0.9)
-            panel.plot(middle, row + shift, **points(engine, label, markersize=5.0))
-            if high > LARGEST:
-                panel.plot(LARGEST, row + shift, ">", color=colour, markersize=6.0, clip_on=False)
-            label = "_"
-    for ratio, linestyle in ((1.0, "-"), (theory.MOST_OVER_ESTIMATE, ":")):
-        panel.axvline(ratio, color=BLACK, linewidth=0.8, linestyle=linestyle)
-    panel.set(xscale="log", xlim=(SMALLEST, LARGEST), xlabel="estimate / true error")
-    panel.set_yticks(range(len(kinds)), kinds)
-    panel.invert_yaxis()
-    if names:
-        panel.legend(loc="lower right")
-    return figure
 
 
 STUDY.provides(figures=draw)

@@ -1,7 +1,5 @@
 """Random motions with an exact solution, or solved by the reference at a far tighter tolerance."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math
@@ -14,7 +12,7 @@ from numpy.typing import NDArray
 
 from compare.claims import TRUTH, refined
 from compare.engines import Engine
-from compare.studies.toolkit.free_bodies import Slowing
+from compare.studies.toolkit.free_bodies import Slowing, on_a_table
 from compare.studies.toolkit.pins import farthest
 from compare.studies.toolkit.random_systems import (
     any_disc,
@@ -32,7 +30,7 @@ from reference_model.formulas.pin import (
     whirl_frequency,
     whirl_radius,
 )
-from reference_model.systems import DiscOnDisc, FloatArray, System
+from reference_model.systems import FloatArray, System
 from reference_model.trajectory import Trajectory
 
 MOTIONS = 360
@@ -256,23 +254,12 @@ def free_ring(random: Generator) -> Problem:
     time, slid, turned = _unit_stop(inertia, degrees)
     mass, radius = between(random, 0.1, 10.0), between(random, 0.03, 1.0)
     speed, deceleration = between(random, 0.1, 3.0), between(random, 0.1, 3.0)
-    disc = DiscOnDisc(
-        mass=mass,
-        polar_inertia=inertia * mass * radius**2,
-        stiffness=0.0,
-        damping=0.0,
-        friction_force=mass * deceleration,
-        disc_speed=0.0,
-        contact_radius=radius,
-        shaft_damping=0.0,
-        shaft_speed=0.0,
-    )
     angle, sense = math.radians(degrees), sign(random)
     heading = cmath.rect(1.0, random.uniform(-math.pi, math.pi))
     rest, way = time * speed / deceleration, speed**2 / deceleration
     end = slid * way * heading
     return Problem(
-        disc,
+        on_a_table(mass, inertia, radius, mass * deceleration),
         state_of(0j, speed * math.cos(angle) * heading, spin=sense * speed * math.sin(angle) / radius),
         np.array([0.0, 1.1 * rest]),
         _place_and_time_of_rest,

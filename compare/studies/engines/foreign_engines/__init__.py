@@ -1,5 +1,3 @@
 """Recorded foreign engines: friction laws, orders and errors over time."""
 
-from compare.studies.engines.foreign_engines.study import STUDY
-
-__all__ = ["STUDY"]
+from compare.studies.engines.foreign_engines.study import STUDY as STUDY

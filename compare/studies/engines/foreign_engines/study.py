@@ -1,36 +1,14 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 from typing import Any
 
 import numpy as np
 
-import compare.studies.engines.foreign_engines.theory as ladders
+import compare.studies.engines.foreign_engines.theory as theory
 from compare.claims import ByEngine, Data, Figures, Measured, Study, extrapolated_order, observed_exponent
 from compare.foreign import CASES, DIGITS, ERROR, SECONDS, STEPS
 from compare.output.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, Figure, new_figure
-from compare.studies.engines.foreign_engines.theory import (
-    BOXES,
-    BY_AXIS,
-    FIRST_ORDER,
-    OFF_FOR_DISCS,
-    PYRAMIDS,
-    SINGLE_PRECISION,
-    STICKING,
-    TANGENTS,
-    Law,
-    box,
-    creep,
-    error_of,
-    halvings,
-    pyramid,
-    recorded_settings,
-    release_by,
-    release_where,
-    tables,
-)
 
 ORDER = (
     "Orders observed in successive halvings of the step, extrapolated to 0. Model error: the change due to "
@@ -51,17 +29,12 @@ LAW = (
 def curves() -> Data:
     return {
         f"{recording.name}: {case}": runs[:, [SECONDS, ERROR]]
-        for recording in ladders.recorded()
+        for recording in theory.recorded()
         for case, runs in recording.runs.items()
     }
 
 
-STUDY = Study.beside(
-    __file__,
-    "foreign-engines",
-    only=("theory",),
-    seconds=1.0,
-)
+STUDY = Study.beside(__file__, "foreign-engines", only=("theory",), seconds=1.0)
 
 
 _of_order = functools.partial(STUDY.claim, kind="order", basis="independent", resolution=0.5, note=ORDER)
@@ -73,7 +46,7 @@ _of_law = functools.partial(
 
 @_of_order("With steps of order 1, the error of a sliding pin falls in proportion to the step")
 def slides() -> Measured:
-    return _orders(1.0, FIRST_ORDER, ("slip",))
+    return _orders(1.0, theory.FIRST_ORDER, ("slip",))
 
 
 @STUDY.claim(
@@ -84,21 +57,20 @@ def slides() -> Measured:
     note=SCATTERED_ORDER,
 )
 def sticks() -> Measured:
-    return _orders(1.0, STICKING, ("stick-slip", "release"), scatters=True)
+    return _orders(1.0, theory.STICKING, ("stick-slip", "release"), scatters=True)
 
 
 @_of_order("With steps of order 1, the error of a disc on six points falls in proportion to the step")
 def disc_slides() -> Measured:
-    return _orders(
-        1.0, tuple(name for name in FIRST_ORDER if name not in SINGLE_PRECISION + OFF_FOR_DISCS), ("disc",)
-    )
+    left_out = theory.SINGLE_PRECISION + theory.OFF_FOR_DISCS
+    return _orders(1.0, tuple(name for name in theory.FIRST_ORDER if name not in left_out), ("disc",))
 
 
 @_of_order(
     "With a friction pyramid or box, which differ from the cone, the errors of pin and disc do not fall with the step"
 )
 def axes_stay_off() -> Measured:
-    return _orders(0.0, BY_AXIS, ("slip", "disc"))
+    return _orders(0.0, theory.BY_AXIS, ("slip", "disc"))
 
 
 @_of_order(
@@ -106,14 +78,14 @@ def axes_stay_off() -> Measured:
     "the step"
 )
 def disc_stays_off() -> Measured:
-    return _orders(0.0, OFF_FOR_DISCS, ("disc",))
+    return _orders(0.0, theory.OFF_FOR_DISCS, ("disc",))
 
 
 def _orders(
     predicted: float, wanted: tuple[str, ...], cases: tuple[str, ...], *, scatters: bool = False
 ) -> Measured:
-    by_name = {recording.name: recording for recording in ladders.recorded()}
-    runs = {(name, case): halvings(by_name[name].runs[case]) for case in cases for name in wanted}
+    by_name = {recording.name: recording for recording in theory.recorded()}
+    runs = {(name, case): theory.halvings(by_name[name].runs[case]) for case in cases for name in wanted}
     found = [
         observed_exponent(1.0 / rows[:, STEPS], rows[:, ERROR], next_term=1.0)
         if scatters
@@ -142,7 +114,7 @@ def _orders(
     equation=CASES["whirl"].equation,
 )
 def box_whirls() -> Measured:
-    return _as_far_off_as(box, "whirl", BOXES)
+    return _as_far_off_as(theory.box, "whirl", theory.BOXES)
 
 
 @_of_law(
@@ -150,7 +122,7 @@ def box_whirls() -> Measured:
     equation=CASES["whirl"].equation,
 )
 def pyramid_whirls() -> Measured:
-    return _as_far_off_as(pyramid, "whirl", PYRAMIDS)
+    return _as_far_off_as(theory.pyramid, "whirl", theory.PYRAMIDS)
 
 
 @_of_law(
@@ -158,7 +130,7 @@ def pyramid_whirls() -> Measured:
     equation=CASES["release"].equation,
 )
 def box_releases() -> Measured:
-    return _as_far_off_as(box, "release", BOXES)
+    return _as_far_off_as(theory.box, "release", theory.BOXES)
 
 
 @_of_law(
@@ -166,15 +138,15 @@ def box_releases() -> Measured:
     equation=CASES["release"].equation,
 )
 def pyramid_releases() -> Measured:
-    return _as_far_off_as(pyramid, "release", PYRAMIDS)
+    return _as_far_off_as(theory.pyramid, "release", theory.PYRAMIDS)
 
 
-def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
-    by_name = {recording.name: recording for recording in ladders.recorded()}
-    errors = np.array([halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
+def _as_far_off_as(law: theory.Law, case: str, wanted: tuple[str, ...]) -> Measured:
+    by_name = {recording.name: recording for recording in theory.recorded()}
+    errors = np.array([theory.halvings(by_name[name].runs[case])[-3:, ERROR] for name in wanted])
     extrapolated = 2.0 * errors[:, 1:] - errors[:, :-1]
     rounding = 0.5 * 10.0 ** (1 - DIGITS) * errors[:, -1]
-    predicted, smoothing = error_of(law, case)
+    predicted, smoothing = theory.error_of(law, case)
     return Measured(
         predicted=np.full(len(wanted), predicted),
         value=extrapolated[:, -1],
@@ -198,11 +170,11 @@ def _as_far_off_as(law: Law, case: str, wanted: tuple[str, ...]) -> Measured:
     named={"late by a box": 0, "late by a pyramid": 1},
 )
 def holds_longer() -> Measured:
-    times, errors = np.transpose([release_by(law) for law in (box, pyramid)])
-    exact = release_where(abs)
+    times, errors = np.transpose([theory.release_by(law) for law in (theory.box, theory.pyramid)])
+    exact = theory.release_where(abs)
     by_axes = (
-        release_where(lambda pull: max(abs(pull.real), abs(pull.imag))),
-        release_where(lambda pull: abs(pull.real) + abs(pull.imag)),
+        theory.release_where(lambda pull: max(abs(pull.real), abs(pull.imag))),
+        theory.release_where(lambda pull: abs(pull.real) + abs(pull.imag)),
     )
     return Measured(
         predicted=np.subtract(by_axes, exact),
@@ -224,18 +196,20 @@ def holds_longer() -> Measured:
     "Numerical error: a unit in the last recorded digit.",
 )
 def creeps() -> Measured:
-    by_name = {recording.name: recording for recording in ladders.recorded()}
-    runs = np.concatenate([by_name[name].runs["stuck"] for name in TANGENTS])
+    by_name = {recording.name: recording for recording in theory.recorded()}
+    runs = np.concatenate([by_name[name].runs["stuck"] for name in theory.TANGENTS])
     names = [
-        f"{name}, {steps:g} steps" for name in TANGENTS for steps in by_name[name].runs["stuck"][:, STEPS]
+        f"{name}, {steps:g} steps"
+        for name in theory.TANGENTS
+        for steps in by_name[name].runs["stuck"][:, STEPS]
     ]
     return Measured(
-        predicted=[creep(steps) for steps in runs[:, STEPS].astype(int)],
+        predicted=[theory.creep(steps) for steps in runs[:, STEPS].astype(int)],
         value=runs[:, ERROR],
         error=10.0 ** (1 - DIGITS) * runs[:, ERROR],
         components=names,
         system=CASES["stuck"].system,
-        source=f"Recorded, all steps: {', '.join(TANGENTS)}",
+        source=f"Recorded, all steps: {', '.join(theory.TANGENTS)}",
     )
 
 
@@ -287,4 +261,4 @@ def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
     return figure
 
 
-STUDY.provides(figures=draw, curves=curves, tables=tables, recorded=recorded_settings)
+STUDY.provides(figures=draw, curves=curves, tables=theory.tables, recorded=theory.recorded_settings)

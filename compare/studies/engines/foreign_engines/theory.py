@@ -1,7 +1,5 @@
 """Recorded settings of foreign engines: friction laws, errors, orders and tables."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

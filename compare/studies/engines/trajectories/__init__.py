@@ -4,5 +4,3 @@ from compare.studies.engines.trajectories.pictures import draw
 from compare.studies.engines.trajectories.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

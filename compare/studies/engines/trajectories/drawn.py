@@ -1,7 +1,5 @@
 """Random motions from the whole parameter range, redrawn until they suit the claims."""
 
-from __future__ import annotations
-
 import cmath
 import functools
 import math

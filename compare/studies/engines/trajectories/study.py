@@ -1,43 +1,18 @@
 """Claims."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from compare.claims import TRUTH, Findings, Measured, Measurement, Study, open_where_coarse, refined
+import compare.studies.engines.trajectories.theory as theory
+from compare.claims import TRUTH, Measured, Measurement, Study, open_where_coarse, refined
 from compare.claims.parameters import at_each, components_of, parameters_of
 from compare.engines import Engine, UnsupportedSystemError
 from compare.studies.engines.trajectories.drawn import DRAWN, Drawn
-from compare.studies.engines.trajectories.theory import (
-    MOTIONS,
-    NODES,
-    ONE_OF_EACH_KIND,
-    PANEL,
-    PINS,
-    PINS_THAT_STICK,
-    POINTS,
-    RINGS,
-    STICK_RESOLUTION,
-    UNTIL,
-    Motion,
-    as_many,
-    at_bounds,
-    at_nodes,
-    by_reference,
-    equation_of,
-    forces,
-    gauss,
-    late,
-    samples_in_stick,
-    stick_times,
-    times_of,
-)
+from compare.studies.engines.trajectories.theory import Motion
 from reference_model import DiscOnDisc, PinOnDisc, Trajectory
 from reference_model.systems import FloatArray
 
@@ -52,11 +27,13 @@ def together(measure: Measure) -> MeasureAll:
 
     @functools.wraps(measure)
     def measure_all(engine: Engine, motions: Motions) -> Measured | None:
-        if engine.contact_only and (isinstance(motions, Drawn) or not set(motions) <= set(ONE_OF_EACH_KIND)):
+        if engine.contact_only and (
+            isinstance(motions, Drawn) or not set(motions) <= set(theory.ONE_OF_EACH_KIND)
+        ):
             return None
         if not all(engine.simulates(motion.system) for motion in motions):
             # One sentence states everything that is missing, instead of one per claim.
-            raise UnsupportedSystemError(engine.lacking(motion.system for motion in MOTIONS.values()))
+            raise UnsupportedSystemError(engine.lacking(motion.system for motion in theory.MOTIONS.values()))
         parts = [part for motion in motions if (part := measure(engine, motion)) is not None]
         return pooled(parts) if parts else None
 
@@ -82,7 +59,7 @@ def pooled(parts: Sequence[Measured]) -> Measured:
         ],
         parameters=_ranges([parameters_of(system) for system in systems]),
         source=first.source,
-        note=f"{len(parts)} motions to t = {UNTIL:g} s, for {at_each('ω', speeds)} rad/s.",
+        note=f"{len(parts)} motions to t = {theory.UNTIL:g} s, for {at_each('ω', speeds)} rad/s.",
     )
 
 
@@ -112,12 +89,12 @@ STUDY = Study.beside(
 )
 
 INTEGRATED = (
-    f"Residual in every {PANEL:g} s. Integrals by Gauss's rule with {len(NODES)} nodes. Its error "
+    f"Residual in every {theory.PANEL:g} s. Integrals by Gauss's rule with {len(theory.NODES)} nodes. Its error "
     "follows from the decay of the Legendre coefficients of the integrand. In addition, the tolerance counts as an "
     "error of both states."
 )
 
-NAMES = {motion: name for name, motion in MOTIONS.items()}
+NAMES = {motion: name for name, motion in theory.MOTIONS.items()}
 
 
 def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
@@ -126,11 +103,11 @@ def by_name(by_hand: Mapping[str, Motion], *drawn: str) -> dict[str, Motions]:
     }
 
 
-SLIDING = by_name(PINS, "pins", "pins on stops")
-STICKING = by_name(PINS_THAT_STICK, "pins that stick")
+SLIDING = by_name(theory.PINS, "pins", "pins on stops")
+STICKING = by_name(theory.PINS_THAT_STICK, "pins that stick")
 OF_DISCS = {
-    "(19), (20)": by_name(RINGS, "rings"),
-    "(19), (21)": by_name(POINTS, "points"),
+    "(19), (20)": by_name(theory.RINGS, "rings"),
+    "(19), (21)": by_name(theory.POINTS, "points"),
 }
 
 
@@ -159,7 +136,7 @@ def of_bodies(
 
 @functools.lru_cache(maxsize=256)  # all motions, at the tolerances of an error estimate
 def run(engine: Engine, motion: Motion, tolerance: float) -> Trajectory:
-    return engine.simulate(motion.system, motion.start, times_of(motion), tolerance=tolerance)
+    return engine.simulate(motion.system, motion.start, theory.times_of(motion), tolerance=tolerance)
 
 
 def states_of(engine: Engine, motion: Motion) -> Measurement:
@@ -177,10 +154,10 @@ def states_of(engine: Engine, motion: Motion) -> Measurement:
 @together
 def moves(engine: Engine, motion: Motion) -> Measured:
     found = states_of(engine, motion)
-    predicted = by_reference(motion).states
+    predicted = theory.by_reference(motion).states
     # Single numbers may agree by chance, or all of them if both runs take the same steps.
     bar = found.largest + motion.tolerance * float(np.max(np.abs(predicted)))
-    times, data = times_of(motion), {}
+    times, data = theory.times_of(motion), {}
     if motion in NAMES:
         difference = np.max(np.abs(found.value - predicted), axis=1)
         shown = {"times": times, "difference": difference, "error bar": bar}
@@ -239,7 +216,7 @@ def momentum(engine: Engine, motion: Motion) -> Measured | None:
         engine,
         motion,
         lambda states: inertia * states[..., half:],
-        functools.partial(forces, body),
+        functools.partial(theory.forces, body),
         ("along x in N s", "along y in N s", "of spin in N m s")[:half],
     )
 
@@ -256,10 +233,10 @@ def balance(
         return None
 
     def integrals(tolerance: float) -> tuple[FloatArray, FloatArray]:
-        return gauss(rates(at_nodes(run(engine, motion, tolerance).states)))
+        return theory.gauss(rates(theory.at_nodes(run(engine, motion, tolerance).states)))
 
     def missing(tolerance: float) -> FloatArray:
-        changes = np.diff(amounts(at_bounds(run(engine, motion, tolerance).states)), axis=0)
+        changes = np.diff(amounts(theory.at_bounds(run(engine, motion, tolerance).states)), axis=0)
         return np.asarray(changes - integrals(tolerance)[0])
 
     found = refined(missing, motion.tolerance)
@@ -268,9 +245,9 @@ def balance(
         predicted=np.zeros_like(found.value),
         value=found.value,
         error=found.largest + cut + 2.0 * motion.tolerance,
-        size=float(np.max(np.abs(amounts(by_reference(motion).states)))),
+        size=float(np.max(np.abs(amounts(theory.by_reference(motion).states)))),
         resolution=motion.resolution,
-        at={"from t in s": at_bounds(times_of(motion))[:-1]},
+        at={"from t in s": theory.at_bounds(theory.times_of(motion))[:-1]},
         components=components,
         system=motion.system,
         source=motion.source,
@@ -282,17 +259,18 @@ def balance(
     "A body sticks and is released at the times of the reference: {}",
     kind="trajectory",
     unit="s",
-    resolution=STICK_RESOLUTION,
-    note=f"Times of all stick phases longer than {STICK_RESOLUTION:g} s, compared with the reference.",
+    resolution=theory.STICK_RESOLUTION,
+    note=f"Times of all stick phases longer than {theory.STICK_RESOLUTION:g} s, compared with the reference.",
     each=STICKING,
 )
 @together
 def phases(engine: Engine, motion: Motion) -> Measured | None:
     if not motion.sticks:
         return None
-    predicted = stick_times(by_reference(motion))
+    predicted = theory.stick_times(theory.by_reference(motion))
     found = refined(
-        lambda tolerance: as_many(stick_times(run(engine, motion, tolerance)), predicted), motion.tolerance
+        lambda tolerance: theory.as_many(theory.stick_times(run(engine, motion, tolerance)), predicted),
+        motion.tolerance,
     )
     found = open_where_coarse(found, states_of(engine, motion))
     return of_stick(motion, predicted, found, ("stick", "release"))
@@ -302,16 +280,18 @@ def phases(engine: Engine, motion: Motion) -> Measured | None:
     "A body halfway through a stick phase is released at the time that (7) predicts: {}",
     equation="(7)",
     unit="s",
-    resolution=STICK_RESOLUTION,
+    resolution=theory.STICK_RESOLUTION,
     note="End of each stick phase minus the prediction of (7) from the position in the middle of the phase.",
     each=STICKING,
 )
 @together
 def release(engine: Engine, motion: Motion) -> Measured | None:
-    pin, middles = motion.system, samples_in_stick(by_reference(motion))
+    pin, middles = motion.system, theory.samples_in_stick(theory.by_reference(motion))
     if not isinstance(pin, PinOnDisc) or not middles:
         return None
-    found = refined(lambda tolerance: late(run(engine, motion, tolerance), pin, middles), motion.tolerance)
+    found = refined(
+        lambda tolerance: theory.late(run(engine, motion, tolerance), pin, middles), motion.tolerance
+    )
     found = open_where_coarse(found, states_of(engine, motion))
     return of_stick(motion, np.zeros(len(middles)), found, ("release",))
 
@@ -333,14 +313,3 @@ def of_stick(motion: Motion, predicted: FloatArray, found: Measurement, kind: Se
 
 def started(motion: Motion) -> str:
     return f"To t = {motion.until:g} s from {motion.start}."
-
-
-def measure(engine: Engine, motions: Mapping[str, Motion]) -> Findings:
-    declared = []
-    for one in STUDY.declared:
-        (like,) = next(iter(one.each.values()))
-        mine = {
-            name: (motion,) for name, motion in motions.items() if equation_of(motion) == equation_of(like)
-        }
-        declared += [replace(one, each=mine)] if mine else []
-    return replace(STUDY, declared=declared).measure(engine)

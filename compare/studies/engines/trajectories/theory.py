@@ -4,8 +4,6 @@ The paper's m, J and C are all one, so an engine may confuse them. Here no two p
 motions cover the whole range.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import dataclass, replace
@@ -188,12 +186,6 @@ def forces(body: System, states: FloatArray) -> FloatArray:
         return [total.real, total.imag, body.friction_force * arm - body.shaft_damping * lag]
 
     return np.apply_along_axis(force, -1, states)
-
-
-def equation_of(motion: Motion) -> str:
-    if isinstance(motion.system, PinOnDisc):
-        return "(1)"
-    return "(19), (20)" if motion.system.contact_points is None else "(19), (21)"
 
 
 def samples_in_stick(run: Trajectory) -> list[int]:

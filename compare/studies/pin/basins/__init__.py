@@ -4,5 +4,3 @@ from compare.studies.pin.basins.pictures import draw
 from compare.studies.pin.basins.study import STUDY, curves
 
 STUDY.provides(figures=draw, curves=curves)
-
-__all__ = ["STUDY"]

@@ -1,7 +1,5 @@
 """Figure."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

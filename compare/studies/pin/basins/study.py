@@ -1,7 +1,5 @@
 """Final motions of many starts, and their boundary: the stable set of a stick–slip orbit."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

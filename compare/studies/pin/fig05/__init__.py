@@ -4,5 +4,3 @@ from compare.studies.pin.fig05.pictures import animate, draw
 from compare.studies.pin.fig05.study import STUDY
 
 STUDY.provides(figures=draw, animations=animate)
-
-__all__ = ["STUDY"]

@@ -1,7 +1,5 @@
 """Parameters, formulas and claims."""
 
-from __future__ import annotations
-
 import functools
 import math
 
@@ -109,17 +107,14 @@ def critical_velocity(engine: Engine, tolerance: float) -> float:
         radii = [math.hypot(*phase.initial_state[:2]) for phase in trajectory.stick_phases[:2]]
         return radii[1] - radii[0] if len(radii) == 2 else math.nan
 
-    def between(low: float, high: float) -> float:
-        if not outward(low) * outward(high) < 0.0:
-            return math.nan
-        return float(brentq(outward, low, high, xtol=1e-4 * CAPTURE))
-
-    if tolerance < SIDES_TOLERANCE:
-        rough = critical_velocity(engine, SIDES_TOLERANCE)
-        if math.isfinite(rough) and math.isfinite(near := between(rough - BESIDE, rough + BESIDE)):
-            return near
-    low, high = (start[2] for start in FIG5_STARTS.values())
-    return between(low, high)
+    ranges = [tuple(start[2] for start in FIG5_STARTS.values())]
+    rough = critical_velocity(engine, SIDES_TOLERANCE) if tolerance < SIDES_TOLERANCE else math.nan
+    if math.isfinite(rough):
+        ranges.insert(0, (rough - BESIDE, rough + BESIDE))
+    for low, high in ranges:
+        if outward(low) * outward(high) < 0.0:
+            return float(brentq(outward, low, high, xtol=1e-4 * CAPTURE))
+    return math.nan
 
 
 STUDY = Study.beside(__file__, "fig05", source=SOURCE, system=FIG5, seconds=4.5)

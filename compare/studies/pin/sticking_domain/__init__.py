@@ -4,5 +4,3 @@ from compare.studies.pin.sticking_domain.pictures import draw
 from compare.studies.pin.sticking_domain.study import STUDY, curves
 
 STUDY.provides(figures=draw, curves=curves)
-
-__all__ = ["STUDY"]

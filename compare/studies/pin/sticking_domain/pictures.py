@@ -1,7 +1,5 @@
 """Figure."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures

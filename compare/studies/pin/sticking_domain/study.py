@@ -1,7 +1,5 @@
 """The radius (9) and the turn until release (7) against the disc speed."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -4,5 +4,3 @@ from compare.studies.pin.whirl_stability.pictures import curves, draw
 from compare.studies.pin.whirl_stability.study import STUDY
 
 STUDY.provides(figures=draw, curves=curves)
-
-__all__ = ["STUDY"]

@@ -1,7 +1,5 @@
 """Eqs. (12) to (16) over speed and damping, and motions near the whirl."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -4,5 +4,3 @@ from compare.studies.plane.block.pictures import draw
 from compare.studies.plane.block.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

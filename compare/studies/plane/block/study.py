@@ -1,7 +1,5 @@
 """Parameters, formulas and claims."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Sequence

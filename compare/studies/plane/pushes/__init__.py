@@ -4,5 +4,3 @@ from compare.studies.plane.pushes.pictures import draw
 from compare.studies.plane.pushes.study import STUDY
 
 STUDY.provides(figures=draw)
-
-__all__ = ["STUDY"]

@@ -5,8 +5,6 @@ The hand is a point that pushes an edge of the triangle with friction. Two indep
 regularised friction.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """Figures of forces, errors and the limit surface."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures

@@ -18,8 +18,6 @@ Choices, and their effect on a series' median error of the force's direction, wh
   2 degrees, and the work by at most 4 %.
 """
 
-from __future__ import annotations
-
 import csv
 import lzma
 import math

@@ -1,7 +1,5 @@
 """Claims on the pushes, and their validation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import cache, partial
 
@@ -14,23 +12,6 @@ from compare.claims.prose import Table
 from compare.claims.validation import Validation
 from compare.engines import Engine
 from compare.studies.plane.pushes.reduction import Push
-from compare.studies.plane.pushes.theory import (
-    CENTRE,
-    Motion,
-    Uncertainties,
-    contact_of,
-    coulomb,
-    errors,
-    force_error,
-    median_with_error,
-    pushed_above,
-    summed,
-    uncertainties,
-    work_error,
-    work_ratio,
-    wrench_difference,
-    wrench_error,
-)
 from reference_model.contact.limit_surface import largest_wrench
 from reference_model.systems import FloatArray
 
@@ -46,15 +27,15 @@ GROUPS = {
 }
 
 HYPOTHESES: dict[str, theory.Law] = {
-    "Coulomb's law, the authors' parameters": coulomb,
-    "pusher 10 mm above the surface": partial(pushed_above, height=10.0),
-    "pusher 20 mm above the surface": partial(pushed_above, height=20.0),
-    "sliding force 10 % larger": partial(coulomb, factor=1.1),
-    "centre of mass 2 mm further along x": partial(coulomb, centre=CENTRE + 2.0),
-    "centre of mass 2 mm further along y": partial(coulomb, centre=CENTRE + 2.0j),
-    "a third of the pressure at the edges": partial(summed, at_edges=1.0 / 3.0),
-    "friction rises with the slip speed to the power 0.1": partial(summed, exponent=0.1),
-    "friction falls with the slip speed to the power 0.1": partial(summed, exponent=-0.1),
+    "Coulomb's law, the authors' parameters": theory.coulomb,
+    "pusher 10 mm above the surface": partial(theory.pushed_above, height=10.0),
+    "pusher 20 mm above the surface": partial(theory.pushed_above, height=20.0),
+    "sliding force 10 % larger": partial(theory.coulomb, factor=1.1),
+    "centre of mass 2 mm further along x": partial(theory.coulomb, centre=theory.CENTRE + 2.0),
+    "centre of mass 2 mm further along y": partial(theory.coulomb, centre=theory.CENTRE + 2.0j),
+    "a third of the pressure at the edges": partial(theory.summed, at_edges=1.0 / 3.0),
+    "friction rises with the slip speed to the power 0.1": partial(theory.summed, exponent=0.1),
+    "friction falls with the slip speed to the power 0.1": partial(theory.summed, exponent=-0.1),
 }
 """Other explanations of the error; their sizes are assumed, not fitted."""
 
@@ -78,8 +59,8 @@ def chosen(every: int) -> list[Push]:
 )
 def sums(every: int = 1) -> Measured:
     return Measured(
-        predicted=[summed(push).components for push in chosen(every)],
-        value=[coulomb(push).components for push in chosen(every)],
+        predicted=[theory.summed(push).components for push in chosen(every)],
+        value=[theory.coulomb(push).components for push in chosen(every)],
         error=ROUNDING * max(theory.SLIDING_FORCES.values()),
     )
 
@@ -92,8 +73,8 @@ def sums(every: int = 1) -> Measured:
 def on_limit_surface(every: int = 1) -> Measured:
     found = []
     for push in chosen(every):
-        contact = contact_of(push.series)
-        wrench = theory.predicted(Motion.of(push), contact, 1.0)
+        contact = theory.contact_of(push.series)
+        wrench = theory.predicted(theory.Motion.of(push), contact, 1.0)
         largest, _ = largest_wrench(contact, wrench.force, wrench.moment)
         found.append(abs(largest) / abs(wrench.force))
     return Measured(predicted=np.ones(len(found)), value=found, error=LIMIT)
@@ -163,7 +144,7 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
         *(
             _of(
                 series,
-                force_error,
+                theory.force_error,
                 "Coulomb's law with the authors' parameters predicts the direction of the force with a median error "
                 f"of {{}} degrees for {name}.",
                 quantity="direction of the force",
@@ -172,14 +153,14 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
         ),
         _of(
             everything,
-            wrench_difference,
+            theory.wrench_difference,
             "Coulomb's law predicts the direction of the wrench, with moments over 50 mm, with a median error of {} "
             "degrees.",
             quantity="direction of the wrench",
         ),
         _of(
             everything,
-            work_error,
+            theory.work_error,
             "Coulomb's law with the authors' sliding forces predicts the work of a push with a median error of {} %.",
             quantity="work",
             unit="%",
@@ -190,8 +171,8 @@ def validations(every: int = EVERY) -> tuple[Validation, ...]:
 
 def _of(series: Sequence[str], of: theory.Difference, sentence: str, **names: str) -> Validation:
     groups = [theory.by_series()[one] for one in series]
-    found = np.array([np.linalg.norm(of(push, coulomb)) for pushes in groups for push in pushes])
-    uncertain = Uncertainties.joined([uncertainties(pushes, of) for pushes in groups])
+    found = np.array([np.linalg.norm(of(push, theory.coulomb)) for pushes in groups for push in pushes])
+    uncertain = theory.Uncertainties.joined([theory.uncertainties(pushes, of) for pushes in groups])
     return _validation(found, uncertain, sentence, **names)
 
 
@@ -201,7 +182,7 @@ def _of_final_positions(every: int) -> Validation:
     poses = [theory.pose_errors(pushes)[0] for pushes in theory.by_series().values() for _ in pushes[::every]]
     return _validation(
         from_measured(predicted, every),
-        Uncertainties(
+        theory.Uncertainties(
             data=np.array(poses),
             input=0.5 * apart(rough, slippery),
             numerical=apart(predicted, quasi_static(10, every=every)),
@@ -213,9 +194,9 @@ def _of_final_positions(every: int) -> Validation:
 
 
 def _validation(
-    sizes: FloatArray, uncertain: Uncertainties, sentence: str, quantity: str, unit: str = "degrees"
+    sizes: FloatArray, uncertain: theory.Uncertainties, sentence: str, quantity: str, unit: str = "degrees"
 ) -> Validation:
-    median, scatter = median_with_error(sizes)
+    median, scatter = theory.median_with_error(sizes)
 
     def middle(values: FloatArray) -> float:
         found = float(np.median(values))
@@ -261,7 +242,7 @@ COLUMNS = (
 
 
 def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
-    force, uncertain = errors(pushes, force_error), uncertainties(pushes)
+    force, uncertain = theory.errors(pushes, theory.force_error), theory.uncertainties(pushes)
     return (
         _text(force),
         f"{np.percentile(force, 90):.1f}",
@@ -269,8 +250,8 @@ def _errors_of(pushes: tuple[Push, ...]) -> tuple[str, ...]:
         f"{np.median(uncertain.input):.1f}",
         f"{100.0 * uncertain.share_explained(force):.0f}",
         "{:.1f} ({})".format(*theory.scatter(pushes)),
-        _text(errors(pushes, wrench_error)),
-        _text(errors(pushes, work_ratio), digits=3),
+        _text(theory.errors(pushes, theory.wrench_error)),
+        _text(theory.errors(pushes, theory.work_ratio), digits=3),
     )
 
 
@@ -284,7 +265,8 @@ def account(pushes: Sequence[Push]) -> list[str]:
 def _of_hypotheses() -> Table:
     def cell(law: theory.Law, series: Sequence[str]) -> str:
         pushes = [push for one in series for push in theory.by_series()[one]]
-        angle, work = np.median(errors(pushes, force_error, law)), np.median(errors(pushes, work_ratio, law))
+        both = (theory.force_error, theory.work_ratio)
+        angle, work = (np.median(theory.errors(pushes, of, law)) for of in both)
         return f"{angle:.1f}; {work:.3f}"
 
     return Table(
@@ -295,7 +277,7 @@ def _of_hypotheses() -> Table:
 
 
 def _text(values: FloatArray, digits: int = 1) -> str:
-    median, error = median_with_error(values)
+    median, error = theory.median_with_error(values)
     return f"{median:.{digits}f} ± {error:.{digits}f}"
 
 

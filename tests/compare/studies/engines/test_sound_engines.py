@@ -2,6 +2,7 @@
 
 import functools
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from studies_under_test import altered
 from compare.claims.claim import Verdict
 from compare.claims.error_estimates import TRUTH, WORKING
 from compare.engines import engines
-from compare.studies.engines.trajectories.study import measure
+from compare.engines.engine import kind_of
+from compare.studies.engines.trajectories.study import STUDY
 from compare.studies.engines.trajectories.theory import Motion
 from compare.studies.toolkit.random_systems import any_disc, any_pin, any_start
 from reference_model import simulate
@@ -53,6 +55,16 @@ def motions():
             source=f"assumption: parameters and start are random, with seed {SEED}",
         )
     return found
+
+
+def measure(engine, motions):
+    """Measure each claim about the motions whose systems are of the same kind as those of the study."""
+    declared = []
+    for one in STUDY.declared:
+        (like,) = next(iter(one.each.values()))
+        mine = {name: (it,) for name, it in motions.items() if kind_of(it.system) == kind_of(like.system)}
+        declared += [replace(one, each=mine)] if mine else []
+    return replace(STUDY, declared=declared).measure(engine)
 
 
 def differing(engine, count):

@@ -88,7 +88,7 @@ def test_the_claim_about_the_box_fails_if_the_box_is_a_cone(monkeypatch):
     def cone(slip, epsilon):
         return -slip / max(abs(slip), epsilon)
 
-    monkeypatch.setattr(foreign_engines, "box", cone)
+    monkeypatch.setattr(theory, "box", cone)
     (claim,) = STUDY.measure_theory(only=("holds_longer",)).claims
     assert claim.verdict is Verdict.DIFFERS
     late, _ = claim.measured
