@@ -3,6 +3,8 @@
 Copy this file into your project. Write ``simulate(case, times)`` for your engine and call ``run(simulate)``, or
 
     python friction_benchmark.py mymodule:simulate > results.json
+
+which also prints the score, and ends with status 1 if a case fails.
 """
 
 import importlib
@@ -157,6 +159,7 @@ if __name__ == "__main__":
         sys.exit("usage: python friction_benchmark.py MODULE:FUNCTION")
     module, _, function = sys.argv[1].partition(":")
     sys.path.insert(0, "")
-    json.dump(
-        run(getattr(importlib.import_module(module), function)), sys.stdout, indent=1, ensure_ascii=False
-    )
+    found = run(getattr(importlib.import_module(module), function))
+    json.dump(found, sys.stdout, indent=1)
+    print(", ".join(f"{number} {grade}" for grade, number in found["score"].items()), file=sys.stderr)
+    sys.exit(found["score"]["fails"] > 0)
