@@ -343,6 +343,10 @@ def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
 
 
+def test_an_engine_with_failed_claims_is_not_praised(in_this_process):
+    assert list(run.in_short((RIGHT,))) == ["right: single blocks show no error."]
+
+
 def test_recorded_engines_have_rows_like_the_others(tmp_path):
     rows = recorded_rows()
     by_name = {row.engine: row for row in rows}
