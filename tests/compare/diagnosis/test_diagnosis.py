@@ -296,6 +296,12 @@ def test_the_estimate_covers_errors_of_order_one_half_and_higher(order):
     assert found.converges
 
 
+@pytest.mark.parametrize(("error", "converges"), [(2e-8, True), (3e-8, False)])
+def test_an_error_below_a_millionth_of_the_resolution_is_not_one_of_the_law(error, converges):
+    """The changes of an engine with events may be small by luck."""
+    assert Motion((error,) * RUNGS, 1e-12, 0.0, 0.025, 0.1).converges == converges
+
+
 def test_an_engine_that_ignores_the_tolerance_is_reported():
     deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
     row = Row("deaf", motions={"slip": deaf})
