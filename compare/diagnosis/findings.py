@@ -21,7 +21,7 @@ from compare.engines import USUAL_TOLERANCE, Engine
 from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
-NEGLIGIBLE = 1e-6  # ratio of an error to the resolution that is not due to another friction law
+NEGLIGIBLE = 1e-6  # error over resolution that shows no other law
 PER_STEP = 0.2  # largest deviation from −1 of a force's order that shows a bounded impulse per step
 SAME = 0.8  # creep is independent of the rung if no value is below this share of the largest
 HELD = 0.05  # a block is held if its mean speed is below this share of a Coulomb block's

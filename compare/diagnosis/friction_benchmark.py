@@ -3,8 +3,6 @@
 Copy this file into your project. Write ``simulate(case, times)`` for your engine and call ``run(simulate)``, or
 
     python friction_benchmark.py mymodule:simulate > results.json
-
-which also prints the score, and ends with status 1 if a case fails.
 """
 
 import importlib

@@ -45,10 +45,7 @@ CHECKED_FOR = 1.0
 
 
 def first_check(engine: Engine) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the distances in m that a sliding and a resting block move, each as measured and exact.
-
-    Raises ``BadTrajectoryError`` if the first state is not the initial state.
-    """
+    """Return the distances in m that a sliding and a resting block move, each as measured and exact."""
     pulled, sliding = replace(SLIDE, offset=0.5 * FRICTION / WEAK), (0.0, 0.0, 0.6 * SPEED, 0.8 * SPEED)
     times = (0.0, CHECKED_FOR)
     begun, slid = engine.simulate(SLIDE, sliding, times).states

@@ -75,10 +75,7 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
-    """Yield a line with the diagnosis of each engine, or of its name, from the probes alone.
-
-    It does not praise, because claims about the engine have failed.
-    """
+    """Yield a line with the diagnosis of each engine whose claims failed, from the probes alone."""
     with Workers(1, IN_SHORT) as workers:
         for engine in engines:
             name = engine if isinstance(engine, str) else engine.name

@@ -156,8 +156,7 @@ ROTATIONS = {
 }
 """Mistakes by the factor of the disc speed."""
 
-SLOW, ALONG = 1.0, 0.3
-"""Largest disc speed in rad/s of slides with nearly constant directions, and the largest error of these in rad."""
+SLOW, ALONG = 1.0, 0.3  # largest disc speed in rad/s for nearly constant directions, and their error in rad
 
 
 def _rotation(scales: Scales) -> str:
@@ -267,7 +266,7 @@ def _alike(sizes: FloatArray) -> str:
 
 
 def _everywhere(sizes: FloatArray) -> str:
-    """Describe equal deviations that the slides of one mass, load and speed do not have."""
+    """Describe deviations of all slides but those of one condition."""
     if not (alike := _alike(sizes)):
         return ""
     return f"{alike} except for {SLIDE.mass:g} kg, {SLIDE.friction_force:g} N and {SLIDE_SPEED:g} m/s"

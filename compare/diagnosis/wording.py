@@ -23,14 +23,14 @@ LEAST_LAG = 1e-6
 """Smallest reported lag in s; the slip rotates at about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)  # range of lags that are reported in steps
-IMPRECISE = 1e-5  # ratio to the resolution of a motion below which an error is not another friction law
-MISSING = 1e-3  # ratio to the exact force below which a force is missing
+IMPRECISE = 1e-5  # error over resolution that limited precision explains
+MISSING = 1e-3  # share of the exact force that counts as missing
 LEAST_SHARE = 1e-6  # smallest reported relative deviation of other results
 
 ALIKE = 0.1
 """Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
 
-VARIES = 3.0  # largest ratio of the rates of hidden damping, which may depend on the speed
+VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
 CHATTERS = 3.0  # least ratio of velocity to creep of a block that chatters
 
@@ -192,11 +192,7 @@ def of_support(support: Shares) -> list[Remark]:
 
 
 def _hidden_damping(shares: FloatArray) -> FloatArray:
-    """Return the additional damping in 1/s that explains each deviation of the support.
-
-    The damper of ``SUPPORTS`` has the rate 1/s. Springs accelerate a body from rest until the mean time of the
-    measurement.
-    """
+    """Return the additional damping in 1/s that explains each deviation; the damper of ``SUPPORTS`` has 1/s."""
     lasts, until = SLIDES_FOR - SETTLES_FOR, 0.5 * (SLIDES_FOR + SETTLES_FOR)
     rates = (1.0 - shares) / until
     rates[1] = -math.log1p(max(float(shares[1]) * math.expm1(-lasts), -0.99)) / lasts - 1.0

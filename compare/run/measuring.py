@@ -108,8 +108,7 @@ def measured(
 
     An engine given by name is imported here; ``seed`` is for its units. ``only`` selects claims as in
     ``Study.measure``. An exception costs only the claim that raised it, and a claim that would take longer than
-    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``. Raises ``TypeError`` if the result
-    of a study is not ``Findings``.
+    ``within`` (in s) at the engine's pace is not attempted, see ``Findings.gaps``.
     """
     if isinstance(engine, str):
         engine = replace(engines([engine])[0], seed=seed)
