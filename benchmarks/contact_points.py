@@ -29,7 +29,7 @@ def law_of_exudyn(places: tuple[Place, ...]) -> Callable[[], object]:
 
 
 def least_times(*functions: Callable[[], object]) -> FloatArray:
-    """Return the least time of each function in microseconds."""
+    """Return the shortest time of each function in microseconds."""
     times = np.full((REPETITIONS, len(functions)), np.inf)
     for repetition in times:
         for i, function in enumerate(functions):

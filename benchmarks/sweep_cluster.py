@@ -93,7 +93,7 @@ def memory(scheduler: str | None, samples: int) -> tuple[float, float]:
 def measured() -> tuple[str, str]:
     """Return the table of throughputs for docs/sweeps.md, and the memory of the command with a projection."""
     lines = [
-        f"On {cores()} workers, with starts of Fig. 5, in seconds of all processors together:",
+        f"On {cores()} workers, with starts of Fig. 5, in total processor seconds:",
         "",
         "| chunks | starts per chunk | in process | workers | throughput |",
         "|---|---|---|---|---|",

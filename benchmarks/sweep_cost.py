@@ -62,12 +62,12 @@ LOADS = FIG5.friction_force * np.random.default_rng(2).uniform(0.9, 1.1, 50_000)
 WAYS: dict[str, tuple[int, Callable[[int], Ensemble]]] = {
     "pin, basin of Fig. 5": (200_000, pins),
     f"the same, each to t = {SHORT:g} s": (50_000, pins_to_the_end),
-    "pin, load varied by up to a tenth": (50_000, lambda n: pins(n, LOADS)),
+    "pin, load varied by up to 10 %": (50_000, lambda n: pins(n, LOADS)),
     f"disc on the continuous ring, basin of Fig. 11, t = {SHORT:g} s": (
         16_000,
         lambda n: discs(n, None, SHORT),
     ),
-    "the same, until its end is certain": (2_000, lambda n: discs(n, None, LONG)),
+    "the same, until its outcome is certain": (2_000, lambda n: discs(n, None, LONG)),
     f"disc on six points, t = {SHORT:g} s": (8_000, lambda n: discs(n, 6, SHORT)),
 }
 """Number of trajectories and function for each row."""

@@ -36,8 +36,8 @@ def simulate(
         Increasing times in s.
     tolerance
         Target relative accuracy, from 1e-14 to 1e-2, of the angle in rad and of lengths and velocities in
-        :class:`motion.nondimensional.Units`. With damping or rest errors stay within 13 times the tolerance in random
-        motions, 68 times in compiled ones. Otherwise they accumulate, to some 40 times after 10,000 steps.
+        :class:`motion.nondimensional.Units`. With damping or rest, errors in random motions stay within 13
+        tolerances, or 68 in compiled runs. Otherwise they accumulate, to some 40 times after 10,000 steps.
     contact
         Friction law of a disc; None for the law of the parameters.
     compiled

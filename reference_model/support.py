@@ -61,7 +61,7 @@ class Support:
         return -(self.stiffness if self.linear else self.secant(abs(w))) * w
 
     def secant(self, d: float) -> float:
-        """Return force over deflection, and its limit at d = 0."""
+        """Return force divided by deflection, or its limit at d = 0."""
         if self.linear:
             return self.stiffness
         result = self.stiffness + self.hardening * d * d
@@ -70,7 +70,7 @@ class Support:
         return result
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force by the deflection; at the stop, from outside."""
+        """Return the derivative of the force in the deflection; at the stop, from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 

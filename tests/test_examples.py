@@ -1,4 +1,4 @@
-"""The examples and the code in README and docs run, and give what they say."""
+"""The examples and the code in README and docs run, and give the stated results."""
 
 import ast
 import importlib
@@ -24,10 +24,10 @@ ROOT = Path(__file__).parents[1]
 DOCUMENTS = ["README.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
 DOCUMENTS = [name for name in DOCUMENTS if "```python" in (ROOT / name).read_text(encoding="utf-8")]
 RUN_ELSEWHERE = {"docs/sweeps.md"}
-"""In tests/compare/sweep/test_sweep_command.py, with the store of a sweep."""
+"""Run in tests/compare/sweep/test_sweep_command.py, with the store of a sweep."""
 
 VALUE = re.compile(r"True|False|-?\d+(?:\.(\d+))?")
-"""In a comment; digits after the point say to how many it is rounded."""
+"""Number in a comment, rounded to its decimal places."""
 
 
 @cache
@@ -55,14 +55,16 @@ def test_a_block_stops_straight_ahead_by_a_cone_and_too_soon_by_a_box():
     start, times = [0.0, 0.0, *np.sqrt([0.5, 0.5])], [0.0, 1.5]
     stops = [example[law](block, start, times, step=0.01).at_end for law in ("cone", "box")]
     assert stops[0] == pytest.approx([*np.sqrt([0.125, 0.125]), 0.0, 0.0], abs=1e-3)  # half a metre
-    assert stops[1] == pytest.approx([0.25, 0.25, 0.0, 0.0], abs=1e-3)  # each axis by itself
+    assert stops[1] == pytest.approx([0.25, 0.25, 0.0, 0.0], abs=1e-3)  # each axis separately
 
 
 def test_exudyn_keeps_the_rates_of_first_order_with_full_newton_only():
     example = run("11_exudyn_first_order_rates.py")
     right = example["expected"]()
     assert example["obtained"](False) == pytest.approx(right, rel=1e-6)
-    assert abs(example["obtained"](True) - right) > 1.0  # once this fails, Exudyn is mended: drop our repair
+    assert (
+        abs(example["obtained"](True) - right) > 1.0
+    )  # if this fails, Exudyn is repaired: remove our workaround
 
 
 def test_the_steady_motions_of_the_pin_are_those_of_the_formulas():
@@ -73,7 +75,7 @@ def test_the_steady_motions_of_the_pin_are_those_of_the_formulas():
     assert example["whirl"].radius == pytest.approx(0.9)  # μN/(βk)
     assert example["whirl"].frequency == 1.0
     assert example["radius"] == pytest.approx(0.02 / np.hypot(1.0 - 1.5**2, 0.15))
-    # In a turn of the whirl the drive gives what the dampers and friction take.
+    # In a turn of the whirl the drive supplies the losses of dampers and friction.
     power = example["power"]
     heat = power.friction_heat[-1] + power.damper_heat[-1]
     assert power.drive_work[-1] == pytest.approx(heat, rel=1e-9)
@@ -85,7 +87,7 @@ def test_the_whirl_of_the_disc_gives_way_to_a_modulated_cycle():
     swings = [motion.radius[-2500:] for motion in (example["trajectory"], example["in_exudyn"])]
     for radius in swings:
         assert radius.min() < 0.5 * example["whirl"].radius < 1.5 * example["whirl"].radius < radius.max()
-    # The engines' errors grow with the whirl's own instability until the cycle holds them.
+    # Errors grow with the whirl's instability until the motion reaches the cycle.
     assert swings[1] == pytest.approx(swings[0], abs=1e-6)
 
 
@@ -108,11 +110,11 @@ def test_the_disc_of_two_rotors_comes_to_rest_where_the_reference_has_its_equili
             shaft_speed=0.0,
         )
     )
-    # The slowest to settle is the flywheel, with droop over inertia = 12 1/s: exp(−24) = 4e-11 of it is left, and the
-    # disc follows at once.
+    # The flywheel settles most slowly, at droop/inertia = 12 1/s, so exp(−24) = 4e-11 remains; the disc follows at
+    # once.
     assert (x, y) == pytest.approx((expected.x, expected.y), abs=1e-10 * offset)
     assert spin == pytest.approx(expected.spin, abs=1e-10 * speed)
-    # The shaft's force −C(z − X0) has the moment −C·X0·y about the flywheel's axis. Friction hands on all of it.
+    # The shaft's force −C(z − X0) has the moment −C·X0·y about the flywheel's axis. Friction transmits all of it.
     moments = example["MOTOR_TORQUE"] - example["MOTOR_DROOP"] * speed - drag * spin - 1e4 * offset * y
     assert moments == pytest.approx(0.0, abs=1e-10 * example["MOTOR_TORQUE"])
 
@@ -133,7 +135,7 @@ def test_controlled_slip_falls_with_the_time_constant_of_the_closed_form():
     by_rk44 = target + (start - target) * growth ** np.arange(len(times))
     np.testing.assert_allclose(slip, by_rk44, rtol=0.0, atol=1e-10)
     np.testing.assert_allclose(by_rk44, example["closed_form"], rtol=0.0, atol=1e-4)
-    # At last the clutch gives the vehicle its share of the engine's torque.
+    # In the end the clutch transmits the vehicle's share of the engine's torque.
     engine, vehicle = example["ENGINE"], example["VEHICLE"]
     assert example["torque"][-1] == pytest.approx(example["TORQUE"] * vehicle / (engine + vehicle), rel=1e-6)
 
@@ -149,17 +151,17 @@ def test_the_engine_of_the_example_slides_as_the_reference_does():
     assert errors[1] < 0.1 * errors[0]
 
 
-def test_the_drivetrain_centres_its_clutch_disc_and_lets_it_whirl_against_its_stop_at_speed():
+def test_the_clutch_disc_centres_itself_and_whirls_against_its_stop_at_speed():
     example = run("06_drivetrain.py")
     motion, speed, radius, deflection = (example[n] for n in ("motion", "speed", "radius", "deflection"))
     assert np.max(np.abs(motion.energy.residual)) < 1e-6 * motion.energy.turnover
-    # The engine's ripple alone moves the slip by T·r/(J·2ω) either way.
+    # The engine's ripple alone changes the slip by ±T·r/(J·2ω).
     ripple = example["TORQUE"] / PASSENGER_CAR.engine_inertia / (2.0 * motion.engine_speed[0])
     np.testing.assert_allclose(motion.slip, example["SLIP"], rtol=0.0, atol=ripple)
     below, above = (speed > 2250.0) & (speed < 2500.0), speed > 3300.0
     assert radius[below].max() < PASSENGER_CAR.offset
     assert deflection[below].max() < PASSENGER_CAR.stop_gap < deflection[above].max()
-    # The stop holds it: a whirl with k that runs into it head-on gets that far, ½·C_s·p² = ½·m·(k·gap)².
+    # A whirl at k that hits the stop head-on penetrates by p: ½·C_s·p² = ½·m·(k·gap)².
     whirl = PASSENGER_CAR.stop_gap * np.sqrt(PASSENGER_CAR.radial_stiffness / PASSENGER_CAR.stop_stiffness)
     assert deflection.max() < PASSENGER_CAR.stop_gap + whirl
 
@@ -201,7 +203,7 @@ def test_a_dual_clutch_changes_gear_and_heats_as_the_equations_say():
     heats = [balance.losses[name][-1] for name in ("first clutch", "second clutch")]
     coarse, fine = (gear_change_by_scipy(example, epsilon) for epsilon in (1e-4, 5e-5))
     expected = 2.0 * fine - coarse  # without creep, which is of first order in ε
-    # The heat of the first clutch, which slips for a moment only, has the largest error.
+    # The heat of the first clutch, which slips only briefly, has the largest error.
     np.testing.assert_allclose([*example["speeds"][-1], *heats], expected, rtol=1e-4)
     engine, _, second, wheels = example["speeds"][-1]
     assert engine == pytest.approx(second, abs=1e-9)
@@ -257,7 +259,7 @@ def test_the_study_of_the_guide_for_contributors_agrees_and_draws(tmp_path, monk
     figure.savefig(tmp_path / "drawn.png")
 
 
-def test_the_engine_of_the_documents_is_that_of_the_example():
+def test_the_documents_and_the_example_show_the_same_engine():
     (code,) = [code for code in code_of("docs/judge-your-engine.md") if "def simulate(pin" in code]
     assert code[code.index("def simulate") :] in (ROOT / "examples" / "05_your_own_engine.py").read_text()
 

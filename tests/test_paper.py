@@ -1,4 +1,4 @@
-"""The paper names claims, figures and numbers that there are; a typesetter builds it in a workflow."""
+"""The paper refers only to existing claims, figures and numbers; a workflow typesets it."""
 
 import re
 import runpy
@@ -38,7 +38,7 @@ def test_every_number_of_the_paper_was_measured():
     assert set(words) <= FINDINGS["kept"]().keys()
 
 
-def test_the_paper_without_a_report_says_what_it_lacks(monkeypatch, capsys, tmp_path):
+def test_the_paper_without_a_report_lists_missing_numbers(monkeypatch, capsys, tmp_path):
     script = runpy.run_path(str(PAPER / "build.py"))
     monkeypatch.setitem(script["main"].__globals__, "FIGURES", tmp_path)
     assert script["main"]() == 2
@@ -47,7 +47,7 @@ def test_the_paper_without_a_report_says_what_it_lacks(monkeypatch, capsys, tmp_
     )
 
 
-def test_what_the_paper_cites_is_among_its_references():
+def test_all_citations_of_the_paper_are_in_its_references():
     entries = set(
         re.findall(r"^(\w+):$", (PAPER / "references.yml").read_text(encoding="utf-8"), re.MULTILINE)
     )

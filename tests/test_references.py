@@ -1,4 +1,4 @@
-"""What documents and docstrings name exists: paths, links, modules, functions and options; layers are as drawn."""
+"""Documents and docstrings name only existing paths, links, modules, functions and options; layers are as drawn."""
 
 import ast
 import importlib.util
@@ -19,7 +19,7 @@ ARCHITECTURE = ROOT / "docs" / "architecture.md"
 PACKAGES = ("reference_model", "exudyn_models", "fmu_models", "compare")
 
 PLACEHOLDER = re.compile(r"[A-Z]{3,}")
-"""Stands for a name of the reader's own, as in compare/studies/GROUP/NAME/."""
+"""Placeholder for a name that the reader chooses, as in compare/studies/GROUP/NAME/."""
 
 PLACE = re.compile(
     rf"(?:(?:{'|'.join(PACKAGES)}|tests|docs|examples|builders|benchmarks|\.ci)(?:/[\w.-]*)+|[A-Z]+\.md)"
@@ -38,7 +38,7 @@ OF_OTHERS = {
     "--min-conclusive",
     "--view",
 }
-"""Options of pytest, of our plugin for it, and of an example."""
+"""Options of pytest, of our pytest plugin, and of an example."""
 
 
 def spans(page):

@@ -1,4 +1,4 @@
-"""What is released: one version, a citation, ranges that are tested, and all files in wheel and source archive."""
+"""The release: one version, a citation, tested version ranges, and all files in wheel and source archive."""
 
 import re
 import runpy
@@ -80,8 +80,8 @@ def found(package, pattern):
     return {path.relative_to(ROOT / package) for path in (ROOT / package).glob(pattern)}
 
 
-def test_the_source_archive_has_every_file_but_what_belongs_to_the_repository():
-    """Packages, pyproject, README and licence are in it by themselves, the rest by ``MANIFEST.in``."""
+def test_the_source_archive_has_every_file_except_those_of_the_repository():
+    """Packages, pyproject, README and licence are included automatically, the rest by ``MANIFEST.in``."""
     lines = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").splitlines()
     named = {name for line in lines for name in line.split()[1:]}
     by_itself = {*PACKAGES, "pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"}

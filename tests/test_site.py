@@ -25,7 +25,7 @@ def gathered(site, tmp_path_factory):
 
 
 def anchors(path):
-    """Return what a page's headings are called in links."""
+    """Return the anchors of a page's headings."""
     headings = re.findall(r"^#+ (.*)$", path.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
 

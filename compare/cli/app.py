@@ -48,8 +48,8 @@ if TYPE_CHECKING:
 def list_studies(context: typer.Context) -> None:
     """List studies and engines.
 
-    Each study has its time, its level and its engines. Times are those of the last report in the folder report, or
-    estimates for one engine.
+    The list shows the time, level and engines of each study. Times come from the last report in the folder report,
+    or are estimates for one engine.
 
     \b
     Example:
@@ -89,7 +89,7 @@ def list_studies(context: typer.Context) -> None:
 
 
 def errata() -> None:
-    """Print errors in the paper's formulas with corrections.
+    """Print errors in the paper's formulas and their corrections.
 
     Each correction comes with numerical evidence.
 
@@ -179,17 +179,14 @@ def friction_discs(
     context: typer.Context,
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
 ) -> None:
-    """Compare two simulations of friction discs with each other and with all formulas of the paper.
+    """Measure how accurately engines simulate dry friction, and simulate friction discs.
 
     \b
     Examples:
       friction-discs list
       friction-discs report
       friction-discs matrix --engine reference
-      friction-discs plan --level quick
-      friction-discs diff report-of-main report
       friction-discs simulate pin --set disc_speed=2 --until 100 --output pin.csv
-      friction-discs simulate disc --set contact_points=6 --output disc.json
       friction-discs sweep basin pin
       friction-discs export-fmu clutch --set plates=4 --output clutch.fmu
       friction-discs errata

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -46,6 +47,10 @@ class Command(TyperCommand):
             if given.count(option) > 1:
                 raise BadInputError(f"{option.opts[0]} is given {given.count(option)} times; give it once")
         return super().parse_args(ctx, args)
+
+    def get_help(self, ctx: Any) -> str:
+        """Return the help without the Python types that typer prints after arguments."""
+        return re.sub(r" <(str|path|list\[str\])>", "", super().get_help(ctx))
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; turn Ctrl-C into ``InterruptedByUserError``."""

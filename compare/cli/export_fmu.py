@@ -57,8 +57,8 @@ def export_pin(unit: Unit) -> None:
     The defaults are the second case of Fig. 5.
 
     \b
-    Parameters in SI units: those of `friction-discs simulate pin`, the initial state x, y, vx, vy, and
-      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+    Parameters: those of `friction-discs simulate pin`, the initial state x, y (m), vx, vy (m/s), and
+      exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
     \b
     Example:
@@ -75,10 +75,11 @@ def export_disc(unit: Unit) -> None:
     The defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters in SI units: those of `friction-discs simulate disc`, the initial state x, y, angle, vx, vy, spin, and
-      exact=1 (sticks at events; with 0 it creeps below the slip speed regularisation)
+    Parameters: those of `friction-discs simulate disc`, the initial state x, y (m), angle (rad), vx, vy (m/s),
+      spin (rad/s), and
+      exact=1 (0: creeps below the slip speed regularisation)
       regularisation=1e-6 (m/s) tolerance=1e-11
-      contact_points=0 (continuous ring; single points from 3 on, which always creep)
+      contact_points=0 (0: continuous ring; 3 or more: points, which always creep)
     \b
     Example:
       friction-discs export-fmu disc --set shaft_speed=1.3 --output disc.fmu
@@ -94,10 +95,10 @@ def export_clutch(unit: Unit) -> None:
     Inputs are speeds, load, friction coefficient and engagement; outputs are torques and forces.
 
     \b
-    Parameters in SI units:
-      inner_radius=0.1 outer_radius=0.1 wear=0 pressure_inner=1 pressure_mean=1 pressure_outer=1 contact_points=0
-      plates=1 static_ratio=1 regularisation=1e-6 tolerance=1e-11
-      mass=1 stiffness=1e6 damping=100 offset=0 hardening=0 stop_gap=0 stop_stiffness=0
+    Parameters, with their defaults and units:
+      inner_radius=0.1 (m) outer_radius=0.1 (m) wear=0 pressure_inner=1 pressure_mean=1 pressure_outer=1
+      contact_points=0 plates=1 static_ratio=1 regularisation=1e-6 (m/s) tolerance=1e-11 mass=1 (kg)
+      stiffness=1e6 (N/m) damping=100 (N s/m) offset=0 (m) hardening=0 (N/m³) stop_gap=0 (m) stop_stiffness=0 (N/m)
     \b
     Example:
       friction-discs export-fmu clutch --set inner_radius=0.08 --set outer_radius=0.12 --output clutch.fmu

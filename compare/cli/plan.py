@@ -43,9 +43,9 @@ def plan(
 ) -> int:
     """Write the motions of studies as files for another engine.
 
-    Use it for an engine that this project cannot run. Add a NAME.csv to each NAME.json, with the time and the state
-    in each line, as from simulate --output. Then judge the answers with report --engine files:DIR. Missing and
-    incomplete answers are not scored. Claims whose motions depend on earlier answers are left out.
+    Use it for an engine that this project cannot run. Add a NAME.csv to each NAME.json, in the format of simulate
+    --output. Then judge these motions with report --engine files:DIR. Missing and incomplete motions are not scored.
+    Claims whose motions depend on earlier results are left out.
 
     \b
     Examples:

@@ -56,7 +56,7 @@ Engines = Annotated[
     typer.Option(
         metavar="NAME",
         help="Engine to measure; repeat for more engines (default: all). Your own engine is MODULE:FUNCTION "
-        "(a Python function), exec:COMMAND (a program in any language), files:DIR (answers to the motions of plan) "
+        "(a Python function), exec:COMMAND (a program in any language), files:DIR (motions requested by plan) "
         "or fmu:FILE (a co-simulation FMU).",
         show_default=False,
     ),
@@ -88,7 +88,7 @@ LeastConclusive = Annotated[
     typer.Option(
         "--min-conclusive",
         metavar="N",
-        help="Least number of claims that must agree; the theory's own algebra does not count.",
+        help="Minimum number of claims that must agree; the theory's own algebra does not count.",
         parser=whole("min-conclusive", 0, 1_000_000),
     ),
 ]
@@ -114,7 +114,8 @@ Logs = Annotated[
     Path | None,
     typer.Option(
         metavar="FOLDER",
-        help="Logs of measured pushes: reduce them again and compare them with the table of the study pushes.",
+        help="Folder with the logs of the measured pushes, to be reduced again and compared with the table of the "
+        "study pushes.",
         show_default=False,
     ),
 ]
@@ -191,7 +192,8 @@ def _check_logs(folder: Path | None) -> None:
     with refused():
         agreeing, new = check_table(folder)
     with printing():
-        print(f"The table agrees with the logs of {len(agreeing)} series: {', '.join(agreeing) or 'none'}")
+        if agreeing:
+            print(f"The table agrees with the logs of {len(agreeing)} series: {', '.join(agreeing)}")
         for line in account(new):
             print(line)
 

@@ -97,7 +97,6 @@ def simulate_system() -> None:
     \b
     Examples:
       friction-discs simulate pin --output whirl.json
-      friction-discs simulate disc --help
     """
 
 
@@ -109,9 +108,9 @@ def simulate_pin(request: Request, start: PinState = (0.1, 0, 0.03, 0)) -> None:
     The defaults are the second case of Fig. 5.
 
     \b
-    Parameters in SI units, with their defaults:
-      mass=1 stiffness=1 damping=0.1 friction_force=0.09 disc_speed=1.5 offset=0.1
-      hardening=0 stop_gap=0 stop_stiffness=0
+    Parameters, with their defaults and units:
+      mass=1 (kg) stiffness=1 (N/m) damping=0.1 (N s/m) friction_force=0.09 (N) disc_speed=1.5 (rad/s)
+      offset=0.1 (m) hardening=0 (N/m³) stop_gap=0 (m) stop_stiffness=0 (N/m)
     \b
     Examples:
       friction-discs simulate pin --output whirl.json
@@ -131,10 +130,10 @@ def simulate_disc(request: Request, start: DiscState = (0.02, 0, 0, 0, 0, 1.3)) 
     The defaults are Fig. 11 with X0 = 0.
 
     \b
-    Parameters in SI units, with their defaults; contact_points=none is the continuous ring:
-      mass=1 polar_inertia=1 stiffness=1 damping=0.5 friction_force=0.0225 disc_speed=1.5 offset=0
-      contact_radius=0.12 shaft_damping=0.015 shaft_speed=1.25 contact_points=none
-      hardening=0 stop_gap=0 stop_stiffness=0
+    Parameters, with their defaults and units; contact_points=none is the continuous ring:
+      mass=1 (kg) polar_inertia=1 (kg m²) stiffness=1 (N/m) damping=0.5 (N s/m) friction_force=0.0225 (N)
+      disc_speed=1.5 (rad/s) offset=0 (m) contact_radius=0.12 (m) shaft_damping=0.015 (N m s/rad)
+      shaft_speed=1.25 (rad/s) contact_points=none hardening=0 (N/m³) stop_gap=0 (m) stop_stiffness=0 (N/m)
     \b
     Examples:
       friction-discs simulate disc --output modulated.csv
@@ -166,7 +165,7 @@ def _simulate(paper: System, start: Sequence[float], request: Request) -> None:
             times = np.linspace(0.0, request.until, request.samples)
             write = write_csv if output is None else writer(output)
             if plot is not None and plot.suffix not in PICTURES:
-                raise ValueError(f"--plot {plot.name!r}: the file name must end in {', '.join(PICTURES)}")
+                raise ValueError(f"--plot {plot.name!r}: the file name must end in {' or '.join(PICTURES)}")
             for path in filter(None, (output, plot)):
                 check_file(path)
         phases = write is not write_csv or plot is not None

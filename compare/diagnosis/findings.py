@@ -58,19 +58,19 @@ class Creep:
 class History:
     """Dependence of friction on the motion before."""
 
-    static: float  # largest load over μN that friction holds from rest, at least 1
-    second: float  # distance of a second release over the exact one
+    static: float  # largest load/μN that friction holds from rest, at least 1
+    second: float  # distance of a second release, divided by the exact one
     second_error: float
-    delay: float  # of the release from rest, in s
+    delay: float  # delay of the release from rest, in s
     delay_error: float
-    second_delay: float  # of the motion after two releases, in s
+    second_delay: float  # delay of the motion after two releases, in s
     second_delay_error: float
     rest: float  # creep in m/s close to release, or at rest after a slide; 0 if it depends on the rung
 
 
 @dataclass(frozen=True)
 class Shares:
-    """Forces over the exact ones, and their errors; NaN where there is none.
+    """Forces divided by the exact ones, and their errors; NaN where there is none.
 
     They are those of ``probes.SUPPORTS``, shape (3,), or force and moment on discs, shape (n, 2).
     """
@@ -105,10 +105,10 @@ class Motion:
     """Errors in m of one case of ``compare.foreign``."""
 
     errors: tuple[float, ...]  # largest over time at each rung
-    estimate: float  # of the last error, from the changes between rungs
+    estimate: float  # estimate of the last error from the changes between rungs
     order: float  # as in ``Creep``
     resolution: float  # a tenth of the change due to another friction law
-    seconds: float  # of processor time at the finest rung
+    seconds: float  # processor time at the finest rung
 
     @property
     def error(self) -> float:

@@ -24,18 +24,20 @@ Complex = NDArray[np.complex128]
 SIDES = (3, 4, 6, 8, 12, 16)
 """Number of sides of the polygons, each tried with a corner and with a side on the x axis."""
 
-FITS = 1e-6  # misfit over μN allowed for any law, because the force varies a little
-DISTINCT = 3.0  # least ratio of the second-best misfit to the best, and of a reported deviation to its error
+FITS = 1e-6  # misfit/μN allowed for any law, because the force varies a little
+DISTINCT = (
+    3.0  # smallest ratio of the second-best misfit to the best, and of a reported deviation to its error
+)
 
 NEAR, FAR = 1e-3, 100.0
-"""Largest misfit of a law with a further difference, and the least ratio of the next misfit."""
+"""Largest misfit of a law with a further difference, and smallest ratio of the next misfit."""
 
 
 @dataclass(frozen=True)
 class Shape:
     """Direction of a law's force as x + iy, for a slip that is a unit vector.
 
-    ``sizes`` maps the names of the law to the magnitudes of its force over μN.
+    ``sizes`` maps the names of the law to the magnitudes of its force/μN.
     """
 
     direction: Callable[[complex], complex]
@@ -80,13 +82,13 @@ class Friction:
     shape: str
     strength: float  # ratio of the fitted to the nominal μ
     angle: float  # rotation of the force from the law's direction, in rad
-    error: float  # of the measured force over μN; also that of ``strength`` and ``angle``
-    misfit: float  # largest difference between the forces, over μN
+    error: float  # error of the measured force/μN; also that of ``strength`` and ``angle``
+    misfit: float  # largest difference between the forces, divided by μN
     sure: bool  # no other law fits nearly as well
     along: float = math.nan  # μ along the first axis of an ellipse, over the nominal μ
     across: float = math.nan
     axis: float = math.nan  # direction of that axis in rad
-    per_step: float = math.nan  # largest impulse of a step in N s over μN, if independent of the step
+    per_step: float = math.nan  # largest impulse of a step, divided by μN, in s, if independent of the step
 
     @property
     def fits(self) -> bool:
@@ -99,7 +101,7 @@ class Friction:
         return self.sure and self.shape == CONE and abs(self.strength - 1.0) < 0.1
 
     def force(self, slips: Complex) -> Complex:
-        """Return the force over μN for unit slips, shape (n,)."""
+        """Return the force/μN for unit slips, shape (n,)."""
         if self.shape == ELLIPSE:
             return _ellipse(np.array([self.along, self.across, self.axis]), slips)
         shape, size = next((s, s.sizes[self.shape]) for s in SHAPES if self.shape in s.sizes)
@@ -108,9 +110,9 @@ class Friction:
 
 
 def fitted(forces: FloatArray, error: float) -> Friction:
-    """Return the law of best fit to ``forces``, with their ``error`` over μN.
+    """Return the law that fits ``forces`` best, with their ``error``/μN.
 
-    The columns of ``forces`` are F_x and F_y over μN and the direction of slip, shape (n, 4).
+    The columns of ``forces`` are F_x/μN, F_y/μN and the direction of slip, shape (n, 4).
     """
     measured, slips = forces[:, :2] @ PLANE, forces[:, 2:] @ PLANE
     if np.max(np.abs(measured)) <= max(DISTINCT * error, FITS) and error < NEAR:

@@ -151,7 +151,7 @@ def slides(
 ) -> FloatArray:
     """Return, for each slide, the numbers in the columns above, shape (n, 15).
 
-    They are the mean friction force over μN, the mean directions of slip and position, the conditions (mass, load,
+    They are the mean friction force/μN, the mean directions of slip and position, the conditions (mass, load,
     mean slip speed, disc speed, distance from the axis), the initial speed in m/s as given and as measured, the error
     of the force due to the declared precision, and the share of the slip that friction leaves.
     """
@@ -225,7 +225,7 @@ def pulled(engine: Engine, pulls: Sequence[float], tolerance: float) -> FloatArr
 SWING = PinOnDisc(mass=1.0, stiffness=4.0, damping=0.0, friction_force=FRICTION, disc_speed=0.0, offset=0.0)
 """A block on a spring; μN stretches the spring by 5 cm."""
 
-SECOND_PULL = 1.03  # load over μN at the second release
+SECOND_PULL = 1.03  # load/μN at the second release
 RATE = 2.0  # natural frequency of ``SWING`` in rad/s
 
 
@@ -287,7 +287,7 @@ SUPPORTS = {
 
 
 def supports(engine: Engine, tolerance: float) -> FloatArray:
-    """Return the change of velocity due to each of ``SUPPORTS`` over the exact one."""
+    """Return the change of velocity due to each of ``SUPPORTS``, divided by the exact one."""
     times = np.array([0.0, SETTLES_FOR, SLIDES_FOR])
     settled = _settled(engine, [(*motion, times) for motion in SUPPORTS.values()], tolerance, 1e-9)
     return np.array([_share(ended[2:], exact[2:], begun[2:]) for begun, ended, exact in settled])

@@ -45,7 +45,7 @@ class Row:
     motions: dict[str, Motion] = field(default_factory=dict)
     gaps: dict[str, str] = field(default_factory=dict)  # reasons of parts without a result
     not_simulated: tuple[str, ...] = ()
-    seconds: float = 0.0  # of wall-clock time
+    seconds: float = 0.0  # wall-clock time
 
     @functools.cached_property
     def remarks(self) -> tuple[Remark, ...]:

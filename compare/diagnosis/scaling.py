@@ -24,7 +24,7 @@ STOPS = 1e-3  # the same for a body that stops
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
 POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
-FEWEST = 3  # least number of slides beyond a threshold
+FEWEST = 3  # smallest number of slides beyond a threshold
 Curve = Callable[[FloatArray], FloatArray]
 
 VARIABLES = ("mass", "friction force", "slip speed", "disc speed", "distance from the axis")
@@ -37,7 +37,7 @@ class Scales:
     """Forces on slides over wide ranges."""
 
     conditions: FloatArray  # (n, 5): the ``VARIABLES`` in ``UNITS``; the disc speed is 0 on a plane at rest
-    forces: FloatArray  # (n, 2): mean friction force over μN
+    forces: FloatArray  # (n, 2): mean friction force/μN
     coarser: FloatArray  # (n, 2): the same at the rung before
     slips: FloatArray  # (n, 2): mean direction of slip
     radial: FloatArray  # (n, 2): mean direction from the axis to the body

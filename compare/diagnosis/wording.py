@@ -32,10 +32,10 @@ ALIKE = 0.1
 
 VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
-CHATTERS = 3.0  # least ratio of velocity to creep of a block that chatters
+CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
 MOTION, MASS, DAMPED = "Wrong motion", "Wrong mass", "Hidden damping"
-"""Beginnings of a verdict about other parts than friction."""
+"""Beginnings of a verdict that does not concern friction."""
 
 
 class Remark(NamedTuple):

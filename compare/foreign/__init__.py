@@ -29,14 +29,14 @@ class Case:
     """A motion and the quantity that is compared, complex numbers in m."""
 
     title: str
-    sentence: str  # of the claim
+    sentence: str  # the claim's
     system: System
     start: tuple[float, ...]
     times: FloatArray
     quantity: Callable[[Trajectory], Quantity]
     resolution: float  # a tenth of the change due to another friction law or to a release
-    formula: Callable[[], Quantity] | None = None  # of the exact quantity; None for that of the reference
-    equation: str = ""  # of the paper, for ``formula``
+    formula: Callable[[], Quantity] | None = None  # closed form of the quantity; None: from the reference
+    equation: str = ""  # number in the paper, for ``formula``
 
     @property
     def kind(self) -> Kind:

@@ -101,7 +101,7 @@ class Axis:
         if not math.isfinite(self.high - self.low):
             raise ValueError(f"axis {self.name} from {self.low:g} to {self.high:g}: the range must be finite")
         if not 2 <= self.points <= MOST_POINTS:
-            raise ValueError(f"axis {self.name} with {self.points} points: there must be 2 to {MOST_POINTS}")
+            raise ValueError(f"axis {self.name} with {self.points} points: it must have 2 to {MOST_POINTS}")
 
     @classmethod
     def parse(cls, text: str, kind: str, names: Iterable[str]) -> Axis:

@@ -36,7 +36,7 @@ from compare.sweep.files import Files, is_remote, pack, store_errors, unpacked
 from compare.sweep.plan import Numbers, Plan, count, plan_as_json, plan_from_json
 from compare.sweep.quantities import RESULTS, components
 
-SMALL = 1_000_000  # least number of trajectories of a finished store that remains a folder
+SMALL = 1_000_000  # smallest number of trajectories of a finished store that remains a folder
 MOST_NAMED = 10
 ROUND = "round-{}"
 

@@ -79,7 +79,7 @@ class Drivetrain:
 
     @property
     def friction_radius(self) -> float:
-        """Torque over friction force of slipping facings under uniform pressure, in m."""
+        """Torque divided by friction force of slipping facings under uniform pressure, in m."""
         ri, ro = self.inner_radius, self.outer_radius
         return 2.0 / 3.0 * (ri * ri + ri * ro + ro * ro) / (ri + ro)
 

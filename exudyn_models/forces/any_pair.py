@@ -156,9 +156,9 @@ def derivatives_on_nodes(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return derivatives on the nodes of friction given as a function of the slip, and the forces on the nodes.
 
-    The derivatives are weighted sums of those by coordinates and by velocities: of the forces, shape (n, n), and of
+    The derivatives are weighted sums of those in coordinates and in velocities: of the forces, shape (n, n), and of
     radius (m), P (m/s) and S (rad/s), shape (3, n). ``force`` (F_x, F_y, M) has the derivatives ``by_slip``, shape
-    (3, 4), by slip and angle; the gradient of P is ``slope`` times the force.
+    (3, 4), in slip and angle; the gradient of P is ``slope`` times the force.
     """
     cosine, sine = turned
     ux, uy, _ = slip_of_nodes(to_slip, velocities)
@@ -216,7 +216,7 @@ def slip_in_step(
     end: FloatArray,
     end_rates: FloatArray,
 ) -> tuple[float, float, float, float, float]:
-    """Return P (m/s) at both ends of a step and of the change in between, and S and radius at the end."""
+    """Return P (m/s) at both ends of a step and P of the change in between, and S and radius at the end."""
     to_slip, _, (cosine, sine), (x, y) = slip_and_place(kinds, end)
     angle = math.atan2(sine, cosine)
     ux, uy, spin = slip_of_nodes(to_slip, end_rates)

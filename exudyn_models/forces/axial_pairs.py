@@ -30,7 +30,7 @@ from exudyn_models.forces.slip_kinematics import GROUND, NO_MOUNTS, ROTOR, SIZES
 from reference_model.systems import FloatArray
 
 FREE = 1e-12
-"""Least capacity in one direction, relative to the other, so that rounding does not release a one-way clutch."""
+"""Smallest ratio of the capacities in both directions, so rounding does not release a one-way clutch."""
 
 ROUNDING = 1e-12
 """Friction, relative to the largest in a run, that a slack spring may show as the load of an open contact."""
@@ -143,7 +143,7 @@ SLIDING = (Mode.BACKWARD, Mode.FORWARD)
 class AxialStick:
     """Friction between two bodies that turn about one axis, in one mode at a time.
 
-    ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static over
+    ``reference``, shape (n,), contains the reference coordinates of both nodes, ``static_ratio`` is static divided by
     sliding friction, >= 1, and ``locks`` are the object numbers of the constraints, one for each direction of slip.
     ``running`` is True while ``solve_dynamic`` runs, the only solver that switches modes. ``idle`` contacts rest in a
     mode of sliding, because locked contacts and joints hold them. Their share of the load is undetermined; on one
@@ -178,7 +178,7 @@ class AxialStick:
         self.locks = tuple(locks)
 
     def renew(self) -> None:
-        """Use the present load and coefficient, which this class asks for each time."""
+        """Use the present load and coefficient; nothing to do here, because every call reads them."""
 
     @property
     def visible_mode(self) -> Mode:
@@ -186,7 +186,7 @@ class AxialStick:
         return Mode.LOCKED if self.idle or self.mode is None else self.mode
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the derivatives of S by the nodes' velocities, at coordinates without reference values."""
+        """Return the derivatives of S in the nodes' velocities, at coordinates without reference values."""
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
     def rows(self, coordinates: FloatArray) -> FloatArray:
@@ -257,7 +257,7 @@ class AxialStick:
         return np.array([0.0, 0.0, moment])
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return moment over capacity: 1 while the contact slides, 0 while it is open."""
+        """Return moment divided by capacity: 1 while the contact slides, 0 while it is open."""
         if self.mode == Mode.LOCKED:
             return 1.0 - self.unused(self.limits(t), self.held_moment(mbs))
         return 1.0 if self.slides else 0.0

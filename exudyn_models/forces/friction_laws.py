@@ -202,7 +202,7 @@ def ring_friction_derivatives(
     disc_spin: float,
     contact: Contact,
 ) -> FloatArray:
-    """Return the derivatives of (F_x, F_y, M, M_master) by the first seven arguments, shape (4, 7).
+    """Return the derivatives of (F_x, F_y, M, M_master) in the first seven arguments, shape (4, 7).
 
     If points creep as a whole, these contain a ``SECANT`` share, so Newton's method converges.
     """
@@ -231,7 +231,7 @@ def ring_friction_derivatives(
 def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return F_x, F_y and the derivatives of (F_x, F_y, M) by (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) in (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
     if contact[1] <= CONTINUOUS:
         return _derivatives_of_circles(ux, uy, spin, contact)
     return _derivatives_of_points(ux, uy, spin, angle, contact)
@@ -327,7 +327,7 @@ def _derivatives_of_circles(
     radius, density, friction, epsilon, _, inner = contact
     speed = math.sqrt(ux * ux + uy * uy)
     ex, ey = (ux / speed, uy / speed) if speed > 0.0 else (1.0, 0.0)
-    # At rest the slope depends on the slip to come; this one is without rotation.
+    # At rest the slope depends on the direction of the next slip; this one assumes no rotation.
     size = speed if speed > 0.0 or spin != 0.0 else 1.0
     by_speed, by_spin = slip_potential_gradient(size, abs(spin), inner, radius, density)
     by_speed_twice, mixed, by_spin_twice = slip_potential_hessian(size, abs(spin), inner, radius, density)

@@ -33,8 +33,9 @@ Coefficient: TypeAlias = NumberOrFunction | Sequence[Sequence[float]] | FloatArr
 class LoadAndCoefficient:
     """Friction coefficient μ and normal load N (in N) of a contact, which may be changed between runs.
 
-    They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static over sliding
-    friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a function takes
+    They are those of ``add_ring_friction``, for ``plates`` equal contacts; ``static_ratio`` is static divided by
+    sliding friction. The μN of ``contact`` is ignored. Raises ``ValueError`` if a number is out of range or a
+    function takes
     other arguments; in a run, if a function returns an invalid number.
     """
 
@@ -144,7 +145,7 @@ def _number_or_function(name: str, value: NumberOrFunction, unit: str) -> float 
 def _checked_static_ratio(value: float) -> float:
     ratio = finite_number("static_ratio", value)
     if ratio < 1.0:
-        raise ValueError(f"static_ratio = {ratio:g}: it must be >= 1, static over sliding friction")
+        raise ValueError(f"static_ratio = {ratio:g}: static divided by sliding friction must be >= 1")
     return ratio
 
 

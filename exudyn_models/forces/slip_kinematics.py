@@ -1,6 +1,6 @@
 """Slip as a linear map of the velocities of two nodes, for all kinds of nodes.
 
-The slip u of the disc's centre over the master, in the master body's axes, and the relative spin S about the master's
+The slip u of the disc's centre on the master, in the master body's axes, and the relative spin S about the master's
 axis are J(q)·q̇. A force F and a moment M on the disc have the power F·u + M·S, so the generalised forces on both
 nodes are Jᵀ·(F, M): −F and −M − d×F on a master at the distance d. This conserves momentum and angular momentum.
 

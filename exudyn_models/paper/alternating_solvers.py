@@ -178,8 +178,8 @@ class _Turns:
     def _fine_up_to(self, run: Steps, step: float, crossing: float | None) -> int | None:
         """Return the index of the last step before smaller steps are needed, or None.
 
-        A release at ``crossing`` needs them, and a load that the error of the creep could push across the friction
-        limit.
+        They are needed by a release at ``crossing``, or by a load so close to the friction limit that the error of
+        the creep could cross it.
         """
         error = (self.contact.system.disc_speed * step) ** 2
         unclear = error > GRAZING
@@ -303,7 +303,7 @@ class _Slip:
 
 
 class _Creep:
-    """Watches whether ``part`` still creeps and, if it is a point, whether the disc pivots at a similar speed."""
+    """Watches whether ``part`` still creeps and, for a point, whether the disc still pivots at a similar speed."""
 
     def __init__(self, motion: _Turns, state: FloatArray, part: Part) -> None:
         self.creeping, self.seen, self.part = motion.friction.creeping, motion.contact.in_master_axes, part

@@ -70,9 +70,9 @@ class RegularisedContact:
         return np.array([complex(x, y) for x, y, _ in self._places])
 
     def slip_ratios(self, states: FloatArray) -> FloatArray:
-        """Return slip speeds over their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
+        """Return slip speeds divided by their viscous limits, shape (n, 1 or 1 + points), for n ``states``.
 
-        The first column is the mean slip speed over ε, the others are those of the points over δ.
+        The first column is the mean slip speed/ε, the others are the points' slip speeds/δ.
         """
         system, epsilon, omega = self.system, self.epsilon, self.system.disc_speed
         if not isinstance(system, DiscOnDisc):
@@ -105,10 +105,10 @@ class RegularisedContact:
         return np.asarray([growths.mean() / epsilon, *(growths / self.point_epsilon)])
 
     def load_ratios(self, states: FloatArray, accelerations: FloatArray) -> FloatArray:
-        """Return the load at rest over the friction limit, shape (n,), for a system that creeps as a whole.
+        """Return the load at rest divided by the friction limit, shape (n,), for a system that creeps as a whole.
 
-        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep over
-        μN·P.
+        It is P/ε, the share of the viscous friction, plus the power of the forces that change and damp the creep,
+        divided by μN·P.
         """
         if self.system.friction_force == 0.0:
             return np.full(len(states), np.inf)

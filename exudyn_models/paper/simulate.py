@@ -48,7 +48,7 @@ SMALLEST_STEP_TOLERANCE = 1e-13
 """Smallest useful tolerance of DOPRI5; below it rounding spoils the error estimate."""
 
 LARGEST_STEP = 6.0
-"""Largest step of DOPRI5 over tolerance^(1/5) time scales, for errors ~ tolerance."""
+"""Largest step of DOPRI5 in units of tolerance^(1/5) time scales, for errors ~ tolerance."""
 
 NEWTON_TOLERANCE = 1e-9
 """Tolerance of Newton's residual, relative to the forces at the start."""
@@ -78,7 +78,7 @@ def simulate(
         Increasing times in s. States are interpolated between the solver's steps, which depend only on the first and
         the last time.
     tolerance
-        Accuracy to aim at, relative to the motion's own length and speed, see ``nondimensional``. While the contact
+        Requested accuracy, relative to the motion's own length and speed, see ``nondimensional``. While the contact
         slips, "explicit" keeps the error near it. Stick and pivoting add errors of first order in the regularisation.
     regularisation
         ε in m/s below which friction is viscous; by default 100·tolerance times the motion's own speed, reported as

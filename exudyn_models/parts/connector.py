@@ -26,7 +26,7 @@ def add_connector(
     """Add a connector between ``nodes``; return its ``ObjectIndex``.
 
     ``force`` returns the forces on all coordinates. ``jacobian`` returns the sum of the derivatives of the *negative*
-    forces by coordinates and by velocities, each multiplied by the factor passed to it.
+    forces in coordinates and in velocities, each multiplied by the factor passed to it.
     """
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in nodes)
     return mbs.AddObject(

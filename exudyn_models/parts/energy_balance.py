@@ -108,7 +108,7 @@ def add_energy_balance(
     unit = positive_number("unit", unit, "J")
     for name in gains:
         if name in losses:
-            raise ValueError(f"{name!r} is both a gain and a loss: it must be one of them")
+            raise ValueError(f"{name!r} names both a gain and a loss; use two names")
     _check_springs(mbs, [spring for spring in stored if isinstance(spring, _SpringEnergy)])
     works_sensor = _add_works(mbs, {**gains, **losses}, unit)
     energy_sensor = _add_energy(mbs, stored)

@@ -103,7 +103,7 @@ class RingFriction:
 
         - ``"transmitted_moment"``: M on the disc about the contact's centre, along the master's axis, in N m.
         - ``"radial_force"``: F on the disc in N, three components in global axes.
-        - ``"centre_slip"``: |u| of the disc's centre over the master, in m/s.
+        - ``"centre_slip"``: |u| of the disc's centre on the master, in m/s.
         - ``"rim_slip"``: R·(φ̇ − ω) of the rim, in m/s, of either sign.
         - ``"relative_spin"``: S = φ̇ − ω in rad/s.
         - ``"capacity_share"``: share of the friction capacity in use: 1 in slip, P/ε in creep, and 0 without
@@ -112,7 +112,7 @@ class RingFriction:
           sideways; −1 slipping with the disc slower; 2 open, without load. Within ``BAND`` of full capacity the mode
           stays as it was, so it does not flicker.
         - ``"power"``: heating power of friction, in W.
-        - ``"heat"``: its integral since the start, in J, a coordinate that the solver integrates with all others.
+        - ``"heat"``: its integral since the start, in J; the solver integrates it with all coordinates.
 
         ``options`` are those of Exudyn's sensors; by default they store values for ``mbs.GetSensorStoredData``.
         Raises ``ValueError`` for other quantities.

@@ -69,8 +69,8 @@ def add_native_friction(
     _, places, epsilon = checked_contact(regularisation, contact_radius, contact_points)
     if places is None:
         raise ValueError(
-            "contact_points = None: Exudyn's built-in contact supports points only; it must be a whole number, "
-            "for example 6, or places of points"
+            "contact_points = None: Exudyn's built-in contact supports only points; pass their number, for example "
+            "6, or a list of (x, y, share)"
         )
     coefficient = checked_not_negative("friction_coefficient", friction_coefficient, "")
     friction_force = coefficient * checked_not_negative("normal_load", normal_load, " N")
@@ -112,7 +112,7 @@ def _add_sphere(
 ) -> Any:
     penetration = size / 2.0
     height = penetration - size
-    vectors: Any = exu.Vector3DList  # type hints as for items
+    vectors: Any = exu.Vector3DList  # its type hint rejects valid lists
     return mbs.AddObject(
         items.ObjectContactSphereTriangle(
             markerNumbers=markers,

@@ -1,4 +1,4 @@
-"""Dry friction between two bodies on a ring or at points of it: one part for pins, discs and drivetrains.
+"""Dry friction between two bodies on a ring, at points or on an annulus, for pins, discs and drivetrains.
 
 *Contact.* It is a circle about the disc's node or marker, n points on it that turn with the disc (point i at the
 angle φ + 2πi/n, with equal shares of the normal load N), points anywhere with any shares, or an annulus under a
@@ -22,11 +22,11 @@ through friction and presses nothing together.
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
 They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
-derivatives by all arguments except time, and none through sensors.
+derivatives in all arguments except time, and none through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
 ``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that
-reverses twice within a step goes undetected. Each of several points sticks alone, with its own slip speed, unless
+reverses twice within a step goes undetected. Several points stick separately, each with its own slip speed, unless
 joints hold the disc on the contact's axis.
 """
 
@@ -124,7 +124,7 @@ def add_ring_friction(
     contact_points : int, sequence of (float, float, float) or None
         n >= 1 points on the circle; or x, y in m and load share of at least two points, without radii.
     static_ratio : float
-        Static over sliding friction, >= 1; it falls between ε and 2ε, an effect of first order in ε.
+        Static divided by sliding friction, >= 1; friction falls between ε and 2ε, an effect of first order in ε.
     pressure : {"uniform", "wear"} or callable
         Pressure of an annulus: uniform, ∝ 1/r, or a smooth function >= 0 of r in m, in any unit.
     thermal_node : ThermalNode, optional
@@ -256,9 +256,10 @@ def _checked_geometry(
         points = density_of(pressure, last, radius)
         epsilon = positive_number("regularisation", regularisation, "m/s")
     if held is not None and held not in range(1, 1 + points):
-        raise ValueError(
-            f"held = {held}: it must be from 1 to the number of points, {contact_points}, or None"
+        allowed = (
+            f"None, or the number of a point, 1 to {points}" if points > 0 else "None without contact points"
         )
+        raise ValueError(f"held = {held}: it must be {allowed}")
     return radius, points, 1.0, epsilon, NONE_HELD if held is None else int(held) - 1, last
 
 
@@ -271,9 +272,13 @@ def checked_contact(
         places = checked_places("contact_points", contact_points)
         if contact_radius is not None:
             raise ValueError(
-                f"contact_radius = {contact_radius}: it cannot be combined with places of points; leave it out"
+                f"contact_radius = {contact_radius}: it cannot be combined with a list of points; leave it out"
             )
         return max(math.hypot(x, y) for x, y, _ in places), places, epsilon
+    if contact_radius is None:
+        raise ValueError(
+            "contact_radius = None: pass contact_radius, both radii of an annulus, or a list of points"
+        )
     radius = finite_number("contact_radius", contact_radius)
     if radius < 0.0:
         raise ValueError(f"contact_radius = {radius:g} m: it must be >= 0")
@@ -283,8 +288,8 @@ def checked_contact(
         return radius, None, epsilon
     if isinstance(contact_points, bool) or contact_points != int(contact_points) or contact_points < 1:
         raise ValueError(
-            f"contact_points = {contact_points}: it must be a whole number >= 1, places of points, or None for the "
-            "continuous ring"
+            f"contact_points = {contact_points}: it must be a whole number >= 1, a list of (x, y, share), or None "
+            "for the continuous ring"
         )
     return radius, ring_places(radius, int(contact_points) if radius > 0.0 else 1), epsilon
 

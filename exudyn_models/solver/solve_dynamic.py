@@ -205,7 +205,7 @@ def _check_constraints(mbs: Any, solver: Any) -> None:
     constraints = mbs.systemData.AEsize()
     if solver not in IMPLICIT and constraints > 0:
         raise ValueError(
-            f"solverType = {solver.name}: it is explicit and would ignore {constraints} constraint equations of the "
-            "model; use GeneralizedAlpha or TrapezoidalIndex2, or replace the constraints by springs, any "
-            "NodeRigidBodyEP, whose norm is one, by a NodeRigidBodyRotVecLG, and give contacts a regularisation"
+            f"solverType = {solver.name}: explicit solvers ignore constraints, and this model has {constraints}; use "
+            "GeneralizedAlpha or TrapezoidalIndex2, or replace joints by springs and NodeRigidBodyEP by "
+            "NodeRigidBodyRotVecLG, and give contacts a regularisation"
         )

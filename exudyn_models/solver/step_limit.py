@@ -99,7 +99,7 @@ def largest_stable_step(mbs: Any, solver_type: Any) -> float:
     """
     if solver_type.name not in INTERVALS:
         raise ValueError(
-            f"solver_type = {solver_type.name}: it must be one with a fixed step, {', '.join(INTERVALS)}"
+            f"solver_type = {solver_type.name}: it must be explicit with a fixed step: {', '.join(INTERVALS)}"
         )
     if not mbs.systemIsConsistent:
         mbs.Assemble()
@@ -145,8 +145,8 @@ class StepCheck:
             return
         self.next_time = math.inf
         warnings.warn(
-            f"{self._solver} is unstable with steps of {self._step:.3g} s while the contacts of this model stick, "
-            f"with their friction at t = {t:.6g} s, and stable below {limit:.3g} s: use numberOfSteps >= "
+            f"{self._solver} with steps of {self._step:.3g} s is unstable while the contacts of this model stick; "
+            f"with the friction at t = {t:.6g} s the limit is {limit:.3g} s: use numberOfSteps >= "
             f"{math.ceil(self._span / limit):,}, a larger regularisation, DOPRI5 with automatic steps, or "
             "an implicit solver",
             RuntimeWarning,

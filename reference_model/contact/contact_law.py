@@ -56,7 +56,7 @@ class Shares(NamedTuple):
 
 
 class Slopes(NamedTuple):
-    """Derivatives of :class:`Shares` by slip speed U (m/s) and relative spin S (rad/s)."""
+    """Derivatives of :class:`Shares` with respect to slip speed U (m/s) and relative spin S (rad/s)."""
 
     resistance_by_slip: float
     resistance_by_spin: float

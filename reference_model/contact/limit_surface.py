@@ -134,7 +134,7 @@ class PointsLimit:
         Both are about the centre of the load. Where the force alone is too large the squares continue as (1 −
         |F|)·R², so they pass through zero with a finite slope.
         """
-        # A point is the pivot if it can supply the force that the other points leave over.
+        # A point is the pivot if it can supply the remaining force.
         at_vertex = abs(forces[:, np.newaxis] - self._pulls) <= self.shares
         pivots = at_vertex.any(axis=1)
         too_much = abs(forces) >= 1.0

@@ -95,7 +95,7 @@ class Points:
                 )
             direction = velocity / speed
             across = 1j * direction
-            # Derivatives of the point's slip by u_x, u_y, S, φ. Only the component across the slip changes friction.
+            # Derivatives of the point's slip in u_x, u_y, S, φ. Only the component across the slip changes friction.
             by_unknowns = np.array((1.0, 1j, -1j * arm, relative_spin * arm))
             turning = -share * ((by_unknowns * across.conjugate()).real / speed)
             friction = turning * across

@@ -118,7 +118,7 @@ def _checked_parameter(system: System, name: str, values: ArrayLike) -> FloatArr
     allowed = [field.name for field in fields(system) if field.name not in (*UNSUPPORTED, "contact_points")]
     if name not in allowed:
         raise ValueError(
-            f"parameters: {name!r} cannot differ between trajectories, only {', '.join(allowed)}"
+            f"parameters: {name!r} cannot vary between trajectories; choose from {', '.join(allowed)}"
         )
     array = _numbers(name, values)
     if array.ndim != 1 or len(array) == 0:

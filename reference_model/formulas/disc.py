@@ -159,7 +159,7 @@ def polar_angle(disc: DiscOnDisc, distance: float, alpha: float) -> float:
 
 
 def positions_by_26(disc: DiscOnDisc, *, as_printed: bool = False) -> tuple[Position, ...]:
-    """Solve (26) for all its α and return the positions by (24), by increasing |α|.
+    """Return all solutions of (26) as positions (24), in order of increasing |α|.
 
     The corrected (26) gives the equilibria of :class:`reference_model.contact.contact_law.ThreeTermRing`. Raises
     ``ValueError`` if stiffness, disc speed, shaft damping or offset is zero.
@@ -237,7 +237,7 @@ def whirl_at(disc: DiscOnDisc, alpha: float, contact: IsotropicContact | None = 
 def whirl_arm(disc: DiscOnDisc, contact: IsotropicContact) -> Callable[[float, float], float]:
     """Return b|ω − Ω|/μN in m of the whirl as a function of slip and rim >= 0, whose ratio is U : R|ω − φ̇|.
 
-    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit at slip = 0, b|ω − Ω| over the onset load. Raises
+    It is M + b(|ω| − k)/(βkR)·F·rim/slip, with its limit at slip = 0, b|ω − Ω| divided by the onset load. Raises
     ``ValueError`` if stiffness or damping is zero, |ω| <= k, or the support is not linear.
     """
     require_linear_support(disc)

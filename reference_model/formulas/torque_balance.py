@@ -31,7 +31,7 @@ ROUNDING = 8.0 * sys.float_info.epsilon
 
 
 def resting_positions(disc: DiscOnDisc, contact: IsotropicContact) -> Iterator[tuple[complex, float]]:
-    """Yield x + iy in m and the spin in rad/s of all equilibria in space with a sliding contact, by increasing W : U.
+    """Yield x + iy in m and the spin in rad/s of all sliding equilibria in space, in order of increasing W : U.
 
     Nothing is yielded if every position or every spin is an equilibrium.
 
@@ -133,7 +133,7 @@ def _spin(disc: DiscOnDisc, relative_spin: float) -> float:
 
 
 def _zeros(balance: OfRatio, allowed: OfRatio = lambda slip, rim: 1.0) -> Iterator[tuple[float, float]]:
-    """Yield the zeros (slip, rim) of ``balance``, by increasing rim : slip, where ``allowed`` >= 0.
+    """Yield the zeros (slip, rim) of ``balance`` with ``allowed`` >= 0, in order of increasing rim : slip.
 
     The larger of slip and rim is 1, to keep the relative accuracy. The halves meet at the kink of a ring's friction.
     """

@@ -142,7 +142,7 @@ class PointsBody(DiscBody):
         return self.begin_slip(t, own, self.slipping[i], point.pivoting_rates(own), point.leaving(own))
 
     def _share(self, y: Sequence[float], delays: FloatArray | float = 0.0) -> tuple[ComplexArray, float]:
-        """Return the force and moment that friction must hold, over μN/m and in the frame of the disc."""
+        """Return the force and moment that friction must hold, divided by μN/m, in the frame of the disc."""
         centre = self.motion.centre
         turns = np.exp(1j * centre.disc_speed * np.atleast_1d(delays))
         pulls = np.array([centre.pull(place, 0j) for place in (complex(y[0], y[1]) * turns).tolist()])

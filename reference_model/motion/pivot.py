@@ -2,7 +2,8 @@
 
 The coordinates are x, y, φ, r = κ(φ̇ − ω) and, while it slips, the velocity v of that point, which keeps its relative
 accuracy down to zero. Other points follow: v_j = v + i(r/κ)(a_j − a_i) with the arms a. The point accelerates by B +
-Gλ, where λ is its own friction over the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In slip
+Gλ, where λ is its own friction divided by the mass, B the acceleration without it, and G = 1 + (i·a_i)⊗(i·a_i)/κ². In
+slip
 λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, up to gq.
 """
 
@@ -37,7 +38,7 @@ class OnePoint:
 
     @property
     def most(self) -> float:
-        """Largest friction of the point over the mass, gq."""
+        """Largest friction of the point divided by the mass, gq."""
         return self.motion.centre.friction * self.contact.shares[self.point]
 
     def arm(self, angle: float) -> complex:

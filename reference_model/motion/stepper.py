@@ -33,7 +33,8 @@ PATIENCE = 15
 """Number of stiff explicit steps before an implicit method is tried; doubled if it does not pay."""
 
 SLOW_SPRINGS = 0.1
-"""Natural frequency in 1/T below which steps become more accurate: position errors are velocity errors over it."""
+"""Natural frequency in 1/T below which steps become more accurate: position errors are velocity errors divided by
+it."""
 
 LAST_TERM = 1e-3
 """Error of DOP853's interpolant as a share of its last term, as measured."""

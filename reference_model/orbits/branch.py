@@ -20,7 +20,7 @@ BRANCH_STEP = 0.08
 def whirl_branch(
     orbit: Orbit, until: float, *, step: float = BRANCH_STEP, samples: int = 64
 ) -> Iterator[Orbit]:
-    """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, by decreasing crossing x.
+    """Yield ``orbit``, a whirl or a modulated cycle, and its continuation to other loads, with decreasing crossing x.
 
     Each orbit is predicted from the two before it. The relative decrease of x is at most ``step``, halved if Newton's
     method fails, down to ``until`` > 0 in m. The load may rise or fall, and stick phases may appear. Raises
@@ -72,8 +72,9 @@ def last_whirl(
 ) -> Orbit:
     """Return the whirl at the smallest load with a whirl: the fold, where it meets the unstable whirl.
 
-    The branch is followed from the load of ``system`` towards the axis, to the minimum of the load over the crossing
-    x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends before.
+    The branch is followed from the load of ``system`` towards the axis, to the minimum of the load against the
+    crossing x. Arguments and errors are those of :func:`whirl_orbit`; ``RuntimeError`` also if the branch ends
+    before.
     """
     seek = functools.partial(whirl_orbit, system, simulate=simulate, tolerance=tolerance, precision=precision)
     orbit = seek(samples=2)

@@ -218,7 +218,7 @@ class StickSlipOrbit(Orbit):
 def stick_slip_orbits(
     pin: PinOnDisc, *, tolerance: float = 1e-12, samples: int = 256
 ) -> tuple[StickSlipOrbit, ...]:
-    """Return the periodic motions of ``pin`` with one stick phase per period, by increasing release angle.
+    """Return the periodic motions of ``pin`` with one stick phase per period, in order of increasing release angle.
 
     Stable orbits are stick-slip cycles. The stable set of a saddle, with a multiplier > 1, separates starts that lead
     to two other motions. There are no orbits without offset or friction, or on a disc at rest.

@@ -101,7 +101,7 @@ class ShootingProblem:
         return rotated(without_angle(end), -float(unknowns[TURN])) - unknowns[:PERIOD]
 
     def slopes(self, unknowns: FloatArray, miss: FloatArray, sought: list[int]) -> FloatArray:
-        """Return the derivatives of ``miss`` by the ``sought`` unknowns."""
+        """Return the derivatives of ``miss`` with respect to the ``sought`` unknowns."""
         step = math.sqrt(max(self.tolerance, self.precision))  # balances curvature and noise
         columns = []
         for i in sought:
@@ -139,7 +139,8 @@ class Orbit:
     """A periodic motion; its ``trajectory`` is one period at equally spaced times, both ends included.
 
     ``state``, shape (4,) or (6,), is the initial state, with the angle zero. ``period`` is in s. ``residual`` is the
-    distance between start and end over the size of the orbit. ``turn`` is the rotation about the axis in a period, in
+    distance between start and end relative to the size of the orbit. ``turn`` is the rotation about the axis in a
+    period, in
     rad, including whole turns; 0 if the motion recurs without rotation.
     """
 

@@ -28,7 +28,7 @@ QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
 
 
 def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None = None) -> FloatArray:
-    """Return the derivative of the right side of eq. 1 or 19 by the state for a sliding contact, (4, 4) or (6, 6).
+    """Return the Jacobian of the right side of eq. 1 or 19 in the state for a sliding contact, (4, 4) or (6, 6).
 
     Raises ``ValueError`` if a point of the contact is at rest, where Coulomb friction has no derivative; if the state
     is invalid or exactly at the stop of the support; or if a contact is given for a pin.
@@ -50,7 +50,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of u_x, u_y, S and φ by x, y, φ and by their rates.
+        # Derivatives of u_x, u_y, S and φ in x, y, φ and in their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]
@@ -161,11 +161,13 @@ def onset_load(disc: DiscOnDisc, contact: IsotropicContact | None = None) -> flo
     law = isotropic_contact_of(disc, contact, "the onset")
     speed, k = abs(disc.disc_speed), math.sqrt(Support.of(disc).tangent(0.0) / disc.mass)
     if disc.offset != 0.0:
-        raise ValueError(f"offset = {disc.offset:g} m: the centre rests on the axis only without an offset")
+        raise ValueError(
+            f"offset = {disc.offset:g} m: it must be 0, because otherwise the centre does not rest on the axis"
+        )
     if speed <= k:
         raise ValueError(
-            f"disc_speed = {disc.disc_speed:g} rad/s: the centred rotation is stable at every load up to the "
-            f"natural frequency {k:g} rad/s, in either sense"
+            f"disc_speed = {disc.disc_speed:g} rad/s: the centred rotation is stable at every load unless "
+            f"|disc_speed| exceeds the natural frequency {k:g} rad/s"
         )
     if disc.shaft_damping == 0.0 or disc.disc_speed == disc.shaft_speed:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Discs and rotors without support, and the momenta that friction between them must keep."""
+"""Discs and rotors without support, and the momenta that friction between them must conserve."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ rotations: Any = exudyn.rigidBodyUtilities
 
 
 def planar_body(mbs: Any, mass: float, inertia: float, position: list[float], velocity: list[float]) -> Any:
-    # Half of the position is the reference, so that a connector that forgets it is found out.
+    # Half of the position is in the reference coordinates, to expose a connector that omits them.
     half = [value / 2.0 for value in position]
     node = mbs.AddNode(
         items.NodeRigidBody2D(referenceCoordinates=half, initialCoordinates=half, initialVelocities=velocity)
@@ -102,7 +102,7 @@ def coordinates(mbs: Any, node: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def momenta(mbs: Any, bodies: list[tuple[Any, float, float]]) -> np.ndarray:
-    """Momentum in x, y and angular momentum about the origin."""
+    """Return the momentum in x and y, and the angular momentum about the origin."""
     total = np.zeros(3)
     for node, mass, inertia in bodies:
         (x, y, _), (vx, vy, spin) = coordinates(mbs, node)
@@ -140,7 +140,7 @@ def euler_body(
 
 
 def spatial_momenta(mbs: Any, node: Any, mass: float, inertia: Any) -> np.ndarray:
-    """Momentum and angular momentum about the origin, three components each, as Exudyn sees position and rotation."""
+    """Return momentum and angular momentum about the origin, (6,), from Exudyn's positions and rotations."""
     kinds = exu.OutputVariableType
     position, velocity, spin, rotation = (
         mbs.GetNodeOutput(node, kind)

@@ -1,4 +1,4 @@
-"""Two bodies of every kind, tilted and out of line, and what holds for whatever acts between them."""
+"""Two bodies of every kind, tilted and out of line, and properties of any interaction between them."""
 
 from itertools import product
 from typing import Any
@@ -29,9 +29,9 @@ KINDS = {
 SPATIAL = ("rotation vector", "Tait-Bryan")
 PAIRS = list(product(KINDS, repeat=2))
 EULER = "Euler parameters"
-"""For implicit solvers alone: their norm is a constraint."""
+"""Kinds for implicit solvers only, because a constraint keeps their norm."""
 
-# Mass, principal moments of inertia, position and rotation, velocity and turn rates: tilted and out of line.
+# Mass, principal moments of inertia, position, rotation, velocity and turn rates, all tilted and out of line.
 MASTER = (2.0, [0.5, 0.6, 0.7], [0.3, -0.2, 0.1, 0.2, -0.1, 0.1], [0.1, 0.05, -0.03, 0.02, 0.1, 2.0])
 DISC = (1.0, [0.012, 0.013, 0.02], [0.5, 0.1, 0.35, -0.15, 0.1, 0.4], [-0.2, 0.3, 0.02, 0.1, -0.1, -1.0])
 
@@ -62,7 +62,7 @@ def momenta_and_energy(mbs, kinds, nodes, bodies=(MASTER, DISC)):
 
 
 def conserved(kinds):
-    """Components of momentum and angular momentum that no ground and no bearing of a rotor or plane takes up."""
+    """Return the components of momentum and angular momentum that no ground, bearing or plane absorbs."""
     if None in kinds:
         return []
     if set(kinds) <= {*SPATIAL, EULER}:

@@ -13,7 +13,7 @@ class Make(NamedTuple):
     friction: float = 1.0  # factor of friction; a negative one accelerates the slip
     slip_width: float = 0.0  # lower limit of ε in m/s, for any tolerance
     creep_speed: float = 0.0  # slip speed in m/s of full friction during stick, if larger than ε
-    static_ratio: float = 1.0  # holding force of friction during stick, over μN
+    static_ratio: float = 1.0  # holding force of friction during stick, divided by μN
     release_delay: float = 0.0  # in s
     release_late: float = 0.0  # relative to the duration of stick
     weakening: float = 0.0  # relative loss of the friction force per 1 m/s of slip speed

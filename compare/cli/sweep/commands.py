@@ -65,7 +65,7 @@ def sweep_command() -> None:
     by chunk into a Zarr store of labelled arrays, which xarray can open. After an interruption, repeat the command
     with --resume.
 
-    The exit status is 0 if the plain reference confirms a sample of the ends, and 1 if it does not or the work was
+    The exit status is 0 if the plain reference confirms a sample of outcomes, and 1 if it does not or the work was
     lost. It is 2 for bad input, 3 if more than half of the trajectories are undecided, and 130 after Ctrl-C.
 
     \b
@@ -87,8 +87,8 @@ def sweep_basin(
 ) -> int:
     """Compute basins of attraction in a plane of initial states.
 
-    The results are the end of each start and the share of each end. The command begins with a coarse grid and refines
-    it where neighbouring points end differently.
+    The results are the outcome (final motion) of each start and the share of each outcome. The command begins with a
+    coarse grid and refines it where neighbouring points have different outcomes.
 
     \b
     Default axes:
@@ -98,7 +98,6 @@ def sweep_basin(
     Examples:
       friction-discs sweep basin pin --x x=-0.3:0.5:1000 --y vx=-0.4:0.4:1000
       friction-discs sweep basin pin --random 20000 --seed 7 --output shares
-      friction-discs sweep basin disc --set contact_points=6 --start spin=1.2 --x x=-0.2:0.2:129 --y y=-0.2:0.2:129
     """
     from compare.sweep.plan import Basin, RandomBasin
     from compare.sweep.quantities import Axis, components
@@ -121,7 +120,7 @@ def sweep_basin(
 @sweep.command("map", cls=Command)
 @with_options(Request, output="map")
 def sweep_map(request: Request, starts: Starts = None, x: XAxis = "", y: YAxis = "") -> int:
-    """Map the ends of motions over a plane of two parameters.
+    """Map the outcomes over a plane of two parameters.
 
     The map also shows the theory's boundaries.
 
@@ -183,10 +182,10 @@ def sweep_uncertainty(request: Request, start: Start = "", vary: Varied = None, 
 def sweep_continuation(
     request: Request, start: Start = "", x: XAxis = "", vary: Varied = None, samples: Values = 1000
 ) -> int:
-    """Follow the ends of random starts along one parameter.
+    """Follow the outcomes of random starts along one parameter.
 
-    The starts are the same at each value, and the command connects their ends into branches. The figure also shows
-    the stable and unstable motions that formulas and continuation give.
+    The starts are the same at each value, and the command connects the final motions into branches. The figure also
+    shows the stable and unstable motions that formulas and continuation give.
 
     \b
     Default axis and starts:
@@ -299,7 +298,7 @@ def sweep_shock(settings: Settings = None, tolerance: Tolerance = 1e-9) -> int:
     """Find the smallest shock that moves a pin to the whirl.
 
     The pin starts in its self-centred equilibrium. The shock is the smallest change of velocity that reaches the
-    boundary of the basin, the stable manifold of a stick–slip orbit. A bisection by simulated motions checks it.
+    boundary of the basin, the stable manifold of a stick–slip orbit. A bisection with simulated motions checks it.
 
     \b
     Example:

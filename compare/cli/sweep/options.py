@@ -64,7 +64,7 @@ Coarse = Annotated[
     int | None,
     typer.Option(
         metavar="N",
-        help="Least number of points along each axis of the first grid.",
+        help="Minimum number of points along each axis of the first grid.",
         parser=whole("coarse", 2, MOST_SAMPLES),
         show_default=str(COARSE),
     ),
@@ -106,10 +106,10 @@ Until = Annotated[
     float | None,
     typer.Option(
         metavar="T",
-        help="Time limit of each trajectory in s. A trajectory whose end is not certain by then is undecided. A "
+        help="Time limit of each trajectory in s. A trajectory whose outcome is not certain by then is undecided. A "
         "longer limit decides most of these, and costs nothing for the others.",
         parser=positive("until", "s"),
-        show_default=f"{UNTIL:g}; {UNTIL_ON_POINTS:g} for a disc on single points",
+        show_default=f"{UNTIL:g}; {UNTIL_ON_POINTS:g} for a disc on points",
     ),
 ]
 Seed = Annotated[int, typer.Option(metavar="N", help="Random seed.", parser=whole("seed", 0, 2**63 - 1))]

@@ -40,7 +40,7 @@ class _Model(Model):
             self.solver = getattr(newton.solvers, f"Solver{solver}")(self.model)
             self.now, self.next = self.model.state(), self.model.state()
             self.contacts, self.control = self.model.contacts(), self.model.control()
-        speeds = self.now.body_qd.numpy()  # of each body: velocity, then angular velocity
+        speeds = self.now.body_qd.numpy()  # velocity and angular velocity of each body
         speeds[plate, 5], speeds[ball, :2] = system.disc_speed, (vx, vy)
         self.plate, self.ball, self.angle = plate, ball, 0.0
         self.now.body_qd.assign(speeds)

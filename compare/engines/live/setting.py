@@ -75,8 +75,8 @@ class Setting:
     name: str
     says: str
     model: type[Model]
-    options: Mapping[str, Any] = field(default_factory=dict)  # of the model
-    finest: float = 0.0  # least step in units of 1/max(k, ω)
+    options: Mapping[str, Any] = field(default_factory=dict)  # options of the model
+    finest: float = 0.0  # smallest step in units of 1/max(k, ω)
     step: float | None = 2e-3
     precision: float = 0.0
 

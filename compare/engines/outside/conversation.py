@@ -41,7 +41,7 @@ LAST_LINES, LAST_BYTES = 3, 4000  # lines shown and bytes kept of a program's st
 POSIX = os.name == "posix"
 
 END_WITH_US = 'read -r _; kill -s KILL -- "-$0"'
-"""Shell command that waits for the end of its standard input, when this process ends, even if killed."""
+"""Shell command that kills the program when its standard input ends, because this process ended or was killed."""
 
 
 class ProgramError(RuntimeError):

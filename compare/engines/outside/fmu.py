@@ -40,7 +40,7 @@ The error of the creep must fall with the tolerance.
 """
 
 LEAST_CREEP = 1e-12  # regularisation speed in m/s for a motion without speed
-MOST_BYTES = 2**30  # of an unpacked archive
+MOST_BYTES = 2**30  # largest size of an unpacked archive
 
 
 class FmuError(RuntimeError):

@@ -19,7 +19,7 @@ from reference_model.systems import FloatArray
 ROTOR, PLANAR = "rotor", "planar"
 SPATIAL = {"rotation vector": "NodeRigidBodyRotVecLG", "Tait-Bryan": "NodeRigidBodyRxyz"}
 KINDS = (ROTOR, PLANAR, *SPATIAL)
-"""Kinds of nodes. The bearing of a rotor takes up every moment except that about its axis."""
+"""Kinds of nodes. The bearing of a rotor absorbs every moment except that about its axis."""
 
 DRIVETRAINS = tuple(
     (engine, KINDS[1 + (i + j) % 3], vehicle)
@@ -134,7 +134,7 @@ def momentum(
 
 
 def _relative_drift(kinds: Sequence[str], momenta: FloatArray) -> FloatArray:
-    """Return the drift about the conserved axes over the largest momentum of one body, shape (n, axes)."""
+    """Return the drift about the conserved axes divided by the largest momentum of one body, shape (n, axes)."""
     total = momenta.sum(axis=1)
     kept = slice(None) if set(kinds) <= set(SPATIAL) else slice(2, 3)
     return np.asarray((total - total[0])[:, kept] / np.abs(momenta).max())

@@ -180,7 +180,7 @@ def towards_zero(values: FloatArray) -> FloatArray:
 
 @functools.lru_cache(maxsize=2)
 def over_speed(engine: Engine, speeds: Sequence[float]) -> Measurement:
-    """Return the means of the whirls (m), shape (n, 2), along the branch from high to low speed."""
+    """Return the means of the whirls (m), shape (n, 2), on the branch from high to low speed."""
     found, guess = [], None
     for speed in reversed(speeds):
         guess = whirl_of(engine, pin_at(speed), SHIFT_TOLERANCE, guess)

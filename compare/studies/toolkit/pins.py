@@ -87,7 +87,7 @@ def resting(
     at: Mapping[str, Sequence[Any]],
     **more: Any,
 ) -> Measured:
-    """Compare pins that start at rest near their equilibrium with it at ``times`` (s); ``at`` names the pins."""
+    """Compare pins that start at rest nearby with the equilibrium at ``times`` (s); ``at`` names the pins."""
     places = np.array([equilibrium_position(pin) for pin in pins])
     motions = [
         (pin, (x + BESIDE, y, 0.0, 0.0), [0.0, *times]) for pin, (x, y) in zip(pins, places, strict=True)

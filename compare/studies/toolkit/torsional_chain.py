@@ -80,7 +80,7 @@ class Chain:
         return [[f for begin, f in pieces if begin <= t][-1] for pieces in (*self.torques, *self.capacities)]
 
     def transmitted(self, modes: Sequence[int]) -> FloatArray:
-        """Return the clutch torques on the rotors behind them as a matrix, to be multiplied by ``in_force``."""
+        """Return the matrix that maps ``in_force`` to the torque of each clutch on the rotor behind it."""
         n, d = len(self.inertias), self._differences
         by_inertia = d / np.asarray(self.inertias)
         equations, given = np.eye(n - 1), np.zeros((n - 1, 2 * n - 1))
@@ -92,7 +92,7 @@ class Chain:
         return np.asarray(np.linalg.solve(equations, given))
 
     def accelerations(self, modes: Sequence[int]) -> FloatArray:
-        """Return the angular accelerations as a matrix of shape (n, 2n - 1), to be multiplied by ``in_force``."""
+        """Return the matrix, shape (n, 2n - 1), that maps ``in_force`` to the angular accelerations."""
         n = len(self.inertias)
         torques = np.hstack((np.eye(n), np.zeros((n, n - 1)))) + self._differences.T @ self.transmitted(modes)
         return np.asarray(torques / np.asarray(self.inertias)[:, np.newaxis])

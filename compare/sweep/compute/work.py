@@ -106,7 +106,7 @@ SAME = 1.4  # largest ratio of the spreads of a constant modulation
 DYING = 0.1
 """Ratio of the slip speeds in both halves of the last part below which slip dies out."""
 
-LEAST_TURNS = 24  # least number of turns before the last part of a motion
+LEAST_TURNS = 24  # smallest number of turns before the last part of a motion
 
 
 def plain_trajectory(

@@ -21,7 +21,7 @@ COLUMNS = 3
 
 @compiled
 def peak_over_sliding(share: float, static_ratio: float) -> float:
-    """Return friction over sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
+    """Return friction divided by sliding friction: ``static_ratio`` up to P/ε = ``share`` = 1, and 1 from 2 on.
 
     In between it falls like a square root of P/ε − 1, so a contact leaves the peak in the time ε; a linear fall would
     take ε·ln(1/ε).

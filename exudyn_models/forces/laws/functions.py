@@ -84,12 +84,12 @@ def _call_by_name(arguments: Sequence[str], function: Callable[..., float], *giv
 
 def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ...], bool]:
     """Return which ``ARGUMENTS`` a function takes, and whether in that order."""
-    allowed = f"any of {', '.join(ARGUMENTS)} by these names, for example `lambda time: ...`"
+    allowed = f"only arguments named {', '.join(ARGUMENTS)}, for example `lambda time: ...`"
     try:
         parameters = list(inspect.signature(function).parameters.values())
     except (TypeError, ValueError):
         raise ValueError(
-            f"{name} = {function!r}: it has no readable signature; it must take {allowed}"
+            f"{name} = {function!r}: it has no readable signature; it may take {allowed}"
         ) from None
     fixed = function.keywords if isinstance(function, partial) else {}
     taken = set()
@@ -101,7 +101,12 @@ def _arguments(name: str, function: Callable[..., float]) -> tuple[tuple[str, ..
             if parameter.name not in fixed:
                 taken.add(parameter.name)
         elif parameter.default is parameter.empty:  # *arguments and **options have none
-            raise ValueError(f"{name} takes `{parameter}`: a function must take {allowed}")
+            hint = (
+                "; a coefficient may take temperature with a thermal_node"
+                if parameter.name == "temperature"
+                else ""
+            )
+            raise ValueError(f"{name} takes `{parameter}`: a function may take {allowed}{hint}")
     arguments = tuple(argument for argument in ARGUMENTS if argument in taken)
     first = parameters[: len(arguments)]
     positional = all(parameter.kind == parameter.POSITIONAL_OR_KEYWORD for parameter in first)

@@ -29,7 +29,7 @@ ABSENT = -1.0
 """Marks the arguments of an absent function."""
 
 DIFFERENCE = 1e-5
-"""Relative step of the central differences of μN by the motion."""
+"""Relative step of the central differences of μN."""
 
 SLOWEST = 1e-9
 """Slip speed in m/s below which this step stays constant."""

@@ -170,7 +170,7 @@ class ModeChoice:
         return max(self._contacts, key=lambda contact: contact.overload(self._mbs, t))
 
     def _start_with_forces(self, t: float) -> bool:
-        """Make accelerations and constraint forces initial values; return whether loads that depend on them agree."""
+        """Take accelerations and constraint forces as initial values; return whether dependent loads agree."""
         data, initial = self._mbs.systemData, exu.ConfigurationType.Initial
         forces = np.array(data.GetAECoordinates())
         loads = [contact.holding(t) for contact in self._contacts]

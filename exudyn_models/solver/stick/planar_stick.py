@@ -155,7 +155,7 @@ class PlanarStick(AxialStick):
         return self.static_ratio * self.factors.friction_force(t, 0.0, 0.0, 0.0)
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return load over capacity: 1 while the contact slides, 0 while it is open."""
+        """Return load divided by capacity: 1 while the contact slides, 0 while it is open."""
         if self.on_axis or not self.rests:
             return super().capacity_share(mbs, t)
         return self.load_share(self.held_wrench(mbs), self.holding_force(t))[0]

@@ -126,7 +126,7 @@ class PointSticks(AxialStick):
 
     @property
     def visible_mode(self) -> Mode:
-        """Mode as a sensor shows it: locked if all points are, and otherwise that of one that slides."""
+        """Mode that a sensor shows: locked if all points are locked, else the mode of a sliding point."""
         modes = {part.visible_mode for part in self.active}
         sliding = modes & {Mode.FORWARD, Mode.BACKWARD}
         return next(iter(sliding or modes - {Mode.OPEN} or modes))
@@ -151,7 +151,7 @@ class PointSticks(AxialStick):
         return np.asarray(np.einsum("pij,pi->j", maps, forces))
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
-        """Return the least share of their capacities that lets the points hold the load, or 1 if a point slides."""
+        """Return the smallest share of capacity that holds the load at the points, or 1 if a point slides."""
         if self.whole.on_axis:
             return self.whole.capacity_share(mbs, t)
         mode = self.visible_mode

@@ -39,7 +39,7 @@ class SlipMotion(NamedTuple):
     """Motion of a contact that sticks exactly.
 
     ``slip`` is (u, S) in m/s and rad/s, ``rate`` its derivative and ``bias`` this rate without accelerations, J̇·q̇.
-    ``gradient`` contains the derivatives of P by the slip, zero at rest; all have the shape (3,). ``radius`` is the
+    ``gradient`` contains the derivatives of P in the slip, zero at rest; all have the shape (3,). ``radius`` is the
     distance of the disc's centre from the master's axis, in m; ``rate_potential`` is P of the rate, in m/s². The
     rounding error of the slip is proportional to ``largest_term``, the largest speed in m/s that enters it.
     """

@@ -34,7 +34,7 @@ Constraint forces, which decide about releases, contain errors of velocities div
 """
 
 ITERATIONS = 200
-"""Least limit of Newton's iterations; loads that depend on forces need many, because the Jacobian omits them."""
+"""Smallest limit of Newton's iterations; loads that depend on forces need many, because the Jacobian omits them."""
 
 
 def run_switching(

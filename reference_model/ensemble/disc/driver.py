@@ -134,7 +134,7 @@ def _through_rest(
 ) -> Iterator[tuple[Trajectory, bool]]:
     """Yield the motion from ``state`` at ``t`` until all points slip again, or to the end, by the reference.
 
-    Each part comes with whether the disc has been stuck for a turn, which counts as permanent.
+    Each part has a flag: stick for a whole turn, which counts as permanent.
     """
     rates = [rate for rate in (disc.natural_frequency, abs(disc.disc_speed)) if rate > 0.0]
     turn = 2.0 * math.pi / min(rates) if rates else duration

@@ -162,7 +162,7 @@ def advance_with(
 def error_of_slip(
     state: DiscState, new: DiscState, h: float, third: Tuple, fifth: Tuple, tolerance: float, law: DiscLaw
 ) -> float:
-    """Return the error of a step over the tolerance, relative for small slip, whose direction decides its end."""
+    """Return a step's error in tolerances. It is relative for small slip, whose direction decides its end."""
     slip = math.sqrt(state.ux * state.ux + state.uy * state.uy + state.r * state.r)
     small = (slip + law.free) / (SLOW * law.friction + LEAST)
     high = low = 0.0

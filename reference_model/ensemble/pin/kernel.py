@@ -144,7 +144,7 @@ def run_pins(task: Task, settings: Settings, results: Results, first: int, last:
 
 @inlined
 def _run_pins(task: Task, settings: Settings, results: Results, first: int, last: int) -> None:
-    """Run the trajectories in a function of its own, which compiles a fifth longer and runs a sixth faster."""
+    """Run the trajectories in a separate function, which compiles a fifth longer but runs a sixth faster."""
     run(
         load, advance, advance_alone, handle_flag, store, idle,
         np.zeros(1, LANES_LAYOUT), np.zeros(LANES, MEMORY_LAYOUT), first, last, None, task, settings, results,

@@ -92,8 +92,8 @@ def require_whirl(pin: PinOnDisc) -> None:
         return
     if abs(pin.disc_speed) <= pin.natural_frequency:
         raise ValueError(
-            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if the disc turns faster than "
-            f"the natural frequency {pin.natural_frequency:g} rad/s in either sense"
+            f"disc_speed = {pin.disc_speed:g} rad/s: the whirl exists only if |disc_speed| exceeds the "
+            f"natural frequency {pin.natural_frequency:g} rad/s"
         )
 
 
@@ -211,7 +211,7 @@ def first_order_whirl_shift(pin: PinOnDisc) -> tuple[float, float]:
 
 
 def whirl_shift_error_limit(pin: PinOnDisc) -> complex:
-    """Return the limit of the relative error of (18) for X0 → 0: z of (18) over the exact z, minus 1, z = x + iy.
+    """Return the limit of the relative error of (18), z = x + iy by (18) / exact z − 1, for X0 → 0.
 
     It is the complex conjugate of d²w(2 − w)/((2 + idw)(6 − id(w + 2))), d and w of
     :func:`first_order_whirl_response`: zero at |ω| = 2k, and −1 as |ω| → k.

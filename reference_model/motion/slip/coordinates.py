@@ -53,7 +53,7 @@ class Coordinates:
     turning
         Index of another relative velocity, which may be the scale of friction.
     leverage
-        Derivative of the velocity of the centre by the slip.
+        Derivative of the centre's velocity with respect to the slip.
     grip
         Returns the margin of a held friction force; the motion ends at zero.
     surfaces

@@ -12,10 +12,13 @@ import compare.run.runner
 import compare.run.workers
 import compare.sweep.files
 from compare.claims.errata import ERRATA
+from compare.claims.parameters import FIG5, FIG11
 from compare.cli import app as cli
 from compare.engines import INSTALLED, Engine, known_name
 from compare.run.plan import write_plan
 from compare.sweep.store import SweepStore
+from fmu_models import MODELS
+from reference_model.systems import PARAMETERS
 
 COMMAND = "friction-discs "
 
@@ -113,3 +116,24 @@ def test_every_command_has_its_own_example():
     for name, example in HELP:
         assert example.startswith(name) or name == "friction-discs"
     assert len(DOCUMENTS) > 10
+
+
+@pytest.mark.parametrize(("command", "system"), [("simulate pin", FIG5), ("simulate disc", FIG11)])
+def test_help_lists_each_parameter_with_default_and_unit(command, system):
+    text = dict(help_texts())[COMMAND + command]
+    listed = {
+        name: (float(value), unit) for name, value, unit in re.findall(r"(\w+)=([\d.]+) \(([^)]+)\)", text)
+    }
+    assert listed == {name: (getattr(system, name), unit) for name, unit, _ in PARAMETERS[type(system)]}
+
+
+def test_help_of_the_clutch_lists_each_parameter_with_default_and_unit():
+    text = (
+        dict(help_texts())[f"{COMMAND}export-fmu clutch"].partition("Parameters, ")[2].partition("Example")[0]
+    )
+    listed = {
+        name: (float(value), unit) for name, value, unit in re.findall(r"(\w+)=(\S+)(?: \(([^)]+)\))?", text)
+    }
+    parameters = [one for one in MODELS["clutch"].variables if one.role == "parameter"]
+    units = str.maketrans({".": " ", "3": "³"})  # FMI writes N.s/m and N/m3
+    assert listed == {one.name: (one.start, one.unit.translate(units)) for one in parameters}

@@ -52,7 +52,7 @@ BAD = [
     ("report --jobs two", "jobs = 'two': it must be a whole number"),
     ("report --study-limit 0", "study-limit = 0 s: it must be > 0"),
     ("report --study-limit soon", "study-limit = 'soon': it must be a number"),
-    ("report pushes --data .", "--data .: no logs like 10_90_10_…txt.xz are in this folder"),
+    ("report pushes --data .", "--data .: no such folder, or it contains no logs like 10_90_10_…txt.xz"),
     ("report --min-conclusive -1", "min-conclusive = -1: it must lie between 0 and 1000000"),
     ("report --level quick verdicts", "--level quick cannot be combined with named studies (verdicts)"),
     ("report --output a --output b", "--output is given 2 times; give it once"),
@@ -73,7 +73,7 @@ BAD = [
     ("export-fmu clutch --set plates=0 --output c.fmu", "plates = 0: it must lie between 1 and 1000"),
     ("reprot", "…"),
     ("simulate", "…"),
-    (f"{PIN} --plot a.gif", "--plot 'a.gif': the file name must end in .png, .pdf, .svg"),
+    (f"{PIN} --plot a.gif", "--plot 'a.gif': the file name must end in .png or .pdf or .svg"),
     (f"{PIN} --plot file/a.png", f"cannot write the file 'file/a.png': {NO_FOLDER}"),
     ("simulate pim", "…"),
     (f"{PIN} --sett a=1", "…"),
@@ -114,7 +114,7 @@ BAD = [
     (f"{BASIN} --x x=0:1", "axis 'x=0:1': write it as NAME=LOW:HIGH:POINTS"),
     (f"{BASIN} --x x=0:inf:5", "x = inf: it must be finite"),
     (f"{BASIN} --x x=0:a:5", "x = 'a': it must be a number"),
-    (f"{BASIN} --x x=0:1:1", "axis x with 1 points: there must be 2 to 100000…"),
+    (f"{BASIN} --x x=0:1:1", "axis x with 1 points: it must have 2 to 100000…"),
     (f"{BASIN} --x x=0:1:2.5", "axis 'x=0:1:2.5': the number of points must be a whole number"),
     (f"{BASIN} --x x=-1e308:1e308:10", "axis x from -1e+308 to 1e+308: the range must be finite"),
     (f"{BASIN} --x vx=0:1:5", "vx is on both axes; --x and --y must be different quantities"),
@@ -220,4 +220,5 @@ def test_arguments_give_status_and_message(arguments, status, sentence, tmp_path
     pattern = ".*".join(map(re.escape, sentence.split("…")))
     assert re.fullmatch(f"{pattern}\n", said, re.DOTALL if status == 0 else re.NOFLAG), said
     assert nothing == ""
+    assert "--help" not in arguments or "<" not in said, "a Python type"
     assert {path.name for path in tmp_path.iterdir()} - {"__pycache__"} == {"file", "engines_of_mine.py"}

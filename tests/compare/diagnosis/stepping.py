@@ -29,7 +29,7 @@ def stepped(
 ):
     """Simulate a pin.
 
-    ``law`` maps the impulse that would end the slip, over the largest one, to that of friction. ``limit`` is the
+    ``law`` maps the impulse that would end the slip to friction's, both relative to the largest one. ``limit`` is the
     factor of μN as a function of the system, the slip speed and the step. ``static`` is the factor at rest if larger,
     ``late`` the delay of a release in s, ``fastest`` the largest speed, ``slowest`` the speed below which
     a body stops, ``spring`` the factor of the springs, and ``blind`` removes slip along the radius.

@@ -198,7 +198,7 @@ def test_chatter_that_falls_with_the_step_is_named_but_not_wrong():
     assert row.verdict == RIGHT_VERDICT
 
 
-def test_an_engine_without_a_tolerance_is_told_so_before_its_errors_are_blamed_on_friction():
+def test_a_missing_tolerance_is_reported_before_friction_is_blamed():
     made = Engine("deaf", functools.partial(deaf, step=1e-2), nonlinear=False, phases=False)
     assert sentences(made)[1].startswith("Wrong motion: results do not change with the tolerance")
 

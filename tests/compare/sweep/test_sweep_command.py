@@ -27,7 +27,7 @@ def test_help_lists_the_default_axes_and_all_distributions(capsys):
         out = capsys.readouterr().out
         for system, (x, y) in axes.items():
             assert re.search(rf"{system} +--x {re.escape(x)} --y {re.escape(y)}\n", out)
-        assert "[default: (12000; 1200 for a disc on single points)]" in " ".join(out.split())
+        assert "[default: (12000; 1200 for a disc on points)]" in " ".join(out.split())
     cli.status(["sweep", "uncertainty", "--help"])
     out = capsys.readouterr().out
     for name, kind in KINDS.items():

@@ -27,7 +27,7 @@ def slipping(car=CENTRED, **options):
 
 @pytest.mark.parametrize("inner", [0.0, 0.05, CENTRED.outer_radius], ids=["full", "facings", "ring"])
 def test_a_centred_clutch_transmits_its_torque_and_turns_slip_into_heat(inner):
-    """Nothing else acts on the engine: J·Δω = −M·t until slip is lost, and the heat is M·∫slip dt."""
+    """No other moment acts on the engine: J·Δω = −M·t until slip ends, and the heat is M·∫slip dt."""
     car = replace(CENTRED, inner_radius=inner)
     motion = slipping(car, shaft_torque=TORQUE).run(0.04, sample_every=1e-3)
     assert motion.slip[-1] > 3.0
@@ -89,7 +89,7 @@ def test_a_load_that_reads_the_slip_holds_it():
     needed = CENTRED.normal_load(torque)
     model.friction.change(normal_load=lambda time: max(0.0, needed * (1.0 + 0.2 * (model.slip() - 5.0))))
     motion = model.run(1.0, sample_every=1e-2)
-    # The feed-forward leaves out the disc's own inertia, 1 % of the vehicle's.
+    # The feed-forward neglects the disc's inertia, 1 % of the vehicle's.
     assert motion.slip[-1] == pytest.approx(5.0, abs=0.1)
     assert motion.energy.gains["engine"][-1] > 0.0
     assert np.max(np.abs(motion.energy.residual)) < 1e-6 * motion.energy.turnover
@@ -108,7 +108,7 @@ POSITIVE = ("engine_inertia", "disc_mass", "disc_inertia", "outer_radius", "vehi
 
 
 @pytest.mark.parametrize("name", [field.name for field in fields(PASSENGER_CAR)])
-def test_what_no_drivetrain_can_be_is_refused(name):
+def test_invalid_drivetrains_are_refused(name):
     with pytest.raises(ValueError, match=f"{name} = nan: it must be finite"):
         replace(PASSENGER_CAR, **{name: math.nan})
     if name == "offset":
@@ -128,7 +128,7 @@ def test_half_a_facing_and_facings_inside_out_are_refused():
 
 
 def test_the_picture_shows_the_disc_where_it_is():
-    """Of the orange facing, the mean place on the picture moves with the disc, and not without magnification."""
+    """The mean position of the orange facing follows the disc, but does not move without magnification."""
 
     def facing(x, magnification):
         image = draw_drivetrain(

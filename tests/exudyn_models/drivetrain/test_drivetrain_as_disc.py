@@ -1,4 +1,4 @@
-"""A drivetrain between an engine and a vehicle that nothing slows is the paper's disc, (19)."""
+"""A drivetrain between an engine and a vehicle of constant speed is the paper's disc, (19)."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from exudyn_models import Drivetrain, build_drivetrain
 from reference_model import Annulus, DiscOnDisc, simulate
 
 ENDLESS = 1e30
-"""Inertia in kg m²: a torque of 1 N m changes the speed by less than its last digit."""
+"""Inertia in kg m², so large that a torque of 1 N m changes the speed by less than rounding."""
 
 DISC = DiscOnDisc(
     mass=1.0,
@@ -24,7 +24,7 @@ DISC = DiscOnDisc(
     shaft_speed=1.25,
 )
 START = (0.0389, 0.0, 0.0, 0.0, 0.0389, 1.38664)
-"""x, y, angle and their rates on the modulated cycle of Fig. 11: the disc slips all the time."""
+"""x, y, angle and their rates on the modulated cycle of Fig. 11, where the disc always slips."""
 
 
 def drivetrain_states(disc, until, *, inner_radius=0.12, tolerance=1e-12):
@@ -83,8 +83,8 @@ def test_the_clutch_disc_moves_as_the_reference_does(change, inner_radius):
     _, coarse = drivetrain_states(disc, 10.0, inner_radius=inner_radius, tolerance=8e-12)
     contact = None if inner_radius == disc.contact_radius else Annulus(inner_radius, disc.contact_radius)
     exact = simulate(disc, START, times, tolerance=1e-13, contact=contact).states
-    # The error of the coarse run is at most eight times the change, even if the finer run is almost as wrong.
+    # Eight times the change bounds the error of the coarse run, even if the finer run is hardly better.
     error = 8.0 * np.max(np.abs(coarse[-1] - states[-1]))
-    assert error < 1e-7  # a parameter that is off by 1e-5 changes more
+    assert error < 1e-7  # an error of 1e-5 in a parameter changes more
     np.testing.assert_allclose(coarse[-1], exact[-1], rtol=0.0, atol=error)
     assert np.hypot(*states[:, :2].T).max() > 0.03  # beyond the stop's gap

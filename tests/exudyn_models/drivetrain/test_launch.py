@@ -1,4 +1,4 @@
-"""A launch of the passenger car against closed forms: full slip up to lock-up, and the creep that holds in stick."""
+"""A launch of the passenger car against closed forms: slip up to lock-up, and creep during stick."""
 
 import math
 from dataclasses import replace
@@ -10,7 +10,7 @@ from exudyn_models import PASSENGER_CAR, build_drivetrain, four_cylinder
 
 CENTRED = replace(PASSENGER_CAR, offset=0.0, unbalance=0.0)
 ENGINE_SPEED, TORQUE, RATE = 210.0, 100.0, 225.0
-"""In rad/s, N m, and N m/s, by which the clutch's capacity grows from zero."""
+"""Speed in rad/s, torque in N m, and growth rate of the clutch's capacity in N m/s."""
 
 
 def full_slip(car, until, tolerance=1e-9):
@@ -27,10 +27,10 @@ def full_slip(car, until, tolerance=1e-9):
 
 @pytest.mark.parametrize("stiffness", [1000.0, 1500.0])
 def test_a_slipping_clutch_moves_and_heats_by_the_closed_form(stiffness):
-    """A constant torque and a clutch whose moment grows like RATE·t: parabolas, but for the wind-up of the spring.
+    """A constant torque and a clutch moment of RATE·t give parabolas, apart from the wind-up of the spring.
 
-    The twist θ obeys J_r·θ'' + d·θ' + k·θ = g·RATE·t with g = J_v/(J_d + J_v), and the disc runs ahead of the rigid
-    drivetrain with g·θ'. The first oscillation has died away and adds (d²/k − J_r)·g·RATE/k² to ∫θ dt.
+    The twist θ obeys J_r·θ'' + d·θ' + k·θ = g·RATE·t with g = J_v/(J_d + J_v), and the disc leads the rigid
+    drivetrain by the speed g·θ'. The first oscillation has decayed and adds (d²/k − J_r)·g·RATE/k² to ∫θ dt.
     """
     car = replace(CENTRED, torsional_stiffness=stiffness)
     until = 0.95
@@ -58,7 +58,7 @@ def test_a_slipping_clutch_moves_and_heats_by_the_closed_form(stiffness):
 
 
 def test_an_unbalanced_disc_and_both_rotors_gain_the_impulse_of_the_engine():
-    """The undamped support at the origin has no moment about the engine's axis."""
+    """The undamped support at the origin exerts no moment about the engine's axis."""
     car = replace(PASSENGER_CAR, offset=0.0, radial_damping=0.0, unbalance=1e-3)
     motion = full_slip(car, 0.7)
     (x, y, angle), (vx, vy, spin) = motion.disc[-1], motion.disc_velocity[-1]
@@ -70,13 +70,13 @@ def test_an_unbalanced_disc_and_both_rotors_gain_the_impulse_of_the_engine():
         + car.engine_inertia * motion.engine_speed[-1]
         + car.vehicle_inertia * motion.vehicle_speed[-1]
     )
-    # The unbalance has 1e-6 of the momentum: less than that would not show it.
+    # A tighter bound is needed because the unbalance has only 1e-6 of the momentum.
     assert found == pytest.approx(car.engine_inertia * ENGINE_SPEED + TORQUE * 0.7, rel=1e-9)
 
 
 @pytest.mark.parametrize(("epsilon", "resistance"), [(0.1, 60.0), (0.4, 0.0)])
 def test_a_clutch_that_holds_creeps_in_proportion_to_the_torque_it_transmits(epsilon, resistance):
-    """Below ε the moment is capacity·(R·slip/ε), and engine, disc and vehicle speed up as one body."""
+    """Below ε the moment is capacity·(R·slip/ε), and engine, disc and vehicle accelerate as one body."""
     ring = replace(CENTRED, inner_radius=0.1, outer_radius=0.1, torsional_damping=20.0)
     capacity = 180.0
     model = build_drivetrain(

@@ -1,4 +1,4 @@
-"""Contacts between bodies of every kind: Jacobians, conserved momenta, heat, and what must come to the same."""
+"""Contacts between bodies of every kind: Jacobians, conserved momenta, heat, and equivalent models."""
 
 import exudyn as exu
 import numpy as np
@@ -66,7 +66,7 @@ def pair_of(kinds, contact, **more):
 
 WITH_EULER = [(None, EULER), ("rotor", EULER), (EULER, "planar"), (EULER, EULER)]
 CONSTANT = ("pin", "ring", "creeping ring", "points", "feet", "annulus", "annulus that wears", "plates")
-"""Contacts without a Jacobian of ours between two rotors: constant moments, or Exudyn's own connector."""
+"""Contacts between two rotors without our Jacobian: constant moments, or Exudyn's own connector."""
 EVERY_CONTACT = [
     (None, "rotor"),
     (None, "planar"),
@@ -74,7 +74,7 @@ EVERY_CONTACT = [
     ("planar", "planar"),
     ("planar", "Tait-Bryan"),
 ]
-"""Pairs with functions of their own, and one of all others, whose kinds only enter the map to the slip."""
+"""Pairs with specialised functions, and one example of the others, whose kinds only affect the map to the slip."""
 CASES = [
     (kinds, contact)
     for kinds in (*PAIRS, *GROUND)
@@ -86,12 +86,12 @@ CASES = [
 @pytest.mark.parametrize(("kinds", "contact"), CASES, ids=str)
 def test_a_contact_has_the_jacobian_that_exudyn_finds_by_differences(kinds, contact):
     mbs, _, friction = pair_of(kinds, contact)
-    # Derivatives of an annulus are integrals over twelve rings by themselves.
+    # The derivatives of an annulus are themselves quadratures over twelve rings.
     assert_jacobian_is_that_of_exudyn(mbs, friction.item, 1e-6 if "annulus" in contact else 1e-7)
 
 
 def assert_momenta_and_energy_are_kept(mbs, kinds, nodes, frictions, bodies=(MASTER, DISC), end=0.05):
-    """All is integrated at order 6 or 7, and nothing slips with less than ε."""
+    """All integrations are of order 6 or 7, and nothing slips slower than ε."""
     heats = [friction.add_sensor("heat") for friction in frictions]
     mbs.Assemble()
     before, energy_before = momenta_and_energy(mbs, kinds, nodes, bodies)
@@ -100,7 +100,7 @@ def assert_momenta_and_energy_are_kept(mbs, kinds, nodes, frictions, bodies=(MAS
     change = (after - before)[conserved(kinds)]
     np.testing.assert_allclose(change, 0.0, rtol=0.0, atol=1e-12 * np.abs(before).max())
     turned = [float(mbs.GetSensorValues(heat)) for heat in heats]
-    assert min(turned) > 1e-4  # all of them did act
+    assert min(turned) > 1e-4  # all of them acted
     assert sum(turned) == pytest.approx(energy_before - energy_after, rel=1e-9)
 
 

@@ -1,7 +1,7 @@
-"""What holds for the friction of every contact at any slip: pin, points, ring, and annuli under each pressure.
+"""Properties of the friction of every contact at any slip: pin, points, ring, and annuli under each pressure.
 
-P is the mean slip speed. Where P > ε force and moment F take the power −F·slip = μN·P, and −F·v <= μN·P(v) for any
-other slip v. Where P < ε the contact creeps: F is that at P = ε, times P/ε.
+P is the mean slip speed. Where P > ε force and moment F dissipate the power −F·slip = μN·P, and −F·v <= μN·P(v) for
+any other slip v. Where P < ε the contact creeps, and F is its value at P = ε times P/ε.
 """
 
 import functools
@@ -29,7 +29,7 @@ ROD = ((-0.12, 0.0, 0.3), (-0.02, 0.0, 0.3), (0.05, 0.0, 0.1), (0.12, 0.0, 0.3))
 
 
 def contact_of(points=CONTINUOUS, inner=RADIUS, outer=RADIUS, held=NONE_HELD):
-    """Contact on circles, or in a number of points on one or in points at given places."""
+    """Return a contact on circles, at a number of points on a circle, or at given points."""
     if points == CONTINUOUS or (isinstance(points, int) and points < CONTINUOUS):
         return outer, points, FRICTION, EPSILON, held, inner
     places = ring_places(outer, points) if isinstance(points, int) else points
@@ -40,7 +40,7 @@ def towards_the_rim(radius):
     return 1.0 + 200.0 * radius**2
 
 
-UNIFORM = 2.0 / 3.0 * (RADIUS**3 - INNER**3) / (RADIUS**2 - INNER**2)  # the textbook's lever of a clutch
+UNIFORM = 2.0 / 3.0 * (RADIUS**3 - INNER**3) / (RADIUS**2 - INNER**2)  # textbook friction radius of a clutch
 RISING = ((RADIUS**3 - INNER**3) / 3.0 + 40.0 * (RADIUS**5 - INNER**5)) / (
     0.5 * (RADIUS**2 - INNER**2) + 50.0 * (RADIUS**4 - INNER**4)
 )
@@ -60,7 +60,7 @@ SCALE = np.array([1.0, 1.0, 1.0 / RADIUS])
 
 
 def friction(contact, slip, angle=ANGLE):
-    """Force and moment for a slip (u_x, u_y, φ̇ − ω) over a master at rest."""
+    """Return force and moment for a slip (u_x, u_y, φ̇ − ω) on a master at rest."""
     return np.array(ring_friction(0.0, 0.0, angle, slip[0], slip[1], 0.0, slip[2], contact)[:3])
 
 
@@ -69,7 +69,7 @@ def mean_slip(contact, slip, angle=ANGLE):
 
 
 def slips(count=60, largest=4.0):
-    """Slips of any direction from a thousandth of ε to 10^largest of it, some with a point of the rim at rest."""
+    """Return slips in any direction from 1e-3·ε to 10^largest·ε, some with a point of the rim at rest."""
     rng = np.random.default_rng(7)
     found = rng.normal(size=(count, 3)) * SCALE
     found[::5, 2] = np.hypot(found[::5, 0], found[::5, 1]) / RADIUS  # U = R·S
@@ -81,7 +81,7 @@ def of_points(contact):
 
 
 def slowest(contact, slip, angle=ANGLE):
-    """Slip of the slowest of single points, as a complex number."""
+    """Return the slip of the slowest point as a complex number."""
     x, y, _ = places_in(contact[5]).T
     all_slips = complex(*slip[:2]) + 1j * slip[2] * np.exp(1j * angle) * (x + 1j * y)
     return all_slips[np.abs(all_slips).argmin()]
@@ -134,7 +134,7 @@ def test_a_turned_mirrored_or_reversed_slip_meets_friction_of_the_same_kind(cont
 
 @pytest.mark.parametrize(("contact", "lever"), CONTACTS.values(), ids=CONTACTS)
 def test_pure_slip_meets_the_whole_force_and_pure_spin_the_whole_moment(contact, lever):
-    """Only a contact with its load about the centre has no moment in the first motion, no force in the second."""
+    """Only a contact whose load is symmetric about the centre has no moment in translation and no force in spin."""
     x, y, shares = places_in(contact[5]).T if of_points(contact) else np.zeros((3, 1))
     arms = np.exp(1j * ANGLE) * (x + 1j * y)
     moment = np.sum(shares * arms.conjugate() * (-0.3 + 0.4j)).imag
@@ -158,7 +158,7 @@ def test_a_contact_that_slips_feels_the_direction_alone_and_one_that_creeps_the_
             np.testing.assert_allclose(
                 friction(contact, share * at_limit), share * limit, rtol=1e-11, atol=1e-13 * share
             )
-        if not of_points(contact):  # single points still yield near rest
+        if not of_points(contact):  # single points are still viscous near rest
             np.testing.assert_allclose(friction(contact, 1e3 * at_limit), limit, rtol=1e-9, atol=1e-12)
 
 
@@ -193,7 +193,7 @@ def test_a_thin_annulus_becomes_the_ring_with_the_square_of_its_width():
 
 @functools.cache
 def rings_of(inner, outer, share):
-    """Radii in m and shares of the load of 60 rings."""
+    """Return radii in m and load shares of 60 rings."""
     places, weights = np.polynomial.legendre.leggauss(60)
     radii = inner + (outer - inner) * (0.5 + 0.5 * places)
     weights = weights * [share(r) for r in radii]
@@ -210,12 +210,12 @@ SHARES["pressed at the rim"] = lambda r: r * towards_the_rim(r)
     [
         ((0.3, -0.2, 1.0), 1e-12),  # every point slips
         ((0.01, 0.02, -4.0), 1e-12),
-        ((0.2, 0.1, 2.5), 2e-4),  # a point in the annulus is at rest, where the sum is no better
+        ((0.2, 0.1, 2.5), 2e-4),  # with a resting point the sum is less accurate
     ],
 )
-def test_friction_is_what_its_points_add_up_to(name, slip, accuracy):
+def test_friction_is_the_sum_over_its_points(name, slip, accuracy):
     if name == "full disc":
-        accuracy = 2e-4  # a point of it is always at rest or near to that
+        accuracy = 2e-4  # one of its points is always nearly at rest
     (outer, points, _, _, _, inner), _ = CONTACTS[name]
     if points > CONTINUOUS:
         x, y, weights = places_in(inner).T
@@ -238,11 +238,11 @@ HELD["three feet, one held"] = contact_of(THREE_FEET, held=0)
     "contact", [*[pair[0] for pair in CONTACTS.values()], *HELD.values()], ids=[*CONTACTS, *HELD]
 )
 @pytest.mark.parametrize("size", [1.0, 1e-6], ids=["slip", "creep"])
-def test_derivatives_are_those_of_friction(contact, size):
-    """But for those by the slip of points that creep as a whole, which hold a share of the secant for Newton."""
+def test_derivatives_match_differences_of_friction(contact, size):
+    """The exception is the slip of points that creep as a whole: it contains a share of the secant, for Newton."""
     rng = np.random.default_rng(5)
     blended = size < 1.0 and of_points(contact)
-    # Twelve rings leave 5e-7 of the largest curvature of an annulus, and a derivative adds several of them.
+    # Twelve rings have an error of 5e-7 of an annulus's largest curvature, and a derivative adds several curvatures.
     accuracy = 1e-6 if contact[1] > CONTINUOUS or contact[5] == contact[0] else 1e-5
     for _ in range(20):
         slip = rng.normal(size=3) * [1.0, 1.0, 8.0] * size
@@ -278,13 +278,13 @@ def test_newtons_iteration_finds_the_creep_of_every_load_from_far_away(points, m
 
 @pytest.mark.parametrize("points", [3, 6, 24, THREE_FEET])
 def test_creep_ends_on_the_limit_surface_also_where_a_point_carries_less_than_its_share(points):
-    """A load is just held if its power is μN·P for one slip: the contact's own without that of a slow point."""
+    """A load is at the limit if its power is μN·P for one slip: the contact's slip minus that of a slow point."""
     contact, seen = contact_of(points), set()
     delta = point_regularisation(EPSILON, places_in(contact[5]))
     rng = np.random.default_rng(8)
     for _ in range(300):
         pole = RADIUS * (np.exp(1j * ANGLE) + 0.3 * complex(*rng.normal(size=2)))
-        slip = np.array([pole.imag, -pole.real, 1.0])  # a turn about the pole
+        slip = np.array([pole.imag, -pole.real, 1.0])  # rotation about the pole
         slip *= EPSILON / mean_slip(contact, slip)
         load, slow = friction(contact, slip), slowest(contact, slip)
         ratio = abs(slow) / delta
@@ -300,7 +300,7 @@ def test_no_two_points_are_slower_than_a_point_at_its_bend_while_the_contact_sli
     places = ring_places(1.0, points) if isinstance(points, int) else points
     x, y, shares = np.array(places).T
     arms, rng = x + 1j * y, np.random.default_rng(4)
-    # Slip about a pole: the worst ones lie near the middle between the two points next to each other.
+    # The worst poles lie near the middle between the two neighbouring points.
     apart = abs(np.subtract.outer(arms, arms)) + 1e3 * np.eye(len(arms))
     i, j = np.unravel_index(apart.argmin(), apart.shape)
     middle, noise = (arms[i] + arms[j]) / 2.0, 0.1 * abs(arms).max()
@@ -309,4 +309,4 @@ def test_no_two_points_are_slower_than_a_point_at_its_bend_while_the_contact_sli
     bend = BEND * point_regularisation(1.0, places) * (speeds @ shares)
     second = np.sort(speeds, axis=1)[:, 1]
     assert np.all(second > bend)
-    assert (bend / second).max() > 0.4  # and δ is not needlessly small
+    assert (bend / second).max() > 0.4  # so δ is not too small either

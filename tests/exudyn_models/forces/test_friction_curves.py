@@ -1,4 +1,4 @@
-"""Words of drivetrains for a coefficient: a table over slip, a peak at rest, drag apart from coast."""
+"""Coefficients as in drivetrains: a table of slip speeds, a peak at rest, different values for drag and coast."""
 
 import exudyn as exu
 import numpy as np
@@ -84,5 +84,5 @@ def test_the_peak_holds_up_to_the_regularisation_and_is_gone_at_twice_that():
     assert (values[shares >= 2.0] == 1.0).all()
     assert (np.diff(values[(shares >= 1.0) & (shares <= 2.0)]) < 0.0).all()
     assert peak_over_sliding(2.0 - 1e-12, 1.5) == pytest.approx(1.0, abs=1e-11)
-    # It falls like a root, with which a release takes the time ε: a tenth of the way past ε nearly a third is lost.
+    # The fall is a square root, so a release takes the time ε: it loses a third in the first tenth beyond ε.
     assert peak_over_sliding(1.1, 1.5) == pytest.approx(1.5 - 0.5 * np.sqrt(0.1), abs=0.01)

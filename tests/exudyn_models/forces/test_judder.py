@@ -1,4 +1,4 @@
-"""A clutch disc on a torsional spring that a drive drags, with friction that falls with the slip: judder."""
+"""Judder: a drive drags a clutch disc on a torsional spring, and friction falls with the slip."""
 
 import math
 
@@ -14,7 +14,7 @@ SPEED, RADIUS, LOAD, COEFFICIENT = 50.0, 0.1, 1000.0, 0.5
 MOMENT = COEFFICIENT * LOAD * RADIUS
 ONSET = DAMPING / (RADIUS**2 * LOAD)
 FALLS = [-1.0, 0.0, 0.9, 1.1, 4.0]
-"""Falls of the coefficient over that of onset."""
+"""Slopes of the coefficient, divided by the slope at the onset of judder."""
 
 
 def juddering(fall, push, epsilon=1e-3):
@@ -39,7 +39,7 @@ def juddering(fall, push, epsilon=1e-3):
 
 
 def eigenvalue(fall):
-    """J·λ² + (D − N·R²·γ)·λ + K = 0: a disc that turns with the drive slips less and has more friction."""
+    """J·λ² + (D − N·R²·γ)·λ + K = 0: a disc that moves with the drive slips less, so its friction is larger."""
     half = DAMPING * (1.0 - fall) / (2.0 * INERTIA)
     return -half + 1j * math.sqrt(STIFFNESS / INERTIA - half**2)
 
@@ -59,7 +59,7 @@ def test_a_pushed_disc_vibrates_by_the_closed_form_while_it_slips(fall):
     root = eigenvalue(fall)
     (t, angle), (_, speed) = (mbs.GetSensorStoredData(sensor).T for sensor in sensors)
     wave = -1j * push / root.imag * np.exp(root * t)  # φ = φ₀ + Re(c·e^(λt)) from φ₀ with the push
-    # RK67 with ω·h = 0.06 is off by some 2e-9 of the amplitude.
+    # RK67 with ω·h = 0.06 has an error of some 2e-9 of the amplitude.
     size = np.abs(wave).max()
     np.testing.assert_allclose(angle, MOMENT / STIFFNESS + wave.real, rtol=0.0, atol=1e-8 * size)
     np.testing.assert_allclose(speed, (root * wave).real, rtol=0.0, atol=1e-8 * size * abs(root))
@@ -74,5 +74,5 @@ def test_judder_that_has_grown_sticks_once_in_a_period_and_never_passes_the_driv
     solve_dynamic(mbs, settings, exu.DynamicSolverType.DOPRI5)
     t, speed = mbs.GetSensorStoredData(of_speed).T
     creep = 1e-3 / RADIUS
-    for begin in np.arange(0.3, 0.55, 0.06):  # a little more than a period, 0.051 s and the stick
+    for begin in np.arange(0.3, 0.55, 0.06):  # slightly more than a period: 0.051 s plus stick
         assert np.max(speed[(t >= begin) & (t < begin + 0.06)]) == pytest.approx(SPEED, abs=creep)

@@ -1,4 +1,4 @@
-"""Coefficients and loads as compiled code asks for them: functions of Python and of numba, and what they raise."""
+"""Coefficients and loads in compiled code: Python and numba functions, and their errors."""
 
 import math
 import subprocess
@@ -18,7 +18,7 @@ from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 RING = {"contact_radius": 0.12, "friction_coefficient": 0.3, "normal_load": 2.0, "regularisation": 1e-3}
 TABLE = [[0.0, 0.5], [0.05, 0.35], [0.2, 0.3], [1.0, 0.28], [40.0, 0.4]]
 PAIRS = [*product((None, "rotor"), ("rotor", "planar")), ("planar", "planar"), ("planar", "Tait-Bryan")]
-"""Pairs with functions of their own, and one of all others."""
+"""Pairs with specialised functions, and one example of the others."""
 
 
 def stribeck(slip_speed):
@@ -41,7 +41,7 @@ def added(kinds, **law):
 
 
 def forces(kinds, **law):
-    """Forces of the user function at ten states, shape (10, n)."""
+    """Return the forces of the user function at ten states, shape (10, n)."""
     mbs, friction = added(kinds, **law)
     force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
@@ -87,7 +87,7 @@ def out_of_range(time):
 
 @pytest.mark.parametrize("function", [out_of_range, out_of_range.py_func], ids=["numba", "python"])
 @pytest.mark.parametrize("kinds", [("rotor", "rotor"), ("planar", "planar"), ("Tait-Bryan", "Tait-Bryan")])
-def test_what_a_function_raises_arrives_and_a_wrong_number_is_told(kinds, function):
+def test_errors_of_functions_are_passed_on_and_invalid_numbers_reported(kinds, function):
     mbs, friction = added(kinds, normal_load=function)
     force = friction._contact.functions["force"]
     size = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for node in friction.nodes)
@@ -107,7 +107,7 @@ def test_anything_but_a_list_of_all_velocities_is_a_type_error(kinds):
             force(mbs, 0.7, 0, [0.1] * size, wrong)
 
 
-def test_a_table_outlives_what_it_was_made_from():
+def test_a_table_outlives_its_source():
     contact = (0.12, CONTINUOUS, 1.0, 1e-3, NONE_HELD, 0.12)
     laws = [LoadAndCoefficient(contact, [[0.0, 0.1 * i], [1.0, 0.1 * i]], 1.0) for i in range(200)]
     found = [law.friction_force(0.0, 0.0, 0.5, 0.0) for law in laws]
@@ -146,7 +146,7 @@ for one in gc.get_objects():
 
 
 def test_a_second_process_compiles_nothing_that_takes_long(monkeypatch):
-    """Functions that Python calls are kept on disk, also those of sensors and Jacobians."""
+    """Functions that Python calls are cached on disk, including those of sensors and Jacobians."""
     folder = str(Path(__file__).parents[1])
     monkeypatch.setattr(sys, "argv", ["", folder])
     exec(USE_OF_ALL_PARTS, {})  # the first process is this one

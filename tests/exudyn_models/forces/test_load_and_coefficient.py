@@ -1,4 +1,4 @@
-"""Loads and coefficients that are functions of time, radius and slip, and what sensors show of their friction."""
+"""Loads and coefficients as functions of time, radius and slip, and the resulting sensor values."""
 
 import math
 from functools import partial
@@ -34,7 +34,7 @@ RATE = (1.0 / INERTIA + 1.0 / MASTER_INERTIA) * RADIUS
 
 
 def spinning_disc(**contact):
-    """A disc that spins over a rotor on the same axis: S = φ̇ − ω changes by −RATE·∫μN dt·sign(S)."""
+    """Return a disc that spins on a rotor on the same axis: S = φ̇ − ω changes by −RATE·∫μN dt·sign(S)."""
     mbs = new_model()
     master = rotor(mbs, MASTER_INERTIA, MASTER_SPIN)
     disc = planar_body(mbs, MASS, INERTIA, [0.0] * 3, [0.0, 0.0, SPIN])
@@ -46,7 +46,7 @@ def spins(mbs, master, disc):
 
 
 def expected_spins(impulse):
-    """φ̇ and ω in rad/s after ∫μN dt in N s, while the disc still turns more slowly."""
+    """Return φ̇ and ω in rad/s after ∫μN dt in N s, while the disc is still slower."""
     return (
         pytest.approx(SPIN + RADIUS * impulse / INERTIA, rel=1e-11),
         pytest.approx(MASTER_SPIN - RADIUS * impulse / MASTER_INERTIA, rel=1e-11),
@@ -55,7 +55,7 @@ def expected_spins(impulse):
 
 @pytest.mark.parametrize("radius", [0.0, RADIUS])
 def test_load_and_coefficient_can_be_changed_between_two_runs(radius):
-    # A pin is a disc without spin on a rotor at rest that slides through its axis: its momentum takes the impulse.
+    # The pin slides through the axis of a rotor at rest without spinning, so the impulse changes only its momentum.
     mbs = new_model()
     master = rotor(mbs, MASTER_INERTIA, MASTER_SPIN if radius > 0.0 else 0.0)
     motion = [0.0, 0.0, SPIN] if radius > 0.0 else [30.0, 0.0, 0.0]
@@ -112,16 +112,16 @@ class Ramp:
     ],
 )
 @pytest.mark.parametrize("of_load", [False, True])
-def test_a_function_is_given_what_it_names(function, expected, of_load):
+def test_a_function_receives_the_arguments_that_it_names(function, expected, of_load):
     contact = (RADIUS, CONTINUOUS, 1.0, 1e-3, NONE_HELD, RADIUS)
     factors = LoadAndCoefficient(contact, *((0.5, function) if of_load else (function, 0.5)))
     assert factors.friction_force(2.0, 3.0, 5.0, -7.0) == 0.5 * expected
 
 
 def slip_under_control(disc_kind, steps):
-    """Slip of the rim after 1 s under N = N₀ + K(|W| − W₁), and where d|W|/dt = −RATE·R·μN leads it.
+    """Return the rim slip after 1 s under N = N₀ + K(|W| − W₁), and as d|W|/dt = −RATE·R·μN predicts it.
 
-    The solver is an explicit one without ``steps``.
+    Without ``steps`` the solver is explicit.
     """
     constant, gain, target, sensor = 2.0, 0.3, 11.0, None
     mbs = new_model()
@@ -200,7 +200,7 @@ def test_sensors_of_a_spinning_disc_show_its_braking():
     ("coefficient", "load"),
     [(MU, LOAD), (lambda slip_speed: MU * math.exp(-slip_speed), lambda time: LOAD * (1.0 + time))],
 )
-def test_sensor_of_the_radial_force_shows_what_moves_the_disc(coefficient, load):
+def test_the_radial_force_sensor_shows_the_force_that_moves_the_disc(coefficient, load):
     mbs = new_model()
     master = planar_body(mbs, 2.0, MASTER_INERTIA, [0.3, -0.2, 0.1], [0.1, 0.05, 2.0])
     disc = planar_body(mbs, MASS, INERTIA, [0.5, 0.1, 0.4], [-0.2, 0.3, -1.0])
@@ -242,7 +242,7 @@ NONSENSE = [
 
 @pytest.mark.parametrize(("name", "function", "message"), NONSENSE)
 @pytest.mark.parametrize("solver", ["RK44", "GeneralizedAlpha"])
-def test_a_function_that_returns_nonsense_ends_the_run_and_tells_where(name, function, message, solver):
+def test_an_invalid_result_of_a_function_ends_the_run_with_its_arguments(name, function, message, solver):
     mbs, *_ = spinning_disc(**{name: function})
     mbs.Assemble()
     with pytest.raises(exu.ExudynError, match=rf"{name}\({message}") as raised:

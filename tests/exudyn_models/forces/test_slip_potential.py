@@ -1,4 +1,4 @@
-"""Digits of the slip potential's derivatives: the ring against mpmath, annuli against the reference and its rules."""
+"""Accuracy of the slip potential's derivatives: the ring against mpmath, annuli against the reference."""
 
 import math
 
@@ -28,7 +28,7 @@ def exact_slopes(speed, rim):
 
 
 def relative_error(speed, rim):
-    with mpmath.workdps(100):  # the exact form loses twice as many digits as the ratio has
+    with mpmath.workdps(100):  # the exact form loses twice the digits of the ratio
         pairs = zip(ring_potential_slopes(speed, rim), exact_slopes(speed, rim), strict=True)
         return max(float(abs(found - exact) / exact) for found, exact in pairs)
 
@@ -79,7 +79,7 @@ def test_a_curvature_stays_finite_where_it_is_infinite_and_grows_up_to_there():
 
 
 def curvature_error(reference, speed, inner, outer):
-    """Largest difference of the curvatures at S = 1 rad/s, over 1/outer, 1 and outer."""
+    """Return the largest difference of the curvatures at S = 1 rad/s, divided by 1/outer, 1 and outer."""
     slopes = reference.slopes(speed, 1.0)
     found = slip_potential_hessian(speed, 1.0, inner, outer, CONTINUOUS)
     scale = np.array([outer, 1.0, 1.0 / outer])
@@ -87,15 +87,17 @@ def curvature_error(reference, speed, inner, outer):
 
 
 @pytest.mark.parametrize(("inner", "outer"), RADII)
-def test_friction_of_an_annulus_is_that_of_the_reference(inner, outer):
-    """At S = 1 rad/s a point of the annulus rests at the radius U, is near to it or far from it."""
+def test_friction_of_an_annulus_equals_the_reference(inner, outer):
+    """At S = 1 rad/s the point at the radius U rests; U is in, near or far from the annulus."""
     reference, rng = Annulus(inner, outer, rings=40), np.random.default_rng(4)
     for speed in [*rng.uniform(0.9 * inner, 1.1 * outer, 60), *10.0 ** rng.uniform(-3.0, 1.0, 30)]:
         expected = reference.shares(speed, 1.0)
         by_speed, by_spin = slip_potential_gradient(speed, 1.0, inner, outer, CONTINUOUS)
         assert by_speed == pytest.approx(expected.resistance, abs=1e-9)
         assert by_spin == pytest.approx(expected.moment, abs=1e-9 * outer)
-        assert curvature_error(reference, speed, inner, outer) < 2e-6  # 5e-7 of each, where a point rests
+        assert (
+            curvature_error(reference, speed, inner, outer) < 2e-6
+        )  # each has an error of 5e-7 where a point rests
 
 
 @pytest.mark.parametrize("gap", [0.3, 0.1, 0.01, 1e-3])

@@ -55,7 +55,7 @@ def test_arguments_of_a_simulation(engine, system, change, message):
     [
         (FIG5, [0.0, 0.0, 0.0, 0.0], "at rest, where friction has no derivative"),
         (FIG11, [0.0, 0.0, 0.0, 0.0, 0.0, FIG11.disc_speed], "at rest, where friction has no derivative"),
-        # Point 0 is where the speeds of the two discs are the same.
+        # Point 0 lies where both discs have the same velocity.
         (POINTS, [0.0, 0.0, 0.0, 0.0, 0.12, FIG11.disc_speed - 1.0], "or a point of it, is at rest"),
         (FIG11, [0.0, 0.0, 0.0, 0.0], "DiscOnDisc takes 6 numbers"),
     ],

@@ -40,7 +40,7 @@ def test_rates_of_the_slip_are_its_derivatives_along_the_motion(system):
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-6 / EPSILON)
 
 
-def test_a_point_about_which_the_disc_turns_creeps_alone():
+def test_only_the_pivot_of_a_disc_creeps():
     disc = replace(RING, contact_points=6, disc_speed=0.0)
     for i in range(6):
         arm = disc.contact_radius * np.exp(1j * (0.4 + np.pi / 3.0 * i))
@@ -53,7 +53,8 @@ def test_a_point_about_which_the_disc_turns_creeps_alone():
 
 
 def motion_of_slip(speeds, durations):
-    """A pin on a resting disc along x, with slip ``speeds`` (over ε) at the ends of spans of ``durations`` (s)."""
+    """Return the motion along x of a pin on a resting disc: slip ``speeds`` (in ε) after spans of ``durations``
+    (s)."""
     times = np.concatenate(([0.0], np.cumsum(durations)))
     speeds = EPSILON * np.array(speeds)
     states = np.zeros((len(times), 4))
@@ -69,12 +70,12 @@ SHORT, LONG = 0.1 * CONTACT.settling_time, 3.0 * CONTACT.settling_time
 @pytest.mark.parametrize(
     ("speeds", "durations"),
     [
-        # Slip hesitates at the bend of the law.
+        # Slip pauses at the kink of the law.
         (
             [1e5, 3.0, 0.5, 0.5, 1.001, 0.999, 1.001, 0.998, 1.002, 3.0, 1e5],
             [1.0, SHORT, SHORT, 1.0, *[SHORT] * 5, 1.0],
         ),
-        # Creep settles again before the slip has got anywhere.
+        # Creep settles again before the slip has grown.
         (
             [1e5, 3.0, 0.5, 0.9, 1.1, 1.1, 0.9, 0.9, 1.1, 3.0, 1e5],
             [1.0, SHORT, LONG, SHORT, SHORT, SHORT, LONG, LONG, SHORT, 1.0],
@@ -88,7 +89,7 @@ def test_slip_that_is_not_gone_for_good_is_one_release(speeds, durations):
 
 
 def test_slip_that_only_passes_through_zero_is_no_sticking():
-    # Pulled with twice what friction can hold, with 1 + v/ε friction against it, and 1 − v/ε along it.
+    # The pull is twice the friction limit; the net force is 1 + v/ε limits against it, and 1 − v/ε along it.
     relaxation = PIN.mass * EPSILON / PIN.friction_force
     steps = motion_of_slip([1e5, 0.9, 0.1, 0.1, 0.9, 1e5], [1.0, relaxation, relaxation, relaxation, 1.0])
     growth = np.array([-3.0, -2.9, -2.1, 1.9, 1.1, 1.0])
@@ -96,20 +97,20 @@ def test_slip_that_only_passes_through_zero_is_no_sticking():
     assert [phase.kind for phase in detected_phases(CONTACT, steps)] == ["slip"]
 
 
-def test_sticking_starts_where_the_slip_would_be_zero_and_ends_where_it_is_that_of_the_bend():
+def test_stick_starts_at_extrapolated_zero_slip_and_ends_at_the_kink():
     steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
-    steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero after 4e-4 s more
+    steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero 4e-4 s later
     found = detected_phases(CONTACT, steps)
     assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
     assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
-    # The load is the creep's share of ε, and up to m·a/μN = 1e-4 of inertia more.
+    # The load is creep/ε, plus an inertia share of at most m·a/μN = 1e-4.
     assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + 0.5, abs=1e-4)
 
 
 NEAR_ITS_LIMIT = PinOnDisc(
     mass=1.88, stiffness=1.3, damping=0.13, friction_force=0.175, disc_speed=0.143, offset=-0.1
 )
-"""It starts stuck with friction close to its limit, and is released after 0.6 s."""
+"""A pin that starts in stick close to the friction limit, and is released after 0.6 s."""
 
 
 def test_stick_up_to_a_release_has_an_error_of_first_order_in_the_tolerance_and_no_other():

@@ -1,4 +1,5 @@
-"""Exudyn's linearisation: eigenvalues of the reference at equilibria, of the plain equations where it slips."""
+"""Exudyn's linearisation: it has the reference's eigenvalues at equilibria, and those of the plain equations in
+slip."""
 
 from dataclasses import replace
 
@@ -16,7 +17,7 @@ DISC = replace(FIG11, mass=1.3, polar_inertia=0.7, stiffness=0.9, damping=0.1)
 
 
 def largest_difference(found, expected):
-    """Between two sets, each value of one with the nearest of the other."""
+    """Return the largest distance of a value of one set from the nearest value of the other."""
     assert len(found) == len(expected)
     apart = np.abs(found[:, None] - expected[None, :])
     return max(apart.min(axis=0).max(), apart.min(axis=1).max())
@@ -48,7 +49,7 @@ def test_every_equilibrium_has_the_eigenvalues_of_the_reference(system):
 
 @pytest.mark.parametrize("system", [PIN, *(replace(DISC, contact_points=points) for points in (3, 6, 24))])
 def test_any_slip_has_the_eigenvalues_of_the_plain_equations(system):
-    """Points keep the angle in the linearisation."""
+    """The linearisation of a disc on points contains the angle."""
     state = np.array([0.05, 0.02, 0.01, -0.02] if system is PIN else [0.05, 0.02, 0.3, 0.01, -0.02, 1.3])
     law, step = plain.by_law(system.friction_force, contact_of(system)), 1e-5
 
@@ -56,12 +57,13 @@ def test_any_slip_has_the_eigenvalues_of_the_plain_equations(system):
         return np.array(plain.rates(system, law, state + change))
 
     matrix = np.array([(rates(step * e) - rates(-step * e)) / (2.0 * step) for e in np.eye(len(state))]).T
-    # Differences have an error of step² = 1e-10 times third derivatives of friction, 1/slip² ~ 1e3 of it.
+    # Differences have an error of step² = 1e-10 times third derivatives of friction, which are 1/slip² ~ 1e3 times
+    # friction.
     assert largest_difference(eigenvalues(system, state.tolist()), np.linalg.eigvals(matrix)) < 1e-6
 
 
 def test_the_slowest_slip_is_damped_the_most():
-    """Across the slip friction is a damper of μN/|u|, and along it a constant force."""
+    """Friction is a damper μN/|u| across the slip and a constant force along it."""
     slow = replace(PIN, disc_speed=0.0)
     fastest = eigenvalues(slow, [PIN.offset, 0.0, 1e-11, 0.0]).real.min()
     assert fastest == pytest.approx(-PIN.friction_force / PIN.mass / 1e-11, rel=1e-6)
@@ -72,5 +74,5 @@ def test_without_friction_and_shaft_the_disc_is_an_oscillator_that_turns_freely(
     decay, k = disc.damping / disc.mass / 2.0, disc.natural_frequency
     pair = -decay + 1j * np.sqrt(k**2 - decay**2)
     expected = np.array([pair.conjugate()] * 2 + [pair] * 2 + [0.0])
-    # Double eigenvalues are known to the root of rounding.
+    # Double eigenvalues have an error of √rounding.
     assert largest_difference(eigenvalues(disc, [0.0] * 6), expected) < 1e-7

@@ -1,4 +1,4 @@
-"""Exudyn's built-in contact: its forces by hand, errors of first order in the tolerance, and points that rest."""
+"""Exudyn's built-in contact: forces by hand, errors of first order in the tolerance, and resting points."""
 
 import cmath
 import math
@@ -31,7 +31,7 @@ TABLE_DISC = replace(
 THROWN = [0.0, 0.0, 0.0, 0.5, 0.2, 3.0]  # turns about one of its points before it comes to rest
 CONTACT = {"friction_coefficient": 0.25, "normal_load": 2.0, "reach": 10.0}
 CAUGHT_DISC = replace(DISC, friction_force=0.2, offset=0.1)
-CAUGHT = [0.1, 0.0, 0.0, 0.0, 0.1, 1.5]  # is carried along with the master disc for a while
+CAUGHT = [0.1, 0.0, 0.0, 0.0, 0.1, 1.5]  # moves with the master disc for a while
 CARRIED_ALONG = [
     0.03087753517369676, -0.12311233141527689, 5.686215448933846,
     0.18466849712291533, 0.04631630276054514, 1.5,
@@ -42,7 +42,7 @@ RESTING = {
     "caught": (CAUGHT_DISC, CAUGHT, 3.1),
     "released": (CAUGHT_DISC, CARRIED_ALONG, 0.2),
 }
-"""System, start and span in s of motions in which points of a disc come to rest, or are released."""
+"""System, start and span in s of motions with rests or releases of single points of a disc."""
 FEET = [(0.12, 0.0, 0.5), (-0.03, 0.07, 0.2), (-0.05, -0.06, 0.3)]
 SLIPPING_DISC = [0.05, 0.0, 0.0, 0.0, 0.05, 1.3]
 TOLERANCES = (1e-6, 1e-7)
@@ -51,7 +51,7 @@ TOLERANCES = (1e-6, 1e-7)
 @pytest.mark.parametrize("kind", ["ground", "rotor", "planar"])
 @pytest.mark.parametrize(("radius", "points"), [(0.0, 1), (0.12, 6), (0.3, 3), (None, FEET)])
 @pytest.mark.parametrize("epsilon", [1e-4, 1.5, 1e3])  # Coulomb friction, some of each, viscous friction
-def test_forces_and_moments_of_both_bodies_are_those_of_the_law(kind, radius, points, epsilon):
+def test_forces_and_moments_on_both_bodies_obey_the_law(kind, radius, points, epsilon):
     rng = np.random.default_rng(1)
     for _ in range(10):
         mbs, (place, velocity, z, v) = new_model(), rng.normal(size=(4, 3))
@@ -92,7 +92,7 @@ def test_forces_and_moments_of_both_bodies_are_those_of_the_law(kind, radius, po
     [
         ("thrown", ["slip", "pivot", "stick"], 0.9, 1.1),
         ("caught", ["slip", "pivot", "slip", "stick"], 0.9, math.inf),
-        # Single points hold on to Coulomb friction to the last: the slip after it grows like t² up to ε.
+        # Single points stay at the Coulomb limit until release; then slip grows like t² up to ε.
         ("released", ["stick", "slip"], 0.35, 0.55),
     ],
 )
@@ -115,14 +115,14 @@ def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_t
 @pytest.mark.parametrize(
     ("system", "span", "distance"),
     [
-        # All on a table at rest, started from the middle straight towards an edge of the triangle with 1 m/s: a pin
-        # without a spring after v·t − ½(μN/m)t², a pin on a spring just before it turns, a disc that does not spin.
+        # All start on a table at rest from the middle towards an edge of the triangle with 1 m/s: a pin without
+        # spring after v·t − ½(μN/m)t², a pin on a spring just before it reverses, and a disc without spin.
         (replace(FIG5, stiffness=0.0), 10.0, 10.0 - 0.5 * 0.01 * 10.0**2),
         (FIG5, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
         (replace(DISC, stiffness=0.0, contact_radius=0.5), 1.0, 1.0 - 0.5 * 0.01),
     ],
 )
-def test_the_contact_holds_however_far_a_body_goes(system, span, distance):
+def test_the_contact_persists_at_any_distance(system, span, distance):
     system = replace(system, friction_force=0.01, damping=0.0, disc_speed=0.0, offset=0.0)
     start = [0.0, 0.0, -1.0, 0.0]
     if isinstance(system, DiscOnDisc):

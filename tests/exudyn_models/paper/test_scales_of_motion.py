@@ -1,4 +1,4 @@
-"""A change of units changes nothing: neither the motion, nor how well it is computed, nor what that costs."""
+"""A change of units changes neither the motion nor its accuracy nor the number of steps."""
 
 from dataclasses import replace
 from functools import cache
@@ -29,7 +29,7 @@ TOLERANCE = 1e-8
 
 @cache
 def measured(name):
-    """States without a change of units, their error bar (of the largest component), and the number of steps."""
+    """Return states in the original units, their error bar (largest component), and the number of steps."""
     system, start = CASES[name]
     states, error = refined(
         lambda tolerance: simulate(system, start, [0.0, 4.0, UNTIL], tolerance=tolerance).states, TOLERANCE
@@ -38,7 +38,7 @@ def measured(name):
 
 
 def changed(name, scale):
-    """Largest change of the dimensionless motion over its error bar, and the ratio of steps, in other units."""
+    """Return the largest change of the scaled motion in other units, in error bars, and the ratio of steps."""
     system, start = CASES[name]
     states, error, steps = measured(name)
     times = np.array([0.0, 4.0, UNTIL]) * scale.time
@@ -62,17 +62,17 @@ def test_changes_of_unit_leave_the_dimensionless_motion_the_same_at_the_same_cos
         assert 0.5 < steps < 2.0
 
 
-def test_the_regularisation_is_told_in_metres_per_second():
+def test_the_regularisation_is_reported_in_metres_per_second():
     scale = Scale(1e-3, 5e-3, 0.5)
     one = simulate(FIG5, CASES["pin"][1], [0.0, 1.0])
     other = simulate(scale.system(FIG5), scale.states(CASES["pin"][1]), [0.0, scale.time])
-    speed = FIG5.offset * FIG5.disc_speed  # the start, and the disc's turns
+    speed = FIG5.offset * FIG5.disc_speed  # of the start and of the disc
     assert one.solution.regularisation == pytest.approx(1e-7 * speed)
     assert other.solution.regularisation == pytest.approx(1e-7 * speed * scale.length / scale.time)
 
 
 def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
-    omega, stiff = 300.0, 1.7e5  # the spring's own frequency is above ω, and does not matter either
+    omega, stiff = 300.0, 1.7e5  # the natural frequency exceeds ω and does not matter either
     pin = reference_model.PinOnDisc(
         mass=1.0, stiffness=stiff, damping=10.0, friction_force=100.0, disc_speed=omega, offset=1e-4
     )
@@ -93,7 +93,7 @@ def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
 )
 @pytest.mark.parametrize("speed", [1.5, -0.7])
 def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
-    """Coriolis and centrifugal force, the turning ground, damper and shaft: all that axes change, at any speed."""
+    """This covers everything that turning axes change: Coriolis and centrifugal force, ground, damper and shaft."""
     axes, start = Axes(speed), np.array(start)
     options = {"integrator": "DOPRI5", "step": 0.1, "tolerance": 1e-12}
     fixed = solve(build_model(system, start, regularisation=1e-7), 0.0, 5.0, **options)
@@ -105,7 +105,7 @@ def test_motion_in_turning_axes_is_that_in_fixed_ones(system, start, speed):
     np.testing.assert_allclose(seen.accelerations[-1], fixed.accelerations[-1], rtol=0.0, atol=2e-11)
 
 
-def test_only_what_is_asked_for_is_kept_and_the_phases_are_the_same(monkeypatch):
+def test_only_requested_states_are_kept_and_the_phases_are_the_same(monkeypatch):
     arguments = FIG5, CASES["pin"][1], [0.0, 30.0]
     whole = simulate(*arguments)
     kept = []

@@ -1,4 +1,5 @@
-"""Motions of the pin, the ring and six points: slip to the tolerance, stick to first order in ε, and their limits."""
+"""Motions of the pin, the ring and six points: slip to the tolerance, stick to first order in ε, and limiting
+cases."""
 
 from dataclasses import replace
 
@@ -48,7 +49,7 @@ def largest(difference):
 
 @SLIPS
 def test_errors_while_slipping_fall_with_the_tolerance_at_every_output_time(name):
-    """Against an integrator that has nothing to do with Exudyn."""
+    """Compare with an integrator independent of Exudyn."""
     (system, start), times = SLIPPING[name], np.linspace(0.0, 20.0, 41)
     expected = slide(system, start, times).y.T
     found = [simulate(system, start, times, tolerance=tolerance) for tolerance in (1e-5, 1e-7, 1e-9)]
@@ -78,7 +79,7 @@ def test_the_implicit_solver_has_an_error_of_first_order_in_the_tolerance(name):
 def test_integrators_converge_at_their_order(name, integrator, order, step):
     system, start = SLIPPING[name]
     if isinstance(system, DiscOnDisc):
-        start = [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # slips so fast that all is smooth, U > W throughout
+        start = [0.6, 0.0, 0.4, 0.0, 0.6, 1.3]  # slips so fast that U > W throughout and friction is smooth
     times = [0.0, 100.0 if name == "pin" else 3.0]
     expected = slide(system, start, times).y[:, -1]
     errors = [
@@ -106,20 +107,20 @@ def test_errors_of_the_built_in_contact_are_below_the_tolerance_and_of_first_ord
 def test_stick_phases_have_errors_of_first_order_in_the_regularisation(name, engine):
     (system, start), end = STICKING[name], 60.0 if name == "pin" else 12.0
     exact = reference_model.simulate(system, start, [0.0, end], tolerance=1e-11)
-    expected = [kind for kind in kinds(exact) if kind != "pivot"]  # which are short at each release
+    expected = [kind for kind in kinds(exact) if kind != "pivot"]  # pivots at each release are short
     errors = []
-    for tolerance in (1e-7, 1e-8, 1e-9):  # ε is a hundred times that in units of the motion
+    for tolerance in (1e-7, 1e-8, 1e-9):  # ε is 100 tolerances in units of the motion
         found = engine(system, start, [0.0, end], tolerance=tolerance)
         assert [kind for kind in kinds(found) if kind != "pivot"] == expected
         errors.append([*np.abs(found.stick_times - exact.stick_times), largest(found.at_end - exact.at_end)])
-        # Phases follow each other without gaps, and what sticks moves with the master.
+        # Phases follow each other without gaps, and a sticking body moves with the master.
         assert [phase.end for phase in found.phases] == [*[phase.start for phase in found.phases[1:]], end]
     errors = np.array(errors)
-    # A first touch without a pivot comes before any creep; all later times carry the creep that went before.
+    # The first rest without a pivot precedes any creep; later times contain the error of earlier creep.
     if exact.phases[1].kind == "stick":
         assert errors[-1, 0] < 1e-8
         errors = errors[:, 1:]
-    errors = errors[:, :-1] if name == "pin" else errors  # which comes to rest at the same place in the end
+    errors = errors[:, :-1] if name == "pin" else errors  # the pin comes to rest at the same place anyway
     np.testing.assert_allclose(np.log10(errors[:-1] / errors[1:]), 1.0, atol=0.1, err_msg=str(errors))
     assert errors[-1].max() < 2e-4
 
@@ -143,7 +144,7 @@ def test_the_implicit_solver_passes_through_sticking(name):
         {"contact_points": 6, "stiffness": 1.0},
     ],
 )
-def test_what_is_thrown_on_a_resting_table_comes_to_rest_for_good_and_never_gains_energy(change):
+def test_a_body_thrown_on_a_resting_table_comes_to_permanent_rest_and_never_gains_energy(change):
     ring = replace(TABLE, friction_force=0.3, **change)
     found = simulate(ring, THROWN, np.linspace(0.0, 6.0, 601))
     x, y, _, vx, vy, spin = found.states.T
@@ -163,7 +164,7 @@ def test_a_thrown_ring_stops_sliding_and_spinning_together_in_the_ratio_one():
     _, _, _, vx, vy, spin = simulate(TABLE, THROWN, times).states.T
     ratios = np.hypot(vx, vy) / (TABLE.contact_radius * np.abs(spin))
     away = np.abs(ratios[:-1] - 1.0)
-    assert np.all(np.diff(away[away > 1e-9]) < 0.0), ratios  # the last are 1 to within the tolerance
+    assert np.all(np.diff(away[away > 1e-9]) < 0.0), ratios  # the last ones equal 1 to within the tolerance
     assert away[0] > 0.3
     assert away[-1] < 1e-9
 
@@ -204,7 +205,7 @@ def test_without_friction_centre_and_spin_decay_freely_in_closed_form(name, chan
     found, accuracy = simulate(system, start, times, solver=solver), 1e-10 if solver == "explicit" else 1e-5
     stiffness, damping = system.stiffness / system.mass, system.damping / system.mass
     matrix = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness * np.eye(2), -damping * np.eye(2)]])
-    rest = np.array([system.offset, 0.0, 0.0, 0.0])  # without a spring it has no effect
+    rest = np.array([system.offset, 0.0, 0.0, 0.0])  # without a spring the offset has no effect
     plane = [0, 1, 2, 3] if name == "pin" else [0, 1, 3, 4]
     centre = [rest + expm(matrix * t) @ (np.array(start)[plane] - rest) for t in times]
     np.testing.assert_allclose(found.states[:, plane], centre, rtol=0.0, atol=accuracy)
@@ -228,7 +229,7 @@ def test_a_mirrored_motion_a_turned_one_and_another_clock_change_nothing_else(na
     np.testing.assert_allclose(mirrored.states, expected.states * mirror, rtol=0.0, atol=1e-8)
     assert kinds(mirrored) == kinds(expected)
     points = getattr(system, "contact_points", None)
-    if points is not None:  # another point is in the place of the first
+    if points is not None:  # another point is at the position of the first
         turn = 2.0 * np.pi / points * np.eye(6)[2]
         turned = simulate(system, start + turn, delays, tolerance=1e-8)
         np.testing.assert_allclose(turned.states, expected.states + turn, rtol=0.0, atol=1e-8)
@@ -238,7 +239,7 @@ def test_a_mirrored_motion_a_turned_one_and_another_clock_change_nothing_else(na
 def test_the_clock_at_the_start_does_not_matter(engine, first):
     (disc, start), delays = STICKING["six points"], np.linspace(0.0, 3.0, 7)
     moved, expected = engine(disc, start, first + delays), engine(disc, start, delays)
-    # A second is known to 1e-10 of itself on a clock that shows a million of them.
+    # At a time of 1e6 s, one second has a rounding error of 1e-10.
     assert moved.states == pytest.approx(expected.states, abs=1e-9)
     assert kinds(moved) == kinds(expected)
     ends = np.array([(phase.start, phase.end) for phase in moved.phases])
@@ -249,9 +250,9 @@ def test_the_clock_at_the_start_does_not_matter(engine, first):
 
 
 def test_a_coordinate_that_passes_minus_one_does_not_stop_the_solver():
-    """Exudyn's error weight, absolute + relative·y, is zero at y = −1 if both tolerances are the same."""
+    """Exudyn's error weight, absolute + relative·y, is zero at y = −1 if both tolerances are equal."""
     pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.12, disc_speed=1.5)
-    start = [1.0, 0.0, 0.0, 1.0]  # inside of the whirl of radius 1.2: x and y pass −1 in every turn
+    start = [1.0, 0.0, 0.0, 1.0]  # inside the whirl of radius 1.2, so x and y pass −1 in every turn
     exact = reference_model.simulate(pin, start, [0.0, 50.0], tolerance=1e-13).at_end
     for tolerance in (1e-10, 1e-11, 1e-12):
         assert simulate(pin, start, [0.0, 50.0], tolerance=tolerance).at_end == pytest.approx(exact, abs=1e-9)
@@ -273,7 +274,7 @@ def test_a_pin_that_starts_stuck_stays_so_until_friction_can_not_hold_it(engine)
 
 
 def test_sticking_with_nearly_all_of_the_friction_needs_few_steps():
-    # Held with 0.92 μN for good: the exact pin does not move at all, and the creep is 0.92 ε·t.
+    # Held permanently with 0.92 μN: the exact pin does not move, and the creep is 0.92 ε·t.
     pin = replace(PIN, disc_speed=0.0, friction_force=1.0)
     found = simulate(pin, [1.02, 0.0, 0.0, 0.0], [0.0, 30.0])
     assert kinds(found) == ["stick"]
@@ -281,14 +282,14 @@ def test_sticking_with_nearly_all_of_the_friction_needs_few_steps():
     assert found.at_end[0] == pytest.approx(1.02 - 0.92 * 30.0 * found.solution.regularisation, abs=1e-7)
 
 
-def test_states_do_not_depend_on_which_other_times_are_asked_for_and_are_as_good_as_those_at_a_step():
+def test_states_do_not_depend_on_other_requested_times_and_are_as_accurate_as_at_a_step():
     system, start = STICKING["pin"]
     coarse, fine = (simulate(system, start, np.linspace(0.0, 12.0, count)) for count in (13, 1201))
     np.testing.assert_array_equal(fine.states[::100], coarse.states)
     assert fine.solution.evaluations == coarse.solution.evaluations
     apart = np.array([simulate(system, start, [0.0, t]).at_end for t in range(1, 9)])
     np.testing.assert_allclose(coarse.states[1:5], apart[:4], rtol=0.0, atol=1e-11)
-    # The steps through a stick phase divide the time that is left, which makes a few per cent of ε.
+    # Steps in stick divide the remaining time, which changes the result by a few per cent of ε.
     np.testing.assert_allclose(coarse.states[5:9], apart[4:], rtol=0.0, atol=5e-9)
     times = [0.0, 0.05, 0.1, 0.15, 0.2]
     system, start = SLIPPING["pin"]
@@ -297,7 +298,7 @@ def test_states_do_not_depend_on_which_other_times_are_asked_for_and_are_as_good
 
 
 def friction_with(change):
-    """Friction whose force function is replaced by what ``change`` makes of it."""
+    """Return friction with ``change`` applied to its force function."""
 
     def add(mbs, *nodes, **contact):
         connector = add_ring_friction(mbs, *nodes, **contact)
@@ -309,7 +310,7 @@ def friction_with(change):
 
 
 @SOLVERS
-def test_evaluations_are_those_that_were_made(solver):
+def test_the_number_of_evaluations_is_correct(solver):
     calls = []
 
     def counted(force):
@@ -321,7 +322,7 @@ def test_evaluations_are_those_that_were_made(solver):
 
 
 @SOLVERS
-def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
+def test_a_force_of_nan_raises_an_error_with_its_time(solver):
     def broken(force):
         return lambda mbs, t, item, q, q_t: force(mbs, t, item, q, q_t) if q[1] > 0.0 else [float("nan")] * 4
 
@@ -339,7 +340,7 @@ def test_a_force_that_is_not_a_number_raises_and_tells_when(solver):
 @pytest.mark.parametrize(
     ("raised", "seen"), [(KeyboardInterrupt, KeyboardInterrupt), (ZeroDivisionError, SimulationError)]
 )
-def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
+def test_an_error_inside_a_run_is_raised(solver, raised, seen):
     def interrupted(force):
         def function(*arguments):
             raise raised
@@ -351,7 +352,7 @@ def test_what_is_raised_inside_of_a_run_comes_out_of_it(solver, raised, seen):
 
 
 def test_nothing_is_printed_and_no_file_is_written_nor_infinity_returned(tmp_path, monkeypatch, capfd):
-    """RK44 is unstable for steps above 2.8·mε/μN, and a stiff spring makes it blow up."""
+    """RK44 is unstable for steps above 2.8·mε/μN, and diverges with a stiff spring."""
     monkeypatch.chdir(tmp_path)
     exu.config.printToConsole = True
     for solver in ("explicit", "implicit"):

@@ -48,7 +48,7 @@ def end_of(load, grounded, solver, **contact):
 @pytest.mark.parametrize("geometry", GEOMETRIES, ids=["ring", "worn annulus"])
 @pytest.mark.parametrize("grounded", [False, True])
 @pytest.mark.parametrize("solver", ["RK44", "DOPRI5", "TrapezoidalIndex2", "GeneralizedAlpha"])
-def test_motion_and_heat_are_those_of_the_user_function_to_rounding(solver, grounded, geometry):
+def test_motion_and_heat_equal_the_user_function_to_rounding(solver, grounded, geometry):
     built_in, first = end_of(LOAD, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
     by_function, second = end_of(in_python, grounded, getattr(SOLVERS, solver), plates=2, **geometry)
     assert (first, second) == (BUILT_IN, USER_FUNCTION)

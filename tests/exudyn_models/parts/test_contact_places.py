@@ -39,7 +39,7 @@ THROWN = pytest.mark.parametrize(
 
 @THROWN
 def test_body_that_slides_and_pivots_rests_where_it_does_in_the_reference(start, kinds):
-    """The error is of first order in ε, so the smaller ε leaves a ninth of the change, or a quarter as a bound."""
+    """The error is of first order in ε, so the smaller ε leaves a ninth of the change; the bound is a quarter."""
     exact = simulate(BODY, start, [0.0, 0.4], contact=FEET, tolerance=1e-11)
     assert [phase.kind for phase in exact.phases] == kinds
     coarse, fine = (end_in_exudyn(start, 0.4, epsilon, 8_000)[0] for epsilon in (1e-4, 1e-5))
@@ -52,7 +52,7 @@ def test_body_that_slides_and_pivots_rests_where_it_does_in_the_reference(start,
 def test_points_that_stick_exactly_pivot_and_rest_as_in_the_reference(start, kinds):
     """One foot rests first, and the body pivots about it until the others rest.
 
-    The errors of place and last rest are of second order; that of the first rest falls a little more slowly.
+    The errors of position and last rest are of second order; the error of the first rest falls more slowly.
     """
     exact = simulate(BODY, start, [0.0, 0.4], contact=FEET, tolerance=1e-11)
     times = [phase.start for phase in exact.phases[1:]]

@@ -34,7 +34,7 @@ def in_style_of_exudyn(parameters):
     ],
     ids=["points", "annulus", "support"],
 )
-def test_what_is_created_is_what_is_added(add, create, options):
+def test_create_functions_add_the_same_parts(add, create, options):
     ends = []
     for created in (False, True):
         mbs, nodes = bodies_of(("rotation vector", "Tait-Bryan"), (MASTER, DISC))
@@ -68,7 +68,7 @@ def test_a_ground_of_exudyn_is_a_master_that_rests():
         (lambda mbs, disc: [disc, disc], "is also the (master|base)_node"),
     ],
 )
-def test_what_is_no_pair_of_bodies_is_refused(bodies, message):
+def test_an_invalid_pair_of_bodies_is_refused(bodies, message):
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 0.02, [0.0] * 3, [0.0] * 3)
     with pytest.raises(ValueError, match=message):

@@ -1,4 +1,4 @@
-"""Where the energy of a model goes, against closed forms and with parts left out."""
+"""Energy balances of models, against closed forms and with missing parts."""
 
 import math
 
@@ -55,7 +55,7 @@ def angle_and_speed(t):
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e3])
-def test_works_and_stored_energy_are_those_of_the_closed_form_and_residual_is_what_is_left_out(unit):
+def test_works_and_energy_match_the_closed_form_and_the_residual_shows_missing_parts(unit):
     balance = driven_oscillator(unit)
     angle, speed = angle_and_speed(balance.times)
     stored = (INERTIA * speed**2 + STIFFNESS * angle**2) / 2.0

@@ -66,16 +66,18 @@ def test_the_default_body_of_exudyn_goes_by_its_number_and_its_sensors_tell_its_
     spin, slip, force, power = (np.array(mbs.GetSensorValues(sensor)) for sensor in sensors)
     assert mbs.GetNode(clutch.nodes[0])["nodeType"] == "RigidBodyEP"
     assert spin == pytest.approx(-5.0, rel=1e-14)
-    assert slip == pytest.approx(2.0 * 0.05, rel=1e-14)  # the disc's centre rests, the master passes with ω·d
+    assert slip == pytest.approx(
+        2.0 * 0.05, rel=1e-14
+    )  # the disc's centre rests, and the master passes it at ω·d
     assert force[[0, 2]] == pytest.approx(0.0, abs=1e-14)
-    assert force[1] > 0.0  # with the master
+    assert force[1] > 0.0  # in the direction of the master's motion
     assert power > 0.0
 
 
 def test_an_explicit_solver_is_refused_with_the_node_that_serves():
     mbs, _, _ = model((EULER, EULER))
     with pytest.raises(
-        ValueError, match=r"explicit and would ignore 2 constraint.*NodeRigidBodyEP.*RotVecLG"
+        ValueError, match=r"ignore constraints, and this model has 2;.*NodeRigidBodyEP.*RotVecLG"
     ):
         solve_dynamic(mbs, settings_of(0.2, 10), exu.DynamicSolverType.RK44)
     with pytest.raises(ValueError, match="2 constraint equations, which an explicit solver would ignore"):

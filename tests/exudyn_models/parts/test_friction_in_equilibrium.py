@@ -1,4 +1,4 @@
-"""Static analysis of a disc in a support over a master that turns: the self-centred equilibrium (eq. 3 and 4)."""
+"""Static analysis of a supported disc on a turning master: the self-centred equilibrium (eq. 3 and 4)."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def coefficient(slip_speed):
 
 
 def load(radius):
-    """Return the load in N that falls with the distance from the axis, and holds the disc in its place."""
+    """Return a load in N that falls with the distance from the axis and holds the disc in place."""
     falls = (1.0 + (RADIUS / LENGTH) ** 2) / (1.0 + (radius / LENGTH) ** 2)
     return STIFFNESS * ARM / coefficient(SPEED * RADIUS) * falls
 
@@ -30,7 +30,7 @@ FUNCTIONS = {"friction_coefficient": coefficient, "normal_load": load}
     ("contact_radius", "spin"), [(0.0, 0.0), (0.12, SPEED)], ids=["pin", "ring that turns with the master"]
 )
 def test_static_solver_finds_the_self_centred_equilibrium(factors, contact_radius, spin):
-    # All of a ring that turns with the master slips alike, as a pin does. A static run keeps the initial velocities.
+    # A ring that turns with the master slips equally everywhere, like a pin. A static run keeps the velocities.
     mbs = new_model()
     master, disc = rotor(mbs, 1e30, SPEED), planar_body(mbs, 2.0, 0.02, [0.08, 0.03, 0.0], [0.0, 0.0, spin])
     add_radial_support(mbs, None, disc, stiffness=STIFFNESS, damping=0.1, offset=(OFFSET, 0.0))
@@ -45,4 +45,6 @@ def test_static_solver_finds_the_self_centred_equilibrium(factors, contact_radiu
     options.newton.relativeTolerance, options.newton.absoluteTolerance = 1e-12, 1e-13
     mbs.SolveStatic(settings)
     np.testing.assert_allclose(coordinates(mbs, disc)[0][:2], PLACE, rtol=0.0, atol=1e-12)
-    assert mbs.sys["staticSolver"].it.newtonStepsCount <= 8  # as Newton's iteration with its Jacobian needs
+    assert (
+        mbs.sys["staticSolver"].it.newtonStepsCount <= 8
+    )  # Newton's method with the right Jacobian needs no more

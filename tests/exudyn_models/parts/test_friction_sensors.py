@@ -1,4 +1,4 @@
-"""What a clutch does, as its sensors tell it: slip in rad/s, the share of its capacity, its mode."""
+"""Sensors of a clutch: slip in rad/s, the share of its capacity, and its mode."""
 
 import exudyn as exu
 import numpy as np
@@ -15,7 +15,7 @@ QUANTITIES = ("relative_spin", "capacity_share", "mode")
 
 
 def told(torque, end, spin=0.0, step=1e-3, **contact):
-    """Return times and what the sensors of a brake tell of a rotor under a torque in N m, a function of time."""
+    """Return times and sensor values of a brake on a rotor under a torque in N m, a function of time."""
     mbs = new_model()
     disc = rotor(mbs, INERTIA, spin)
     drive(mbs, disc, torque)
@@ -30,7 +30,7 @@ def told(torque, end, spin=0.0, step=1e-3, **contact):
     return stored[0][:, 0], *(values[:, 1] for values in stored)
 
 
-def test_a_contact_that_holds_tells_which_share_of_its_capacity_it_takes():
+def test_a_sticking_contact_reports_its_share_of_capacity():
     times, spin, share, mode = told(lambda t: 0.8 * CAPACITY * t, 1.0)
     settled = times > 0.01  # INERTIA·ε/(μN·R²) = 25 µs
     np.testing.assert_allclose(share[settled], 0.8 * times[settled], atol=1e-4)
@@ -51,7 +51,7 @@ def test_the_mode_follows_break_away_in_either_direction_and_stick():
     assert (spin[mode == 0.0] < 1.01 * EPSILON / RADIUS).all()
     changes = times[1:][np.diff(mode) != 0.0]
     assert mode[0] == 0.0
-    # By hand: it breaks away where 1.5·sin(2πt/T) = 1, and half a period later the other way.
+    # By hand: it breaks away where 1.5·sin(2πt/T) = 1, and half a period later in the other direction.
     first = period / (2.0 * np.pi) * np.arcsin(1.0 / 1.5)
     assert changes[0] == pytest.approx(first, abs=2e-3)
     assert len(changes) == 4
@@ -73,7 +73,7 @@ def test_the_mode_does_not_flicker_where_a_torque_shakes_a_contact_at_its_capaci
     def torque(t):
         return CAPACITY * (1.0 - 0.001 * np.sin(2.0 * np.pi * t / period))
 
-    # By hand the torque moves slip by 2·0.001·CAPACITY/INERTIA·period/(2π) = 2.9e-5 rad/s, or 0.7 % of ε/R.
+    # By hand, the torque changes the slip by 2·0.001·CAPACITY/INERTIA·period/(2π) = 2.9e-5 rad/s, 0.7 % of ε/R.
     start, swing = 0.995 * EPSILON / RADIUS, 2.0 * 0.001 * CAPACITY / INERTIA * period / (2.0 * np.pi)
     _, spin, _, mode = told(torque, 6.0 * period, spin=start, step=period / 20.0)
     slips = spin * RADIUS / EPSILON >= 1.0
@@ -92,7 +92,7 @@ def test_a_clutch_without_load_is_open():
     assert (mode[~opened] == 1.0).all()
 
 
-def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
+def test_a_spatial_disc_has_the_sensor_values_of_a_planar_one():
     mbs, nodes = bodies_of(("planar", "Tait-Bryan"))
     friction = add_ring_friction(mbs, *nodes, **RING)
     spin, share, mode = (friction.add_sensor(name) for name in QUANTITIES)
@@ -103,7 +103,7 @@ def test_a_disc_in_space_tells_what_it_does_on_a_planar_one():
 
 
 def test_a_contact_that_closes_while_it_slips_at_its_capacity_slips():
-    """Within the band the mode stays as it was: an open contact counts as one that slips, whatever it was before."""
+    """Within the band the mode keeps its value; a contact that was open counts as slipping."""
     closes = 0.0105
 
     def when_closed(value):

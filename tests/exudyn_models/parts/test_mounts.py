@@ -1,4 +1,4 @@
-"""Contacts anywhere on their bodies: by markers, by rotations of their axes, on rotors and grounds of any axis."""
+"""Contacts anywhere on their bodies: markers, rotated axes, and rotors and grounds with any axis."""
 
 from itertools import product
 
@@ -72,9 +72,9 @@ FREE = {"ground": False, "rotor": False} | dict.fromkeys(SPATIAL, True)
 
 
 def motion(kinds, turned, own):
-    """Return the motion of both bodies at 0.05 s in the axes ``turned``, which are those of the contact.
+    """Return the motion of both bodies at 0.05 s in the contact's axes ``turned``.
 
-    Spatial bodies have other axes, ``own`` in those of the contact.
+    Spatial bodies have other axes, whose columns in the contact's axes are ``own``.
     """
     mbs, bodies, rotation = new_model(), [], []
     starts = (
@@ -87,7 +87,7 @@ def motion(kinds, turned, own):
         bodies.append(body_of(mbs, kind, turned @ axes, *vectors, *numbers))
         rotation.append(axes.T)
     add_ring_friction(mbs, *bodies, **WITH_RADIUS, master_rotation=rotation[0], disc_rotation=rotation[1])
-    if "Tait-Bryan" in kinds:  # the trapezoidal rule would err differently in every orientation
+    if "Tait-Bryan" in kinds:  # the error of the trapezoidal rule depends on the orientation
         run_explicitly(mbs, 0.05, 40)
     else:
         solve_dynamic(mbs, settings_of(0.05, 5, newton=1e-12), IMPLICIT)
@@ -117,7 +117,7 @@ def test_contacts_move_alike_in_all_orientations(kinds):
 
 
 def forces_by_exudyn(mbs, bodies, places, mounts, velocities):
-    """Return the generalised forces by Exudyn's velocities of points, for one coordinate at a time.
+    """Return the generalised forces from Exudyn's velocities of points, one coordinate at a time.
 
     ``places`` and ``mounts`` are position and axes of the contact in the axes of both bodies.
     """
@@ -147,7 +147,7 @@ def forces_by_exudyn(mbs, bodies, places, mounts, velocities):
 
 
 def mounted_at_random(kinds, i):
-    """Return a model with a contact of random place and axes on bodies of random place and axes."""
+    """Return a model with randomly placed and oriented bodies and contact."""
     mbs, contact = new_model(), ALL_AXES[i]
     tilted = contact @ rotations.RotationMatrixX(0.3) @ rotations.RotationMatrixZ(i)
     frames = contact, tilted
@@ -179,7 +179,7 @@ def assert_forces_are_those_of_exudyn(mbs, friction, contact):
 
 
 @pytest.mark.parametrize("kinds", PAIRS, ids=" on ".join)
-def test_forces_on_50_mounts_are_those_of_exudyns_velocities(kinds):
+def test_forces_on_50_mounts_match_exudyns_velocities(kinds):
     for i in range(50):
         assert_forces_are_those_of_exudyn(*mounted_at_random(kinds, i))
 
@@ -322,7 +322,7 @@ def test_axes_across_each_other_are_refused_where_a_contact_is_added():
     "rotation", [2.0 * np.eye(3), -np.eye(3), np.eye(2), "x", [[1.0, 0.0], [0.0]], np.full((3, 3), np.nan)]
 )
 @pytest.mark.parametrize("name", ["master_rotation", "disc_rotation"])
-def test_what_is_no_rotation_is_refused(name, rotation):
+def test_an_invalid_rotation_is_refused(name, rotation):
     mbs = new_model()
     disc = planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
     with pytest.raises(ValueError, match=f"(?s)^{name} = .*: it must be a rotation matrix of shape"):

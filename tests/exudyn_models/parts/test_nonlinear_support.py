@@ -20,7 +20,7 @@ LAWS = pytest.mark.parametrize("law", [HARDENING, STOP, BOTH], ids=["hardening",
 
 
 def spring_force(system, d):
-    """Of the support at the deflection d, towards its centre."""
+    """Return the force of the support at the deflection d, towards its centre."""
     stop = system.stop_stiffness * max(0.0, d - system.stop_gap)
     return system.stiffness * d + system.hardening * d**3 + stop
 
@@ -38,7 +38,7 @@ def test_the_error_of_a_slipping_pin_is_near_the_tolerance_and_falls_with_the_or
     witness = simulate_with_native_contact(pin, start, times)
     np.testing.assert_allclose(witness.states, exact, rtol=0.0, atol=3e-9)
     if law is not HARDENING:
-        return  # the bend of a stop has no order
+        return  # the kink of a stop spoils the order
     for integrator, order, step in (("RK67", 6, 0.1), ("GeneralizedAlpha", 2, 0.02)):
         errors = [
             np.abs(
@@ -79,7 +79,7 @@ def test_a_pin_stays_on_the_whirl_that_its_support_limits_and_comes_to_it_from_n
 
 @LAWS
 def test_a_pin_at_its_self_centred_equilibrium_stays_there(law):
-    # The spring at the deflection d bears the friction: force(d) = μN, and ρ*² = X0² − d² as in eq. 3.
+    # The spring at the deflection d balances friction: force(d) = μN, and ρ*² = X0² − d² as in eq. 3.
     pin = replace(PIN, offset=0.6, friction_force=1.0, **law)
     d = brentq(lambda d: spring_force(pin, d) - pin.friction_force, 0.0, pin.offset, xtol=1e-15)
     assert d > STOP["stop_gap"]
@@ -126,13 +126,13 @@ def test_a_mass_bounces_off_the_stop_in_half_a_period_of_it(tolerance):
 
 
 def test_a_stop_is_not_overlooked_where_it_is_hardly_touched():
-    # A swing of 0.01 mm beyond the gap, 16 ms long: DOPRI5 would step over that if its steps did not know the stop.
+    # A swing of 0.01 mm beyond the gap, 16 ms long: DOPRI5 would miss it if its steps ignored the stop.
     stiffness, gap, stop_stiffness, amplitude = 1.0, 0.3, 1e4, 0.30001
     pin = replace(FREE, stop_gap=gap, stop_stiffness=stop_stiffness)
     k, rate = math.sqrt(stiffness / pin.mass), math.sqrt((stiffness + stop_stiffness) / pin.mass)
     speed = k * amplitude  # on the axis
     until = math.asin(gap / amplitude) / k
-    # Beyond the gap by y, m·ÿ = −C·gap − (C + C_s)·y: back at y = 0 after twice the time to the turn.
+    # At a distance y beyond the gap m·ÿ = −C·gap − (C + C_s)·y, so y = 0 again after twice the time to reversal.
     rest = stiffness * gap / (stiffness + stop_stiffness)
     beyond = 2.0 / rate * math.atan2(speed * math.cos(k * until) / rate, rest)
     end = simulate(pin, [0.0, 0.0, speed, 0.0], [0.0, 10.0 * (2.0 * until + beyond)], tolerance=1e-7).at_end

@@ -1,4 +1,4 @@
-"""Contacts of bodies however their axes lie: the same motion, or a refusal where it would be wrong."""
+"""Contacts of bodies in any orientation: the same motion, or an error where it would be wrong."""
 
 from itertools import permutations, product
 
@@ -16,11 +16,11 @@ NODES = pytest.mark.parametrize(
 SIGNED = product(permutations(np.eye(3)), product((1.0, -1.0), repeat=3))
 MATRICES = [np.array(rows) * signs for rows, signs in SIGNED]
 AXES = [matrix for matrix in MATRICES if np.linalg.det(matrix) > 0.0]
-"""The 24 rotations that take axes into axes."""
+"""The 24 rotations that map the axes onto each other."""
 ACROSS, REVERSED = AXES[5], AXES[1]
-"""Their z-axes are along y and against z."""
+"""Axes with the z-axis along y, and along −z."""
 LAW = {"friction_coefficient": 0.25, "normal_load": 2.0, "regularisation": 0.01}
-POINTS = LAW | {"contact_radius": 0.12, "contact_points": 4}  # which a quarter turn takes into each other
+POINTS = LAW | {"contact_radius": 0.12, "contact_points": 4}  # a quarter turn maps the points onto each other
 
 
 def motion(node, master_axes, disc_axes):
@@ -47,7 +47,7 @@ def motion(node, master_axes, disc_axes):
 
 @NODES
 def test_all_orientations_of_both_bodies_give_the_same_motion(node):
-    """No smaller sample would do: a fault of rotations once spoilt 46 of these pairs, scattered over all of them."""
+    """A smaller sample would miss faults: one of them once affected only 46 scattered pairs."""
     expected = motion(node, np.eye(3), np.eye(3))
     found = [motion(node, *axes) for axes in product(AXES, AXES)]
     np.testing.assert_allclose(found, np.broadcast_to(expected, (576, 18)), rtol=0.0, atol=1e-12)

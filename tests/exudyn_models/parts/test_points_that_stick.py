@@ -48,7 +48,7 @@ def run(mbs, end, steps=100, **options):
 @pytest.mark.parametrize("load", [[1.0, 0.0, 0.01], [0.3, -0.4, -0.05], [0.0, 1.0, 0.0], [0.0, 0.0, 0.1]])
 @pytest.mark.parametrize("plates", [1, 2])
 def test_feet_hold_a_load_up_to_their_limit_surface(load, plates):
-    """The sensors show the load and the share of the largest one, and the static friction releases the body."""
+    """The sensors show the load and its share of the capacity. Beyond static friction the body slides."""
     angle, ratio = 0.7, 1.25
     on_feet = complex(*load[:2]) * np.exp(-1j * angle)
     force, moment = largest_wrench(Points(FEET), on_feet, load[2])
@@ -84,7 +84,7 @@ def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load(spin)
     np.testing.assert_allclose(*shown, rtol=1e-9, atol=1e-12)
 
 
-def test_modes_and_heat_are_those_of_the_body_that_slides_pivots_and_rests():
+def test_sensors_show_modes_and_heat_of_a_body_that_slides_pivots_and_rests():
     motion = [0.2, 0.3, -4.0]
     mbs, _, contact = body_on_feet(motion)
     mode, share, heat = (contact.add_sensor(one) for one in ("mode", "capacity_share", "heat"))
@@ -118,7 +118,7 @@ def test_points_lie_where_the_regularised_contact_has_them_for_any_axes_of_the_d
     ("feet", "solver"), [(ring_places(0.05, 3), SOLVER), (FEET, SOLVER), (TWO_FEET, GENERALISED)]
 )
 def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_together(feet, solver):
-    """Their net force loads the joint, whose reaction loads them."""
+    """The net force of the points loads the joint, whose reaction loads the points."""
     weight, coefficient, inertia, spin, rate = 40.0, 0.4, 0.02, 3.0, 3.0
     arms, shares = np.array([complex(x, y) for x, y, _ in feet]), np.array([share for *_, share in feet])
     mbs = new_model()
@@ -172,7 +172,7 @@ def test_points_under_the_reaction_of_the_joint_on_their_axis_stick_and_slide_to
     assert [*force[:2], float(moment)] == pytest.approx(largest, rel=1e-4)
 
 
-def test_a_deleted_contact_lets_all_its_points_go():
+def test_a_deleted_contact_releases_all_points():
     mbs, node, contact = body_on_feet()
     push(mbs, node, [1.0, 0.0, 0.0], lambda t: 1.0)
     assert run(mbs, 0.1) == []

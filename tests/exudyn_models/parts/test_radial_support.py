@@ -1,4 +1,4 @@
-"""A support between bodies of every kind: conservation, Jacobian, its law by sensors, and motions in closed form."""
+"""Supports between bodies of every kind: conservation, Jacobians, sensors, and motions in closed form."""
 
 import math
 
@@ -34,7 +34,7 @@ def supported(kinds, data=(MASTER, DISC), **support):
 
 
 def in_plane(mbs, node):
-    """x, y and angle of a disc and their rates."""
+    """Return x, y and angle of a disc and their rates."""
     q, q_t = coordinates(mbs, node)
     return np.hstack((q[[0, 1, -1]], q_t[[0, 1, -1]]))
 
@@ -42,7 +42,7 @@ def in_plane(mbs, node):
 @pytest.mark.parametrize("kinds", ON_BODIES, ids=" on ".join)
 @pytest.mark.parametrize("stop", [{}, STOP], ids=["hardening", "stop"])
 @pytest.mark.filterwarnings("ignore:the energy balance is off")  # the test asserts how far
-def test_two_bodies_keep_momenta_and_what_they_lose_is_in_the_springs_and_the_damper(kinds, stop):
+def test_two_bodies_conserve_momenta_and_their_energy_goes_to_springs_and_damper(kinds, stop):
     mbs, nodes, support = supported(kinds, **SUPPORT | stop)
     balance = add_energy_balance(
         mbs, gains={}, losses={"damper": support.power}, stored=[support.stored_energy]
@@ -58,8 +58,8 @@ def test_two_bodies_keep_momenta_and_what_they_lose_is_in_the_springs_and_the_da
     assert found.losses["damper"][-1] > 0.01
     assert np.all(np.diff(found.losses["damper"]) > 0.0)
     lengths = np.linalg.norm(mbs.GetSensorStoredData(deflection)[:, 1:], axis=1)
-    assert not stop or lengths.min() < STOP["stop_gap"] < lengths.max()  # all of the law acted
-    # Of order 6 or 7 at 1e-3 of the time scales; the bend at the stop breaks the order of one step.
+    assert not stop or lengths.min() < STOP["stop_gap"] < lengths.max()  # every part of the law acted
+    # Order 6 or 7 with steps of 1e-3 of the time scales; the kink at the stop spoils the order of one step.
     assert abs(found.residual).max() < (1e-4 if stop else 1e-10) * found.turnover
 
 
@@ -88,7 +88,7 @@ def test_bodies_in_the_plane_move_as_planar_ones(kinds, law):
 def test_sensors_show_the_law(gap):
     mbs = new_model()
     base = planar_body(mbs, 2.0, 0.5, [1.0, 2.0, math.pi / 2.0], [0.0, 0.0, 3.0])
-    # In the axes of the base, turned by 90°, the disc is at (0.5, 0.5), 0.5 from where the support is relaxed.
+    # In the axes of the base, turned by 90°, the disc is at (0.5, 0.5), 0.5 from the relaxed position.
     disc = planar_body(mbs, 1.0, 0.5, [0.5, 2.5, 0.0], [-1.5, -1.3, 0.0])
     law = SUPPORT | STOP | {"offset": (0.2, 0.1), "stop_gap": gap}
     support = add_radial_support(mbs, base, disc, **law)
@@ -99,7 +99,7 @@ def test_sensors_show_the_law(gap):
     def force_at(d):
         return 3.0 * d + 20.0 * d**3 + 30.0 * max(0.0, d - gap)
 
-    # The base takes its point under the disc along with 3·(−0.5, −0.5), so that (0, 0.2) is left to the damper.
+    # The point of the base under the disc moves with 3·(−0.5, −0.5), so the damper sees (0, 0.2).
     np.testing.assert_allclose(found["deflection"], [0.3, 0.4], atol=1e-15)
     share = force_at(0.5) / 0.5
     np.testing.assert_allclose(found["force"], [0.4 * share, -0.3 * share - 0.4 * 0.2, 0.0], atol=1e-14)
@@ -110,7 +110,7 @@ def test_sensors_show_the_law(gap):
 
 @pytest.mark.parametrize("speed", [0.5, 2.0])
 def test_a_disc_on_an_eccentric_shaft_runs_out_and_centres_itself_above_its_critical_speed(speed):
-    # On a support that turns at the distance e from the axis: r = C·e/(C − m·ω²), of the other sign above √(C/m).
+    # On a support that turns at the distance e from the axis r = C·e/(C − m·ω²), which changes sign at √(C/m).
     stiffness, e, end = 1.0, 0.1, 3.0
     r = stiffness * e / (stiffness - speed**2)
     mbs = new_model()

@@ -28,7 +28,7 @@ def run(mbs, end=0.5, steps=500, solver=exu.DynamicSolverType.RK67, go_on=False)
 
 
 def by_hand(t):
-    # C·(T − T0) = ½·J·(ω0² − ω²), so that ω' = −a·(b + c·ω²) with a tangent for its solution.
+    # C·(T − T0) = ½·J·(ω0² − ω²), so ω' = −a·(b + c·ω²), whose solution is a tangent.
     a, c = MU * LOAD * RADIUS / INERTIA, FADE * INERTIA / (2.0 * CAPACITY)
     b = 1.0 - c * SPEED**2
     return np.sqrt(b / c) * np.tan(np.arctan(SPEED * np.sqrt(c / b)) - a * np.sqrt(b * c) * t)
@@ -52,7 +52,7 @@ def test_heat_is_in_the_capacity_and_in_the_surroundings_to_rounding(solver):
     temperature, lost = mbs.GetSensorValues(sensor)
     total = float(mbs.GetSensorValues(heat))
     assert 0.1 < lost / total < 0.9
-    # Newton's own tolerance is 1e-8 of the coordinates.
+    # Newton's tolerance is 1e-8 of the coordinates.
     rounding = 1e-13 if solver == "RK44" else 1e-9
     assert CAPACITY * (temperature - 20.0) + lost == pytest.approx(total, rel=rounding)
 
@@ -80,7 +80,7 @@ def test_a_coefficient_of_temperature_may_read_slip_too_and_be_changed():
     assert thermal.temperature(mbs) > 30.0
 
 
-def test_what_is_hot_cools_down_by_the_exponential_function_and_another_source_heats_it():
+def test_a_hot_node_cools_exponentially_and_another_source_heats_it():
     mbs = new_model()
     mbs.AddObject(items.ObjectMass1D(nodeNumber=mbs.AddNode(items.Node1D()), mass=1.0))
     hot = add_thermal_node(mbs, heat_capacity=8.0, conductance=4.0, surroundings=20.0, start=80.0)

@@ -12,7 +12,7 @@ JUMPS = (0.4137, 0.9)
 
 
 def brake():
-    """A rotor on the ground that slows down by R·μN/J = 0.25·N while it turns; N is 2 N, then 7 N, then 0."""
+    """Return a rotor on the ground that decelerates at R·μN/J = 0.25·N while it turns; N is 2 N, then 7 N, then 0."""
     mbs = new_model()
     wheel = rotor(mbs, 0.2, 10.0)
     law = {"contact_radius": 0.1, "friction_coefficient": lambda slip_speed: 0.5, "regularisation": 0.1}
@@ -56,7 +56,7 @@ def test_sensors_hold_all_parts_and_settings_and_initial_values_are_as_before():
         times, spins = mbs.GetSensorStoredData(sensor).T
         assert (times[0], times[-1]) == (0.0, pytest.approx(1.2))
         assert (np.diff(times) > 0.0).all()
-        assert np.diff(times).max() < 0.2  # what is due is written at the step after it
+        assert np.diff(times).max() < 0.2  # due values are written at the next step
         np.testing.assert_allclose(spins, [exact(t) for t in times], rtol=1e-11)
     mbs.SetPostStepUserFunction(lambda mbs, t: t < 0.5 or 1 / 0)
     with pytest.raises(exu.ExudynError, match="division by zero"):
@@ -85,7 +85,7 @@ def test_the_next_run_goes_on_from_the_end_if_it_is_asked_to():
         (["0.4 s"], r"breaks\[0\] = '0.4 s'"),
     ],
 )
-def test_what_are_no_breaks_is_refused(breaks, message):
+def test_invalid_breaks_are_refused(breaks, message):
     mbs, *_ = brake()
     with pytest.raises(ValueError, match=message):
         solve_dynamic(mbs, fixed_steps(6), breaks=breaks)

@@ -45,7 +45,7 @@ def test_a_contact_rubs_and_measures_after_earlier_objects_were_deleted(deleted,
 
 @pytest.mark.parametrize("solve", [solve_dynamic, exu.MainSystem.SolveDynamic])
 @pytest.mark.parametrize("planar", [False, True])
-def test_a_deleted_contact_lets_go_of_what_it_held(planar, solve):
+def test_a_deleted_contact_releases_its_bodies(planar, solve):
     mbs = new_model()
     node = wheel(mbs, planar)
     friction = add_ring_friction(mbs, None, node, normal_load=800.0, **FRICTION)
@@ -97,7 +97,7 @@ def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_t
 @pytest.mark.parametrize("base", [False, True])
 @pytest.mark.parametrize("again", [False, True], ids=["before a run", "between runs"])
 def test_a_support_shows_its_own_disc_after_an_object_is_deleted(base, again):
-    """The springs hold the disc at a deflection of 2 mm, which only its own coordinates show."""
+    """Only the disc's own coordinates show the deflection of 2 mm."""
     mbs = new_model()
     other = planar_body(mbs, 1.0, 0.5, [0.3, 0.4, 0.0], [0.0] * 3)
     housing = planar_body(mbs, 1e12, 1e12, [0.0] * 3, [0.0] * 3) if base else None

@@ -1,4 +1,4 @@
-"""An implicit run starts with the power that friction has, and tells of a load that jumps in it."""
+"""An implicit run starts with the actual power of friction, and reports load jumps."""
 
 import warnings
 
@@ -37,7 +37,7 @@ def run(load, solver, *, step=STEP, unit=1.0, balance=True, breaks=()):
 
 @SOLVERS
 def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_linear(solver):
-    # The trapezoidal rule is exact then; without the first power it would be wrong by h/2·M·ω = 3 J.
+    # The trapezoidal rule is exact here; without the initial power its error would be h/2·M·ω = 3 J.
     _, balance = run(800.0, solver)
     assert balance.losses["brake"][-1] == pytest.approx(MOMENT * (50.0 - 48.0 * 0.125) * 0.25, rel=1e-10)
     assert np.max(np.abs(balance.residual)) < 1e-10 * balance.turnover
@@ -48,10 +48,10 @@ def test_works_are_exact_from_the_first_step_and_from_a_break_on_where_power_is_
 
 @SOLVERS
 @pytest.mark.parametrize("balance", [True, False])
-def test_a_load_that_jumps_is_told_with_its_time_and_the_remedy(solver, balance):
+def test_a_load_jump_is_reported_with_its_time_and_the_remedy(solver, balance):
     (message,), _ = run(lambda time: 800.0 * (time > 0.1037), solver, unit=10.0, balance=balance)
     name = "brake" if balance else "heat"
-    # Within the step of 5 ms, by M·ω0 = 1200 W less what the step has braked already.
+    # The jump within the step of 5 ms is M·ω0 = 1200 W, less the effect of the deceleration in the step.
     assert message.startswith(
         f"the power '{name}' jumps by 1.2e+03 W between t = 0.1 s and 0.105 s: the energy"
     )
@@ -78,7 +78,7 @@ def test_a_jump_that_is_small_compared_with_the_other_powers_is_noise(solver, lo
 
 
 def rise(width):
-    """A load that rises in the middle of a step over about ``width`` of them."""
+    """Return a load that rises in the middle of a step over about ``width`` steps."""
     return lambda time: 400.0 * (1.0 + np.tanh((time - 20.5 * STEP) / (width * STEP)))
 
 
@@ -90,7 +90,7 @@ def rise(width):
         (6000.0, 2.5e-3),  # slip ends
         (lambda time: 3e3 * time, 2.5e-3),
         (lambda time: 3e3 * np.sin(20.0 * time) ** 2, 2.5e-3),
-        (rise(0.7), STEP),  # changes by 3.4 times what it does in the steps beside
+        (rise(0.7), STEP),  # changes 3.4 times as much as in the neighbouring steps
         # The period is four steps, so the load changes in every other step.
         (lambda time: 800.0 + 300.0 * np.sin(np.pi / 2.0 * time / STEP + np.pi / 4.0), STEP),
     ],
@@ -100,7 +100,7 @@ def test_no_jump_is_reported_for_a_load_that_the_steps_resolve_or_for_the_end_of
 
 
 @SOLVERS
-def test_jumps_near_each_other_a_small_one_and_a_rise_within_a_step_are_told(solver):
+def test_close_jumps_a_small_jump_and_a_rise_within_a_step_are_reported(solver):
     jumps = 20.5 * STEP, 23.5 * STEP
     (message,), _ = run(lambda time: 400.0 * ((time > jumps[0]) + 2.0 * (time > jumps[1])), solver)
     assert "and powers do so in 2 steps of this run" in message
@@ -109,7 +109,7 @@ def test_jumps_near_each_other_a_small_one_and_a_rise_within_a_step_are_told(sol
 
 
 @pytest.mark.parametrize("step", range(5, 14))
-def test_a_jump_is_told_once_wherever_the_steps_looked_at_together_end(step, monkeypatch):
+def test_a_jump_is_reported_once_at_any_place_in_a_batch_of_steps(step, monkeypatch):
     monkeypatch.setattr("exudyn_models.solver.jumps.TOGETHER", 8)
     load, solver = lambda time: 800.0 * (time > (step + 0.5) * STEP), exu.DynamicSolverType.TrapezoidalIndex2
     (message,), _ = run(load, solver)

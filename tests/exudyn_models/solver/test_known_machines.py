@@ -1,4 +1,4 @@
-"""Exact stick in machines whose motion is known: a dry pendulum, a brake that a spring presses, two of Modelica's."""
+"""Exact stick in machines with known motions: a dry pendulum, a spring-loaded brake, and Modelica's examples."""
 
 import math
 
@@ -124,7 +124,7 @@ def test_a_dry_pendulum_comes_to_rest_at_the_exact_angle_and_keeps_it():
     assert abs(mbs.systemData.GetODE2Coordinates()[2] - rests_at) < 1e-12
 
 
-def test_the_load_of_a_pivot_may_be_the_reaction_of_the_joint_which_depends_on_the_friction():
+def test_the_load_of_a_pivot_may_be_a_joint_reaction_that_depends_on_friction():
     assert max(swung(True, 2e-3)[1]) < 4e-5
 
 
@@ -155,7 +155,7 @@ def test_a_load_from_a_spring_acts_without_delay():
 def self_energising_brake(gain):
     """Return a wheel of 20 rad/s and its node; the load of its brake grows with the moment between it and a flywheel.
 
-    N = N₀ + c·|M| with M = J·μrN/(2J), so that ``gain`` is c·μr/2.
+    N = N₀ + c·|M| with M = J·μrN/(2J), so ``gain`` is c·μr/2.
     """
     mbs = new_model()
     wheel, flywheel = rotor(mbs, 0.5, 20.0), rotor(mbs, 0.5, 20.0)
@@ -187,7 +187,7 @@ def test_a_self_locking_brake_is_an_error():
         solve_dynamic(mbs, settings_of(0.5, 50), TRAPEZOIDAL)
 
 
-TO_CARRIER = np.array([1.0, 1.5]) / 2.5  # speed of the carrier by those of sun and ring
+TO_CARRIER = np.array([1.0, 1.5]) / 2.5  # speed of the carrier from the speeds of sun and ring
 GEAR_MASSES = np.diag([1.0, 0.0]) + 10.0 * np.outer(TO_CARRIER, TO_CARRIER)
 
 
@@ -197,12 +197,12 @@ def road_load(speed):
 
 
 def clutch_share(time):
-    """Return the load of the clutch over its largest value; that of the brake is the rest."""
+    """Return the load of the clutch as a share of its largest value; the brake gets the rest."""
     return min(max((time - 2.0) / 0.1, 0.0), 1.0)
 
 
 def exact_gear_shift():
-    """Return when (s) the brake slips and the clutch sticks, and the speed (rad/s) of the engine at 5 s."""
+    """Return the times (s) when the brake slips and the clutch sticks, and the engine's speed (rad/s) at 5 s."""
     options = {"rtol": 1e-12, "atol": 1e-13, "method": "DOP853"}
 
     def braked(t, speed):
@@ -235,7 +235,8 @@ def exact_gear_shift():
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_a_gear_shift_of_modelica_is_exact(solver):
-    """SimpleGearShift: a clutch between the sun and the massless ring of a planetary gear, a brake on the ring."""
+    """SimpleGearShift: a clutch between the sun and the massless ring of a planetary gear, and a brake on the
+    ring."""
     mbs = new_model()
     sun, ring = (mbs.AddNode(items.Node1D()) for _ in range(2))
 
@@ -347,7 +348,8 @@ def test_a_one_way_clutch_without_a_load_rests():
 
 @pytest.mark.parametrize("solver", IMPLICIT)
 def test_a_gear_with_an_efficiency_has_the_accelerations_of_the_closed_form(solver):
-    """Modelica's LossyGear: bearing friction under the moment of the gear, which depends on the flow of power."""
+    """Modelica's LossyGear: bearing friction under the moment of the gear, which depends on the direction of
+    power."""
     ratio, efficiency, drives, brakes = 2.0, 0.8, 3.0, -2.0
     mbs = new_model()
     shafts = [rotor(mbs, 1.0, 0.0), rotor(mbs, 0.5, 0.0)]

@@ -1,4 +1,4 @@
-"""Exact stick of rotors on parallel axes, and of pins, which hold a point and leave the spin free."""
+"""Exact stick of rotors on parallel axes, and of pins, which hold a point but not the spin."""
 
 import exudyn as exu
 import numpy as np

@@ -31,7 +31,7 @@ def push(mbs, node, place, load):
 
 
 def stop_of_ring(speed, spin):
-    """Return the time at which a ring on the ground stops, from a motion that ends at a constant ratio u/S."""
+    """Return the time when a ring on the ground stops; u/S is constant at the end of its motion."""
 
     def decelerations(_, motion):
         u, w = abs(motion[0]), RADIUS * abs(motion[1])
@@ -78,7 +78,7 @@ def test_a_ring_stops_sliding_and_spinning_at_once_with_the_second_order(solver)
 
 @pytest.mark.parametrize("loads", [(30.0, 20.0), (10.0, 15.0, 25.0)])
 def test_contacts_between_the_same_bodies_share_a_load(loads):
-    """They stop, hold and break loose as one contact with the sum of their loads."""
+    """They stop, hold and release like one contact with the sum of their loads."""
     mbs, node, _ = sliding_ring(1.0, 5.0, loads)
     push(mbs, node, 1, lambda t: 30.0 * max(0.0, t - 0.3))
     changes = run(mbs, 1.0, 1e-3)
@@ -138,7 +138,7 @@ def test_points_stick_pivot_and_break_loose_as_in_the_reference(points, paramete
 
 @pytest.mark.parametrize("annulus", [False, True])
 def test_a_load_on_the_limit_surface_releases_the_contact(annulus):
-    """The friction that resists a slip lies on the limit surface; a load against it grows until it is reached."""
+    """The friction of a slip lies on the limit surface; an opposite load grows until it reaches this point."""
     geometry = {"inner_radius": 0.05, "outer_radius": RADIUS} if annulus else {"contact_radius": RADIUS}
     for slip in ([0.3, -0.4, 2.0], [0.01, 0.02, -3.0], [1.0, 0.0, 0.1]):
         mbs = new_model()
@@ -181,7 +181,7 @@ def test_a_held_disc_does_not_creep_within_an_hour():
 
 @pytest.mark.parametrize("solver", [TRAPEZOIDAL, SOLVERS.GeneralizedAlpha])
 def test_a_block_on_a_belt_sticks_and_slips_with_static_friction(solver):
-    """The spring's force reaches the static friction, and the block then swings about that of sliding friction."""
+    """When the spring's force reaches static friction, the block swings about the position of sliding friction."""
     mass, stiffness, speed, friction, ratio = 1.0, 100.0, 0.1, 3.0, 1.5
     mbs = new_model()
     belt = planar_body(mbs, 1e20, 1.0, [0.0] * 3, [speed, 0.0, 0.0])
@@ -217,7 +217,7 @@ def spatial_body(kind):
 
 
 def free_pair(body, step):
-    """Return the time at which two free bodies stick, one of them sliding and spinning on the other."""
+    """Return the time when two free bodies stick, of which one slides and spins on the other."""
     mbs = new_model()
     first = body(mbs, 3.0, 0.05, [0.0, 0.0, 0.0], [0.1, 0.2, 3.0])
     second = body(mbs, 1.0, 0.01, [0.02, 0.0, 0.0], [1.0, 0.5, 20.0])
@@ -263,7 +263,7 @@ def test_the_pin_of_fig_5_sticks_and_slips_as_in_the_reference():
 
 
 def test_joints_leave_a_guided_block_one_direction_of_slip():
-    """The guide takes the side load, so that the contact breaks loose under the load along the guide alone."""
+    """The guide takes the side load, so only the load along the guide counts for release."""
     mbs, node, _ = sliding_ring(1.0, 0.0)
     ground = coordinate(mbs, None)
     for place in (1, 2):
@@ -276,7 +276,7 @@ def test_joints_leave_a_guided_block_one_direction_of_slip():
 
 
 def test_a_disc_between_two_plates_that_rub_on_each_other_sticks_to_both():
-    """Its locks fix more than the three bodies can do, so the last one holds fewer directions."""
+    """The locks are more than the three bodies need, so the last one holds fewer directions."""
     mbs = new_model()
     plates = [planar_body(mbs, 1.0, 0.01, [0.0] * 3, [0.0, 0.0, spin]) for spin in (30.0, 10.0)]
     disc = planar_body(mbs, 2.0, 0.02, [0.001, 0.0, 0.0], [0.0] * 3)

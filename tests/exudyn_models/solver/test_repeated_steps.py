@@ -30,8 +30,8 @@ def brake_next_to_a_clutch_that_sticks_and_slips(steps, solver, breaks):
 
 @pytest.mark.parametrize("breaks", [(), (0.3141,)], ids=["one run", "with a break"])
 @pytest.mark.parametrize("solver", [SOLVERS.TrapezoidalIndex2, SOLVERS.GeneralizedAlpha], ids=str)
-def test_heat_and_temperature_are_exact_whatever_steps_are_repeated(solver, breaks):
-    # Under a constant moment ω = ω0 − M·t/J, and all the kinetic energy that is lost becomes heat.
+def test_heat_and_temperature_are_exact_if_steps_are_repeated(solver, breaks):
+    # Under a constant moment ω = ω0 − M·t/J, and all lost kinetic energy becomes heat.
     speed = SPEED - MOMENT * UNTIL / INERTIA
     heat = INERTIA * (SPEED**2 - speed**2) / 2.0
     for steps in STEPS[::2] if breaks else STEPS:

@@ -1,4 +1,4 @@
-"""Runs of solve_dynamic: they go on, and what goes wrong in them comes out with its time and its cause."""
+"""Runs of solve_dynamic: they continue correctly, and errors show their time and cause."""
 
 import math
 
@@ -19,7 +19,7 @@ def settings(solver=SOLVERS.RK44, start=0.0, end=1.0, steps=100):
 
 
 def clutch(load=2.0):
-    """A disc on the axis of a rotor: its spin grows with R·μN/J = 0.05·load."""
+    """Return a disc on the axis of a rotor; its spin grows at R·μN/J = 0.05·load."""
     mbs = new_model()
     master, disc = rotor(mbs, 1.0, 20.0), planar_body(mbs, 1.0, 1.0, [0.0] * 3, [0.0] * 3)
     law = {"contact_radius": 0.1, "friction_coefficient": 0.5, "regularisation": 5e-3}
@@ -28,7 +28,7 @@ def clutch(load=2.0):
 
 
 def add_coordinate_force(mbs, node, force):
-    """Add a spring to the ground with a force of its own on the first coordinate of a node."""
+    """Add a spring with a user-defined force between the ground and the first coordinate of a node."""
     mbs.AddObject(
         items.ObjectConnectorCoordinateSpringDamper(
             markerNumbers=[coordinate(mbs, None), coordinate(mbs, node)],
@@ -56,18 +56,19 @@ def test_an_explicit_solver_is_refused_where_the_model_has_constraints(solver):
         numbers = [coordinate(mbs, None), coordinate(mbs, disc, place)]
         mbs.AddObject(items.ObjectConnectorCoordinate(markerNumbers=numbers))
     with pytest.raises(
-        ValueError, match=f"solverType = {solver.name}: it is explicit and would ignore 2 constraint"
+        ValueError,
+        match=f"solverType = {solver.name}: explicit solvers ignore constraints, and this model has 2",
     ):
         solve_dynamic(mbs, settings(), solver)
     solve_dynamic(mbs, settings(), SOLVERS.GeneralizedAlpha)
     assert coordinates(mbs, disc)[1] == pytest.approx([0.0, 0.0, 0.1])
 
 
-def test_a_state_that_is_not_finite_or_a_step_that_does_not_converge_ends_the_run_and_tells_when():
+def test_an_infinite_state_or_a_diverging_step_ends_the_run_with_its_time():
     mbs, disc = clutch()
     add_coordinate_force(mbs, disc, lambda t, u: math.nan if t > 0.503 else u)
     mbs.Assemble()
-    assert mbs.SolveDynamic(settings(SOLVERS.RK44, 0.25))  # Exudyn itself finds nothing in that
+    assert mbs.SolveDynamic(settings(SOLVERS.RK44, 0.25))  # Exudyn itself reports no problem
     told = r"RK44 failed 0\.255 s after the start: the state is not finite any more"
     with pytest.raises(SimulationError, match=told):
         solve_dynamic(mbs, settings(SOLVERS.RK44, 0.25, 1.25, 200))
@@ -75,7 +76,7 @@ def test_a_state_that_is_not_finite_or_a_step_that_does_not_converge_ends_the_ru
         solve_dynamic(mbs, settings(), SOLVERS.GeneralizedAlpha)
 
 
-def test_a_body_without_mass_is_told():
+def test_a_body_without_mass_is_reported():
     mbs = new_model()
     node = rotor(mbs, 0.0, 1.0)
     add_coordinate_force(mbs, node, lambda t, u: 0.0)
@@ -113,7 +114,7 @@ def test_the_models_own_function_after_a_step_is_called_and_kept(stops):
 
     mbs.SetPostStepUserFunction(own)
     solve_dynamic(mbs, settings())
-    assert len(seen) == (51 if stops else 101)  # at the start too
+    assert len(seen) == (51 if stops else 101)  # including the start
     assert mbs.GetPostStepUserFunction()["function"] is own
 
 

@@ -20,7 +20,7 @@ LAWS = {
 
 
 def speed_after_a_stop(solver, first, load=27.0, epsilon=1e-3, adaptive=True, **law):
-    """Return the speed in rad/s of a rotor that friction stops, and a load (N m) would turn back, after 0.15 s."""
+    """Return the speed in rad/s after 0.15 s of a rotor that friction stops and a load (N m) pulls back."""
     mbs = new_model()
     wheel = rotor(mbs, 0.5, first)
     drive(mbs, wheel, -load)
@@ -41,7 +41,7 @@ def speed_after_a_stop(solver, first, load=27.0, epsilon=1e-3, adaptive=True, **
 def test_a_load_that_static_friction_holds_never_rolls_back(law, share, epsilon, solver):
     for first in np.linspace(5.0, 6.0, 7):
         speed = speed_after_a_stop(solver, first, share * STATIC, epsilon, **LAWS[law])
-        assert abs(speed) <= epsilon / LEVER  # the creep of a contact that holds
+        assert abs(speed) <= epsilon / LEVER  # creep of a sticking contact
 
 
 @IMPLICIT
@@ -52,14 +52,14 @@ def test_a_load_beyond_static_friction_rolls_back_as_by_hand(solver):
 
 
 @IMPLICIT
-def test_a_fixed_step_across_the_peak_is_told(solver):
+def test_a_fixed_step_across_the_peak_causes_a_warning(solver):
     with pytest.warns(RuntimeWarning, match="skips a peak of friction"):
         assert speed_after_a_stop(solver, 5.2, adaptive=False, **LAWS["steep table"]) < -0.1
 
 
 @IMPLICIT
-def test_no_peak_is_told_of_a_contact_that_slips_on_however_much_faster(solver):
-    """From twice ε the first step adds more slip than there was, on the falling side of the peak."""
+def test_a_contact_that_keeps_slipping_causes_no_warning(solver):
+    """At 2ε the first step adds more slip than there was, on the falling side of the peak."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         speed = speed_after_a_stop(solver, -2e-3 / LEVER, load=40.0, adaptive=False, **LAWS["steep table"])

@@ -18,7 +18,7 @@ BRAKE = {"contact_radius": 0.1, "friction_coefficient": 0.3, "normal_load": 800.
 
 
 def braked(speed, moment):
-    """A rotor on the ground under a brake, of 24 N m sliding and 28.8 N m at rest, and a moment."""
+    """Return a rotor under a moment and a brake, which holds 24 N m while it slides and 28.8 N m at rest."""
     mbs = new_model()
     wheel = rotor(mbs, INERTIA, speed)
     drive(mbs, wheel, moment)
@@ -60,7 +60,7 @@ def test_a_growing_load_breaks_the_contact_loose_at_the_static_moment(solver):
 
 
 def coupled_clutches(step, solver=SOLVERS.TrapezoidalIndex2):
-    """Four rotors in a row, of which the first turns and is driven to and fro (Modelica's CoupledClutches)."""
+    """Return four rotors in a row; the first one turns under an alternating torque (Modelica's CoupledClutches)."""
     mbs = new_model()
     rotors = [rotor(mbs, 1.0, speed) for speed in (10.0, 0.0, 0.0, 0.0)]
     drive(mbs, rotors[0], lambda t: 10.0 * math.sin(10.0 * math.pi * t))
@@ -98,7 +98,7 @@ def test_switching_times_of_coupled_clutches_converge_with_the_second_order(solv
 
 @pytest.mark.parametrize("load", [0.0, 5.0, -9.0, 17.0, -17.9])
 def test_two_brakes_on_one_rotor_hold_together(load):
-    """How they share the load is not determined, but their sum is."""
+    """The shares of the load are undetermined, but their sum is known."""
     mbs = new_model()
     wheel = rotor(mbs, INERTIA, 3.0)
     drive(mbs, wheel, lambda t: load + 40.0 * max(0.0, t - 2.0))
@@ -120,7 +120,7 @@ def test_two_brakes_on_one_rotor_hold_together(load):
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.filterwarnings("ignore:the energy balance is off")  # the test asserts how far
 def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
-    """Loops of contacts between five rotors and the ground, all with static friction, under alternating moments."""
+    """Five rotors and the ground form loops of contacts with static friction, under alternating moments."""
     rng = np.random.default_rng(seed)
     mbs = new_model()
     rotors = [
@@ -171,7 +171,7 @@ def test_a_random_train_obeys_coulombs_law_and_the_balance_of_energy(seed):
 
 
 def two_discs(kind, solver, step):
-    """Return how late a disc sticks to one of three times its inertia, and the spins of both at the end."""
+    """Return the delay of stick of a disc on one with three times its inertia, and both final spins."""
     mbs = new_model()
     ground = mbs.CreateGround()
     bodies = []
@@ -195,7 +195,7 @@ def two_discs(kind, solver, step):
 @pytest.mark.parametrize("kind", ["RotationRotationVector", "RotationRxyz", "RotationEulerParameters"])
 def test_bodies_in_space_that_joints_hold_on_one_axis_stick_exactly(kind, solver):
     (coarse, _), (fine, spins) = (two_discs(kind, solver, step) for step in (2e-3, 1e-3))
-    if kind == "RotationEulerParameters":  # they turn a constant deceleration into a curve
+    if kind == "RotationEulerParameters":  # their coordinates are curved under a constant deceleration
         assert 3.8 <= coarse / fine <= 4.2
     else:
         assert (coarse, fine) == pytest.approx((0.0, 0.0), abs=1e-10)
@@ -256,7 +256,7 @@ def test_runs_can_go_on_and_loads_can_change_between_them():
 
 
 def test_changes_at_a_break_are_among_the_changes():
-    """The brake closes at 0.2 s, where a break takes the jump of its load, and stops the wheel."""
+    """The brake's load jumps at 0.2 s, at a break, and stops the wheel."""
     mbs = new_model()
     wheel = rotor(mbs, INERTIA, 2.0)
     law = BRAKE | {"normal_load": lambda time: 800.0 if time > 0.2 else 0.0}

@@ -48,7 +48,7 @@ def friction(law, motion):
 
 
 def nearest_to_rest(law, motion):
-    """Return the slip of the slowest point over that of the fastest."""
+    """Return the ratio of the slips of the slowest and the fastest point."""
     slip, spin, angle = motion
     if isinstance(law, Points):
         speeds = [abs(slip - 1j * spin * arm) for arm in law.arms(angle)]

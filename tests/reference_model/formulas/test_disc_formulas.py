@@ -38,7 +38,7 @@ def test_error_of_the_expansion_22_is_its_first_neglected_term():
 
 
 def averaged(expansion, slip, rim_speed):
-    """Return force over μN and moment over μN·R by (20), (21) and an expansion of ν̄_r/|ν_r|, by quadrature."""
+    """Return force/μN and moment/(μN·R) by (20), (21) and an expansion of ν̄_r/|ν_r|, by quadrature."""
     speed = math.hypot(abs(slip), rim_speed)
 
     def of_point(place):

@@ -13,7 +13,7 @@ FREE = DiscOnDisc(
     contact_radius=0.1, shaft_damping=0.0, shaft_speed=0.0,
 )  # fmt: skip
 MOVING = np.array([0.1, 0.2, 0.0, 3.0, 4.0, 24.0])
-"""Slips at 5 m/s and spins at 12 m/s on the radius of gyration of 0.5 m, together 13 m/s."""
+"""A disc that slips at 5 m/s and spins at 12 m/s at its radius of gyration of 0.5 m, together 13 m/s."""
 
 
 @pytest.mark.parametrize(

@@ -38,7 +38,7 @@ def whirling(gain, load=1.0):
 
 
 def plain_shares(law, radius, slip, rim):
-    """Return F and M over μN as the paper and the notes print them, for arrays."""
+    """Return F/μN and M/μN as the paper and the notes print them, for arrays."""
     if law is ThreeTermRing:
         square = slip**2 + rim**2
         both = 0.75 * (slip * rim / square) ** 2

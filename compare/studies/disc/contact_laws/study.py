@@ -96,7 +96,7 @@ def at_ratios(ratios: Sequence[float]) -> dict[str, list[str]]:
 def friction_on(
     engine: Engine, disc: DiscOnDisc, ratios: Sequence[float], name: str, predicted: Sequence[FloatArray]
 ) -> Measured:
-    """Compare F_x, F_y (over μN) and M (over μN·R) with ``predicted``, shape (2n, 3).
+    """Compare F_x/μN, F_y/μN and M/(μN·R) with ``predicted``, shape (2n, 3).
 
     Friction is the initial acceleration times inertia plus the forces of springs and dampers, see (19).
     """
@@ -114,8 +114,8 @@ def friction_on(
         return np.array(found) / (disc.friction_force * np.array((1.0, 1.0, disc.contact_radius)))
 
     found, error = refined(friction, TIGHTEST)
-    # Single errors may be small by chance, so the largest noise of all motions and the largest truncation error of
-    # each count.
+    # Single errors may be small by chance, so take the largest noise of all motions and each one's largest truncation
+    # error.
     truncation = np.max(np.abs(found[:, 0] - found[:, 1]), axis=1, keepdims=True)
     along = found[:, 0, :2] @ (-math.cos(DIRECTION), -math.sin(DIRECTION))
     return Measured(

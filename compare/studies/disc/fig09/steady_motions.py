@@ -42,7 +42,8 @@ def steady_motions(engine: Engine, cases: Cases, points: int | None = None) -> M
 def means(engine: Engine, load: float, which: int | None, points: int | None, tolerance: float) -> FloatArray:
     """Return the means over a steady motion, NaN if none is found.
 
-    They are radius, frequency and spin of a whirl over μN/(βk), k and ω, or x, y and spin at rest over X0 and ω.
+    They are radius, frequency and spin of a whirl, divided by μN/(βk), k and ω, or x, y and spin at rest, divided by
+    X0 and ω.
     """
     disc = theory.disc_of(load, which, points)
     motion = steady_motion(engine, disc, theory.exact_motion(load, which).state, tolerance)

@@ -37,7 +37,7 @@ SOURCE = (
 SOURCE_CENTRED = f"{SOURCE}; X0 = 0 here"
 
 CIRCLES: tuple[tuple[float, int], ...] = ((3e-4, 0), (3e-4, 1), (5e-4, 0), (1e-3, 0), (2e-3, 0), (0.2, 0))
-"""Whirls without offset: μN in N and number by falling size; number 1 is unstable."""
+"""Whirls without offset: μN in N and number in order of decreasing size; number 1 is unstable."""
 
 ORDERS = slice(2, 5)  # circles far from the fold; μN doubles from one to the next
 
@@ -141,7 +141,7 @@ def first_order_shift(disc: DiscOnDisc) -> complex:
 
 
 def to_inner_orbits(disc: DiscOnDisc, step: float = BRANCH_STEP) -> Iterator[Orbit]:
-    """Yield whirls by falling size, from the whirl of ``disc`` through the fold to the inner, unstable ones."""
+    """Yield whirls of decreasing size, from the whirl of ``disc`` through the fold to the inner, unstable ones."""
     outermost = whirl_orbit(disc, tolerance=ORBIT_TOLERANCE, samples=64)
     return whirl_branch(outermost, BRANCH_END * disc.offset, step=step)
 
@@ -226,7 +226,7 @@ def circles() -> Data:
 
 @functools.cache
 def orbits() -> tuple[Orbit, ...]:
-    """Return whirls by falling size, from the largest μN through the fold to the equilibrium."""
+    """Return whirls of decreasing size, from the largest μN through the fold to the equilibrium."""
     outer = [
         whirl_orbit(with_load(RING, load), tolerance=ORBIT_TOLERANCE, samples=64) for load in OUTER_LOADS
     ]

@@ -38,7 +38,7 @@ MODULATED_THERE = (0.01608, -0.00617, 0.0, 0.00943, 0.01375, 1.39531)
 KINDS = ("rest", "whirl", "modulated")
 
 
-# --- Ends of the motion over the offset
+# --- Final motion against the offset
 
 
 @STUDY.claim(

@@ -190,7 +190,7 @@ def extremes_of(trajectory: Trajectory) -> FloatArray:
     return np.array(found)
 
 
-# --- Whirl and equilibrium over the offset
+# --- Whirl and equilibrium against the offset
 
 
 def disc_at(offset: float) -> DiscOnDisc:

@@ -137,7 +137,7 @@ def deviation(
     outwards, inwards = (
         rotated(run.states, -turns * whirl.turn) for run in engine.simulate_many(motions, tolerance=tolerance)
     )
-    # The real part of the mode contains half of it, so the whole difference has the share 1 at the start.
+    # The displacement is the mode's real part, half of the mode, so q = 1 belongs to the whole difference.
     share = (outwards - inwards) @ whirl.projection / (amplitude * whirl.radius)
     return np.asarray(times, dtype=float), np.asarray(share)
 
@@ -155,7 +155,7 @@ def fitted(times: FloatArray, share: ComplexArray) -> tuple[FloatArray, FloatArr
 
 
 def departure(engine: Engine, disc: DiscOnDisc, whirl: SteadyWhirl) -> tuple[FloatArray, FloatArray]:
-    """Return times (s), once a period, and the size of the pair's share over the radius.
+    """Return times (s), once a period, and the size of the pair's share divided by the radius.
 
     The deviation starts ten times larger than in :func:`deviation`, and reaches the cycle in 900 s.
     """

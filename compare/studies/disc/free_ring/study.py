@@ -43,7 +43,7 @@ def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured
     rests = np.array([theory.roughly_rest(engine, throw) for throw in throws])
 
     def apart(tolerance: float) -> FloatArray:
-        """Return the delay of the centre's rest after the rim's over the time to rest, by two pairs of samples."""
+        """Return how much later the centre rests than the rim, as a share of the duration, from two sample pairs."""
         found = []
         for throw, rest in zip(throws, rests.tolist(), strict=True):
             times = rest * (1.0 - REMAINING[:3])
@@ -52,7 +52,7 @@ def end_together(engine: Engine, throws: Throws = (*RINGS, *OTHERS)) -> Measured
         return np.array(found)
 
     found = refined(apart, TOLERANCE)
-    # Three errors of a speed over its slope, which exceeds 0.4·g.
+    # Three errors of a speed divided by its slope, which exceeds 0.4·g.
     noise = 2.0 * 3.0 * TOLERANCE / (0.4 * theory.DECELERATION) / rests
     # Speeds are not straight lines while the ratio still changes, which earlier samples show more clearly.
     bend = np.abs(found.value[:, 1] - found.value[:, 0])

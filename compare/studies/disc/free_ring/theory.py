@@ -135,7 +135,8 @@ def curves() -> Data:
 def roughly_rest(engine: Engine, throw: Throw) -> float:
     """Return the time (s) of rest in ``engine``, which determines the sample times.
 
-    At a smaller tolerance the rest moves relative to the samples, so a change includes the error of their times.
+    A smaller tolerance shifts the rest relative to the samples, so the change of a result includes their timing
+    error.
     """
     longest = 2.0 * max(1.0, throw.inertia) * SPEED / DECELERATION
     found = rest_of(engine.simulate(throw.disc, throw.state, [0.0, longest], tolerance=TOLERANCE))

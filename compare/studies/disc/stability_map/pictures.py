@@ -173,7 +173,7 @@ def shown(plane: str, points: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def hopf_curve(theory: Data, plane: str, x: FloatArray, side: float) -> FloatArray:
-    """Return the second coordinate over ``x`` of the ring's Hopf curve, NaN outside its range.
+    """Return the second coordinate of the ring's Hopf curve at ``x``, NaN outside its range.
 
     ``side`` is +1 for small whirls, whose rim slips faster than the centre, and -1 for large ones.
     """

@@ -178,7 +178,7 @@ def _rotors() -> Rotors:
 
 
 def with_our_contact(epsilon: float, step: float | None = None, *, until: float = UNTIL) -> Run:
-    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s), which stops at ``SHOWN``.
+    """Return the run to ``until`` (s) with ``add_ring_friction`` at ε (m/s); it has a break at each of ``SHOWN``.
 
     The solver is implicit with a ``step`` (s), otherwise explicit.
     """

@@ -131,7 +131,7 @@ def support_of(car: Drivetrain) -> Support:
 def state_matrix_of(car: Drivetrain, whirl: CarWhirl, rings: int = RINGS) -> FloatArray:
     """Return A of small motions (θ, ψ, x, y, φ and rates), shape (10, 10), with the centre on the x axis."""
     x, omega, law = whirl.radius, whirl.engine_speed, facings(car, rings)
-    place_to_slip, rate_to_slip = np.zeros((3, 5)), np.zeros((3, 5))  # of u_x, u_y, S
+    place_to_slip, rate_to_slip = np.zeros((3, 5)), np.zeros((3, 5))  # rows: u_x, u_y, S
     place_to_slip[:2, CENTRE] = -omega * QUARTER_TURN
     rate_to_slip[:2, CENTRE] = np.eye(2)
     rate_to_slip[1, ENGINE] = -x
@@ -186,7 +186,7 @@ def whirls_of(car: Drivetrain) -> list[CarWhirl]:
 
 
 def curves(every: int = 1) -> Data:
-    """Return lines of the reference over the speed and maps of the modulation, at one point in ``every``."""
+    """Return the reference's lines against the speed and maps of the modulation, at every ``every``-th point."""
     car, centred = bench.passenger_car(), bench.centred_car()
     onset = bench.onset_speed(car, SLIPPING, TORQUE) / RPM
     slow = np.linspace(300.0, onset - 1.0, 40)[::every]

@@ -80,7 +80,7 @@ def envelope(found: Data, values: FloatArray) -> tuple[FloatArray, FloatArray, F
 
 
 def draw_waterfall(data: ByEngine) -> Figure:
-    """Draw the spectrum of x + iy over the engine's speed; backward motion has a negative frequency."""
+    """Draw the spectrum of x + iy against the engine's speed; backward motion has a negative frequency."""
     engine = engines_in(data)[0]
     figure, (panel,) = new_figure(width=9.5, height=5.4)
     speed, orders, amplitude = order_spectrum(data[engine])

@@ -127,7 +127,7 @@ def release_shift_by_creep(pin: PinOnDisc, stick: Phase) -> float:
 
     A stuck pin under F = −μN·v/ε creeps at w = ε·a/g, where m·a is the force (6) that friction must balance and g =
     μN/m. In the frame of the disc, this moves it by (ε/g)·∫a·exp(−iωt)dt, which has a closed form because a is linear
-    in z = z₀·exp(iωt). The release (7) occurs at |a| = g, so the shift is −d|a|/dε over d|a|/dt.
+    in z = z₀·exp(iωt). The release (7) occurs at |a| = g, so the shift is −d|a|/dε divided by d|a|/dt.
     """
     omega = 1j * pin.disc_speed
     spring = pin.stiffness / pin.mass

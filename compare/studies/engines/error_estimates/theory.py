@@ -230,7 +230,7 @@ def whirl(random: Generator) -> Problem:
 
 
 def response(random: Generator) -> Problem:
-    """Draw a whirl with a small offset; its mean over the offset is the exact first-order response."""
+    """Draw a whirl with a small offset; its mean divided by the offset is the exact first-order response."""
     pin = any_pin(random)
     pin = replace(pin, offset=SMALL_OFFSET * whirl_radius(pin))
     found, turning = first_order_whirl_response(pin), 1j * whirl_frequency(pin)

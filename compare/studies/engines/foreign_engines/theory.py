@@ -87,7 +87,7 @@ def halvings(runs: FloatArray) -> FloatArray:
 # --- Friction laws other than Coulomb's
 
 Law = Callable[[complex, float], complex]
-"""Friction over μN as a function of the slip and the smoothing slip speed ε (m/s)."""
+"""Friction/μN as a function of the slip and the smoothing slip speed ε (m/s)."""
 
 
 def box(slip: complex, epsilon: float) -> complex:
@@ -151,7 +151,7 @@ def release_by(law: Law) -> tuple[float, float]:
 def release_where(held: Callable[[complex], float]) -> float:
     """Return the time (s) when a stuck pin is released, in closed form.
 
-    ``held`` maps the force (6) over μN to the used share of the friction law's limit.
+    ``held`` maps the force (6)/μN to the used share of the friction law's limit.
     """
     case = CASES["release"]
     pin, start = case.system, complex(*case.start[:2])

@@ -70,7 +70,7 @@ def _on_points(random: Generator, disc_speed: float) -> DiscOnDisc:
 
 
 def _sliding(random: Generator, system: System) -> tuple[float, ...]:
-    """Draw a start that lets the support's spring swing the body around the centre in either sense."""
+    """Draw a start that makes the body circle the support's centre on its spring, in either sense."""
     w = cmath.rect(between(random, 0.2, 0.6), random.uniform(-math.pi, math.pi))
     z = w + system.offset
     v = sign(random) * 1j * system.natural_frequency * between(random, 0.7, 1.4) * w

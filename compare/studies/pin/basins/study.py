@@ -1,4 +1,4 @@
-"""Ends of many starts, and the boundary between them: the stable set of a stick–slip orbit."""
+"""Final motions of many starts, and their boundary: the stable set of a stick–slip orbit."""
 
 from __future__ import annotations
 

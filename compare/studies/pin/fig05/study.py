@@ -42,10 +42,10 @@ RUNS_TOLERANCE, CRITICAL_TOLERANCE = 5.0 * WORKING, WORKING / 5.0
 """Tolerances of runs and of the critical velocity, whose error is a hundred times larger if regularised."""
 
 SIDES_TOLERANCE, BESIDE = 1e-7, 2e-5
-"""Tolerance and half width in m/s of the first search for the critical velocity and of the next one."""
+"""Tolerance of the first search for the critical velocity, and half width in m/s of the second search."""
 
 LEAST_SHARE = 1e-5
-"""Smallest error of stick times over their resolution.
+"""Smallest error of stick times, as a share of their resolution.
 
 Stick times of engines with events jump with the tolerance, so their change may be small by chance. Correct engines
 deviated by up to 1.2e-6 of the resolution.

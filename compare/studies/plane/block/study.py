@@ -36,7 +36,7 @@ WHILE_SLIDING = np.array([0.0, 0.5, 0.9])
 """Sample times as shares of the time to rest."""
 
 AT_REST = 1.5
-"""Sample time over the time to rest, late enough for regularised laws."""
+"""Sample time divided by the time to rest, late enough for regularised laws."""
 
 SPRING = replace(BLOCK, stiffness=0.1)
 """A stretch of 10 m pulls with μN, so the pull changes slowly."""
@@ -74,7 +74,7 @@ ACROSS = replace(BLOCK, stiffness=1e-6, offset=1e6)
 """The spring pulls a block at the origin with μN along x, constant to about 1e-6."""
 
 TURNING = np.array([0.0, 0.25, 0.5, 1.0, 2.0])
-"""Sample times in s; in the end the block moves almost along the pull."""
+"""Sample times in s; finally the block moves almost along the pull."""
 
 
 def direction(degrees: float) -> complex:

@@ -218,7 +218,7 @@ def check_table(folder: Path) -> tuple[list[str], list[Push]]:
     logs = sorted(path for path in folder.iterdir() if NAMES.fullmatch(path.name)) if folder.is_dir() else []
     if not logs:
         raise ValueError(
-            f"--data {folder}: no logs like 10_90_10_10_30_130-exp_08_15_50.txt.xz are in this folder"
+            f"--data {folder}: no such folder, or it contains no logs like 10_90_10_10_30_130-exp_08_15_50.txt.xz"
         )
     known = reduced_pushes()
     agreeing, new = [], []

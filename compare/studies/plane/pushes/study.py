@@ -59,7 +59,7 @@ HYPOTHESES: dict[str, theory.Law] = {
 """Other explanations of the error; their sizes are assumed, not fitted."""
 
 ROUNDING = 1e-12
-"""Rounding error of a wrench over the sliding force and the pusher's radius, and of a direction in degrees."""
+"""Rounding error of a wrench, relative to sliding force and pusher's radius, and of a direction in degrees."""
 
 LIMIT = 1e-9
 """Relative error of a point on the limit surface, whose slip minimises a convex function."""

@@ -157,10 +157,10 @@ CENTRE_TO, SLIDING_FORCE_TO = 1.0, 0.1
 """Last digits of the centre of mass in mm and of the sliding force in N; the authors state no uncertainty."""
 
 ROUNDED = 1.0 / np.sqrt(12.0)
-"""Standard deviation of a rounding error over the last digit."""
+"""Standard deviation of a rounding error, in units of the last digit."""
 
 NORMAL = 1.4826
-"""Standard deviation over the median deviation of a normal distribution."""
+"""Ratio of standard deviation to median deviation of a normal distribution."""
 
 
 @dataclass(frozen=True)
@@ -203,8 +203,8 @@ def uncertainties(pushes: tuple[Push, ...], of: Difference = force_error) -> Unc
         changes = {
             **dict.fromkeys(("x", "y"), shift),
             "turn": turn,
-            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # of one pose
-            **dict.fromkeys(("force_x", "force_y"), push.noise),  # of the first sample, the offset
+            **dict.fromkeys(("end_x", "end_y"), shift / np.sqrt(2.0)),  # error of one pose
+            **dict.fromkeys(("force_x", "force_y"), push.noise),  # noise of the first sample, the offset
         }
         moved = [replace(push, **{name: getattr(push, name) + change}) for name, change in changes.items()]
         data.append(_size([of(other, coulomb) - base for other in moved]))

@@ -41,7 +41,7 @@ FIRST_SPAN = 0.1
 """Scaled first implicit step, or twice the smallest worthwhile step if longer."""
 
 PATIENCE, MOST_FAILURES = 100.0, 3.0
-"""Number of short steps before another try after a failure, and most doublings of it."""
+"""Number of short steps before another try after a failure, and largest number of its doublings."""
 
 GROWTH, CAUTION = 4.0, 0.8
 """Largest ratio of successive steps, and safety factor of the error estimate."""
@@ -212,7 +212,8 @@ def stride_with(
 ) -> tuple[complex, float, float, float, float, float, float, float]:  # fmt: skip
     """Make an implicit step of ``span``, or a shorter one of at least ``least`` if its error requires it.
 
-    ``start`` (2 or 3,) is the initial slip, ``guess`` that soon after. Returns position, slip, angle, duration (zero
+    ``start`` (2 or 3,) is the initial slip, ``guess`` the slip soon after. Returns position, slip, angle, duration
+    (zero
     if the step is not worthwhile), slip distance and the proposed next step.
     """
     d = len(start)

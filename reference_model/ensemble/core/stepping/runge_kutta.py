@@ -133,7 +133,7 @@ def step(
 
 @inlined
 def error_of(y: Tuple, new: Tuple, h: float, third: Tuple, fifth: Tuple, tolerance: float) -> float:
-    """Return the error over the tolerance by Hairer's estimate, absolute for unknowns below 1."""
+    """Return Hairer's error estimate relative to the tolerance, absolute for unknowns below 1."""
     high, low = squares(fifth, y, new)[0], squares(third, y, new)[0]
     return h * high / (math.sqrt((high + 0.01 * low) * len(y) + 1e-300) * tolerance)
 

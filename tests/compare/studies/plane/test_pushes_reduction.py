@@ -112,7 +112,7 @@ def test_invalid_files_are_refused(tmp_path):
     path.write_bytes(lzma.compress("\n".join(lines()).encode())[:-9])
     with pytest.raises(ValueError, match=r"patch-exp_2\.txt\.xz: Compressed data ended"):
         reduce_log(path)
-    with pytest.raises(ValueError, match=r"--data .*: no logs like"):
+    with pytest.raises(ValueError, match=r"--data .*: no such folder, or it contains no logs"):
         check_table(tmp_path / "missing")
 
 
