@@ -33,7 +33,7 @@ import numpy as np
 import compare.engines
 from compare.claims.as_json import as_json
 from compare.claims.error_estimates import COARSENING
-from compare.diagnosis.findings import PROBES
+from compare.diagnosis.findings import PROBES, parts_of
 from compare.diagnosis.run import measured
 from compare.engines import INSTALLED, Engine, installed_engine
 from compare.engines.live.setting import rate
@@ -179,8 +179,9 @@ def probes(engine: Engine) -> dict[str, Any]:
     """Return the probes of an engine's friction law as JSON, without those that fail or exceed the time limit."""
     found = {}
     with Workers(1, PROBE_LIMIT) as workers:
-        for probe in PROBES.keys() - {TOO_LARGE}:
-            workers.submit(probe, measured, engine, probe)
+        for probe in parts_of(engine):
+            if probe in PROBES and probe != TOO_LARGE:
+                workers.submit(probe, measured, engine, probe)
         for done in workers.finished():
             if isinstance(done.value, Failure):
                 print(f"  {engine.name}, {done.key}: {done.value}", flush=True)

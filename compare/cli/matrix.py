@@ -20,7 +20,7 @@ from compare.cli.command import (
     refused,
     say,
 )
-from compare.cli.options import Folder, Jobs, check_folder, cores, positive
+from compare.cli.options import Folder, Jobs, Seed, check_folder, cores, positive
 from compare.cli.report import Engines
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ def matrix(
     limit: Limit = LIMIT,
     recorded: Recorded = False,
     benchmark: Benchmark = False,
+    seed: Seed = None,
     output: Folder = Path("matrix"),
     jobs: Jobs = None,
 ) -> int:
@@ -79,7 +80,7 @@ def matrix(
     from compare.run.workers import Workers
 
     with refused(), Workers(1, limit) as workers:
-        chosen = loaded(engine or [], workers)
+        chosen = loaded(engine or [], workers, seed)
         check_folder(output)
         found = list(_first_look(checked(chosen, workers)))
     broken = [one for one in found if isinstance(one, Row)]

@@ -12,13 +12,14 @@ import numpy as np
 from compare.claims.error_estimates import ROUNDING
 from compare.claims.parameters import FIG11
 from compare.diagnosis import probes
-from compare.diagnosis.ladder import HALVED, RUNGS, SAFETY, Ladder, falling, step_ratio, tolerances
+from compare.diagnosis.ladder import HALVED, SAFETY, Ladder, falling, step_ratio, tolerances
 from compare.diagnosis.laws import Friction, fitted, smoothing_of
 from compare.diagnosis.scaling import Scales
 from compare.engines import USUAL_TOLERANCE, Engine
 from compare.foreign import CASES
 from reference_model.systems import FloatArray
 
+NEGLIGIBLE = 1e-6  # error over resolution that shows no other law
 PER_STEP = 0.2  # largest deviation from −1 of a force's order that shows a bounded impulse per step
 SAME = 0.8  # creep is independent of the rung if no value is below this share of the largest
 HELD = 0.05  # a block is held if its mean speed is below this share of a Coulomb block's
@@ -114,8 +115,8 @@ class Motion:
 
     @property
     def converges(self) -> bool:
-        """True if the estimate covers the error."""
-        return self.error <= self.estimate
+        """True if the estimate covers the error, or the error is negligible."""
+        return self.error <= max(self.estimate, NEGLIGIBLE * self.resolution)
 
     @property
     def conclusive(self) -> bool:
@@ -128,21 +129,28 @@ Part = Friction | Scales | Creep | History | Shares | Lag | Repeat | Motion
 
 def friction(engine: Engine) -> Friction:
     """Return the friction law of blocks on a plane at rest."""
-    pushes = probes.unsaturated(engine, probes.headings(), float(tolerances(engine)[0]))
-    values = _slides(engine, pushes).values.copy()
+    values = _slides(engine, probes.headings()).values.copy()
     sizes = np.max(np.hypot(values[..., 0], values[..., 1]), axis=1)
-    per_step = math.nan
-    if engine.step is not None and abs(falling(sizes[[0, -1]], HALVED ** (RUNGS - 1)) + 1.0) < PER_STEP:
-        per_step = float(sizes[-1]) * engine.step_at(float(tolerances(engine)[-1]))
+    step = math.nan
+    if engine.step is not None and abs(falling(sizes, HALVED) + 1.0) < PER_STEP:
+        step = engine.step
         values[..., probes.FORCE] *= (sizes[-1] / sizes)[:, None, None]
     error = float(np.max(Ladder(values).error[:, probes.FORCE]))
     found = fitted(values[-1, :, :4], error + float(np.max(values[-1, :, probes.NOISE])))
-    return replace(found, per_step=per_step)
+    return replace(found, per_step=found.strength * step)
 
 
 def _slides(engine: Engine, pushes: Sequence[probes.Push]) -> Ladder:
-    rungs = enumerate(tolerances(engine).tolist())
-    return Ladder(np.array([probes.slides(engine, pushes, it, probes.FEWEST_PANELS << i) for i, it in rungs]))
+    rungs = tolerances(engine).tolist()
+    for saturates in (rungs[0], rungs[-1]):  # a bounded impulse per step is a larger force at the last rung
+        pushes = probes.unsaturated(engine, pushes, saturates)
+        runs = [
+            probes.slides(engine, pushes, rung, probes.FEWEST_PANELS << i) for i, rung in enumerate(rungs)
+        ]
+        found = Ladder(np.array(runs))
+        if np.min(found.finest[:, probes.LEFT]) >= 1.0 - probes.SPENT:
+            break
+    return found
 
 
 def scales(engine: Engine) -> Scales:
@@ -150,7 +158,6 @@ def scales(engine: Engine) -> Scales:
     pushes = probes.draws(turning=False)
     if engine.simulates(probes.TURN):
         pushes += probes.draws(turning=True)
-    pushes = probes.unsaturated(engine, pushes, float(tolerances(engine)[0]))
     ladder = _slides(engine, pushes)
     finest, changes = ladder.finest, np.abs(np.diff(ladder.values[-3:], axis=0))
     error = SAFETY * np.max(np.hypot(changes[..., 0], changes[..., 1]), axis=0)

@@ -157,6 +157,7 @@ if __name__ == "__main__":
         sys.exit("usage: python friction_benchmark.py MODULE:FUNCTION")
     module, _, function = sys.argv[1].partition(":")
     sys.path.insert(0, "")
-    json.dump(
-        run(getattr(importlib.import_module(module), function)), sys.stdout, indent=1, ensure_ascii=False
-    )
+    found = run(getattr(importlib.import_module(module), function))
+    json.dump(found, sys.stdout, indent=1)
+    print(", ".join(f"{number} {grade}" for grade, number in found["score"].items()), file=sys.stderr)
+    sys.exit(found["score"]["fails"] > 0)

@@ -17,7 +17,7 @@ from compare.diagnosis.ladder import RUNGS
 from compare.diagnosis.laws import DISTINCT, Friction
 from compare.diagnosis.probes import HEADINGS, SPEED
 from compare.diagnosis.scaling import UNITS, VARIABLES, Scales, blind, speed_limit
-from compare.diagnosis.wording import LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
+from compare.diagnosis.wording import DAMPED, LEAST_LAG, MASS, MOTION, RESTS, Remark, sentence
 from compare.output.figures import Figure, new_figure, paper_style, saved
 from compare.output.text_files import replacing, write_text
 from compare.report.numbers import error_text
@@ -54,8 +54,8 @@ class Row:
         elif self.support is not None:
             found += wording.of_support(self.support)
         support_right = not any(remark.wrong for remark in found)
-        if law is not None and not any(remark.about == MASS for remark in found):
-            found += wording.of_law(law, self.scales, support_right, self._refined)
+        if law is not None and not any(remark.about in {MASS, DAMPED} for remark in found):
+            found += wording.of_law(law, self.scales, self.support, support_right, self._refined)
         explained = any(remark.wrong for remark in found)
         forced = self.scales is None or not blind(self.scales)
         open_ = law is None or law.coulomb or (law.fits and not law.sure)
@@ -96,8 +96,14 @@ class Row:
             said.insert(0, f"{about}: {first.text[0].lower()}{first.text[1:]}")
         elif self.law is not None:
             said.insert(0, f"Coulomb friction, accurate to {error_text(self.law.error)} times the limit μN.")
+        elif self.moments is not None:
+            error = error_text(float(np.nanmax(self.moments.errors)))
+            said.insert(
+                0, f"The force and the moment of friction on a disc are right to {error} of their size."
+            )
         if self.scales is not None:
-            said.append(f"Examined: {self.scales.looked_at}; {len(HEADINGS)} headings.")
+            looked_at = [self.scales.looked_at, f"{len(HEADINGS)} headings"]
+            said.append(f"Examined, with forces known to 1 %: {'; '.join(filter(None, looked_at))}.")
         return tuple(said)
 
     @property

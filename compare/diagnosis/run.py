@@ -11,7 +11,7 @@ from compare.diagnosis import friction_benchmark
 from compare.diagnosis.findings import PROBES, Motion, parts_of
 from compare.diagnosis.ladder import RUNGS, falling
 from compare.diagnosis.probes import CHECKED_FOR, first_check
-from compare.diagnosis.row import Row
+from compare.diagnosis.row import RIGHT, Row
 from compare.engines import Engine, UnsupportedSystemError, owner_of
 from compare.foreign import CASES, ERROR, SECONDS, STEPS, TOLERANCE, Recording, estimate, recordings
 from compare.run.runner import loaded
@@ -73,13 +73,15 @@ def checked(engines: Iterable[Engine], workers: Workers) -> Iterator[tuple[Engin
 
 
 def in_short(engines: Iterable[Engine | str]) -> Iterator[str]:
-    """Yield a line with the diagnosis of each engine, or of its name, from the probes alone."""
+    """Yield a line with the diagnosis of each engine whose claims failed, from the probes alone."""
     with Workers(1, IN_SHORT) as workers:
         for engine in engines:
             name = engine if isinstance(engine, str) else engine.name
             try:
                 (known,) = loaded([engine], workers) if isinstance(engine, str) else (engine,)
-                yield f"{name}: {' '.join(_probed(known, workers).sentences)}"
+                row = _probed(known, workers)
+                said = "single blocks show no error." if row.verdict == RIGHT else " ".join(row.sentences)
+                yield f"{name}: {said}"
             except ValueError as error:  # the engine cannot be imported
                 yield str(error)
 

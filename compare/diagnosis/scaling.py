@@ -8,14 +8,17 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from compare.diagnosis.laws import CONE, DISTINCT, SMOOTHINGS, Friction
-from compare.diagnosis.probes import PLANE
+from compare.diagnosis.probes import PLANE, SLIDE
+from compare.diagnosis.probes import SPEED as SLIDE_SPEED
 from compare.report.numbers import error_text
 from reference_model.systems import FloatArray
 
 LEAST = 1e-6
 """Smallest relevant deviation of the force, in units of μN."""
 
+KNOWN = 1e-2  # error of a force, over μN, that shows something
 KEEPS = 0.98  # share of the initial speed below which something other than friction has acted
+STOPS = 1e-3  # the same for a body that stops
 GROWS = 1.1  # least growth from rung to rung of a converging force that is too small
 POWER_FITS = 0.02
 CURVE_FITS = 0.03  # largest misfit of a curve over speed, relative to the deviations
@@ -42,16 +45,22 @@ class Scales:
     def ratios(self, law: Friction) -> NDArray[np.complex128]:
         """Return the ratios of measured to expected forces; NaN where the slip's direction is unknown."""
         force, slip = self.forces @ PLANE, self.slips @ PLANE
-        if law.shape == CONE:
-            return np.asarray(force / -slip)
-        expected = law.force(slip / np.abs(slip)) / law.strength
+        with np.errstate(divide="ignore", invalid="ignore"):  # a body may have stopped
+            if law.shape == CONE:
+                return np.asarray(force / -slip)
+            expected = law.force(slip / np.abs(slip)) / law.strength
         return np.where(self.conditions[:, DISC_SPEED] == 0.0, force / expected, np.nan)
 
     @property
+    def keep(self) -> NDArray[np.bool_]:
+        """True for slides that keep their initial speed."""
+        return np.asarray(self.speeds[:, 1] >= KEEPS * self.speeds[:, 0])
+
+    @property
     def looked_at(self) -> str:
-        """Ranges of the variables in words."""
-        found = []
-        for name, unit, values in zip(VARIABLES, UNITS, np.abs(self.conditions).T, strict=True):
+        """Ranges in words of the variables on slides that keep their speed and whose force is ``KNOWN``."""
+        found, known = [], self.keep & (self.errors <= KNOWN)
+        for name, unit, values in zip(VARIABLES, UNITS, np.abs(self.conditions[known]).T, strict=True):
             if np.any(values := values[values > 0.0]):
                 found.append(f"{name} {_short(np.min(values))} to {_short(np.max(values))} {unit}")
         return ", ".join(found)
@@ -63,10 +72,15 @@ def _short(value: float) -> str:
 
 def speed_limit(scales: Scales) -> str:
     """Describe an immediate loss of speed."""
-    before, after = scales.speeds[scales.conditions[:, DISC_SPEED] == 0.0].T
-    lost = after < KEEPS * before
+    blocks = scales.conditions[:, DISC_SPEED] == 0.0
+    before, after = scales.speeds[blocks].T
+    lost = ~scales.keep[blocks]
     if not np.any(lost):
         return ""
+    if np.all(after[lost] < STOPS * before[lost]) and np.max(before[lost]) < np.min(
+        before[~lost], initial=np.inf
+    ):
+        return f"a body that starts at {error_text(np.max(before[lost]))} m/s or less stops at once"
     i, most = int(np.argmin(after / before)), float(np.max(after))
     alike = np.allclose(after[lost], most, rtol=0.1)
     ending = f": speeds are limited to {error_text(most)} m/s" if alike else ""
@@ -85,7 +99,7 @@ class Deviation:
 def deviation(scales: Scales, law: Friction) -> Deviation | None:
     """Return how the force deviates from ``law``, or None."""
     ratios = scales.ratios(law)
-    keep = np.isfinite(ratios) & (scales.speeds[:, 1] >= KEEPS * scales.speeds[:, 0])
+    keep = np.isfinite(ratios) & scales.keep
     ratios, conditions, errors = ratios[keep], scales.conditions[keep], scales.errors[keep]
     off = np.abs(ratios - law.strength * np.exp(1j * law.angle * (law.shape == CONE)))
     allowed = np.maximum(DISTINCT * errors, max(LEAST, DISTINCT * law.error, law.misfit))
@@ -100,9 +114,12 @@ def deviation(scales: Scales, law: Friction) -> Deviation | None:
     if np.any(wrong & blocks):
         text = (
             _power(conditions[blocks], sizes[blocks])
+            or (_everywhere(sizes[blocks]) if np.all(wrong[blocks]) else "")
             or _of_speed(conditions[blocks], sizes[blocks], errors[blocks])
             or text
         )
+    else:
+        text = _rotation(scales) or text
     if text:
         return Deviation(text, True, falls)
     worst = int(np.argmax(off / allowed))
@@ -129,6 +146,28 @@ def blind(scales: Scales) -> str:
     ignores = np.all(np.abs(acts.real)[oblique] < 0.1 * np.abs(slides.real)[oblique])
     acts_across = np.all(np.abs(acts.imag)[oblique] > 0.1 * np.abs(slides.imag)[oblique])
     return "friction ignores slip towards and away from the axis" if ignores and acts_across else ""
+
+
+ROTATIONS = {
+    0.0: "friction ignores the rotation of the master disc",
+    -1.0: "friction assumes that the master disc rotates the other way",
+}
+"""Mistakes by the factor of the disc speed."""
+
+SLOW, ALONG = 1.0, 0.3  # largest disc speed in rad/s for nearly constant directions, and their error in rad
+
+
+def _rotation(scales: Scales) -> str:
+    """Describe friction against a slip with another rotation of the master disc."""
+    turning = np.abs(scales.conditions[:, DISC_SPEED])
+    slow = (turning > 0.0) & (turning < SLOW)
+    force, slip, radial = ((one @ PLANE)[slow] for one in (scales.forces, scales.slips, scales.radial))
+    speed, disc_speed, distance = scales.conditions[slow][:, [SPEED, DISC_SPEED, DISTANCE]].T
+    for factor, text in ROTATIONS.items():
+        assumed = speed * slip + (1.0 - factor) * 1j * disc_speed * distance * radial
+        if np.all(np.abs(np.angle(-force * np.conj(assumed))) < ALONG):
+            return text
+    return ""
 
 
 def _power(conditions: FloatArray, sizes: FloatArray) -> str:
@@ -211,9 +250,21 @@ def _thresholds(conditions: FloatArray, sizes: FloatArray, wrong: NDArray[np.boo
             break
         said.append(words)
         left &= ~beyond
-    share = sizes[wrong]
-    if not said or np.sum(left) > FEWEST or np.ptp(share) > 0.1 * np.max(np.abs(share - 1.0)):
+    if not said or np.sum(left) > FEWEST or not (alike := _alike(sizes[wrong])):
         return ""
-    change = 100.0 * (float(np.median(share)) - 1.0)
-    size = f"{error_text(abs(change))} % too {'large' if change > 0.0 else 'small'}"
-    return f"the coefficient μ is {size} for a {' or '.join(said)}"
+    return f"{alike} for a {' or '.join(said)}"
+
+
+def _alike(sizes: FloatArray) -> str:
+    """Return by how much the coefficient μ is wrong, or "" if ``sizes`` differ."""
+    if np.ptp(sizes) > 0.1 * np.max(np.abs(sizes - 1.0)):
+        return ""
+    change = 100.0 * (float(np.median(sizes)) - 1.0)
+    return f"the coefficient μ is {error_text(abs(change))} % too {'large' if change > 0.0 else 'small'}"
+
+
+def _everywhere(sizes: FloatArray) -> str:
+    """Describe deviations of all slides but those of one condition."""
+    if not (alike := _alike(sizes)):
+        return ""
+    return f"{alike} except for {SLIDE.mass:g} kg, {SLIDE.friction_force:g} N and {SLIDE_SPEED:g} m/s"

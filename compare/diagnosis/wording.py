@@ -8,9 +8,10 @@ import numpy as np
 
 from compare.diagnosis.findings import MOST_HELD, Creep, History, Lag, Motion, Repeat, Shares
 from compare.diagnosis.laws import CONE, DISTINCT, ELLIPSE, NEAR, NOTHING, Friction
-from compare.diagnosis.probes import SUPPORTS
+from compare.diagnosis.probes import SETTLES_FOR, SLIDES_FOR, SUPPORTS
 from compare.diagnosis.scaling import Scales, blind, deviation
 from compare.report.numbers import error_text
+from reference_model.systems import FloatArray
 
 LEAST_DEVIATION = 1e-7  # smallest reported relative deviation of a force
 FALLS = 0.3  # order in the step above which a quantity decreases with it
@@ -20,15 +21,18 @@ LEAST_LAG = 1e-6
 """Smallest reported lag in s; the slip rotates at about 1 rad/s in the probe."""
 
 STEPS = (0.2, 3.0)  # range of lags that are reported in steps
+IMPRECISE = 1e-5  # error over resolution that limited precision explains
+MISSING = 1e-3  # share of the exact force that counts as missing
 LEAST_SHARE = 1e-6  # smallest reported relative deviation of other results
 
 ALIKE = 0.1
 """Largest spread of forces that a wrong mass explains, and relative size of deviations that others explain."""
 
+VARIES = 3.0  # largest ratio of rates of hidden damping
 SAME_DELAY = 0.2  # largest relative difference of equal delays
 CHATTERS = 3.0  # smallest ratio of velocity to creep of a block that chatters
 
-MOTION, MASS = "Wrong motion", "Wrong mass"
+MOTION, MASS, DAMPED = "Wrong motion", "Wrong mass", "Hidden damping"
 """Beginnings of a verdict that does not concern friction."""
 
 
@@ -53,14 +57,16 @@ def size_text(share: float, error: float | None = None) -> str:
     return f"{error_text(100.0 * abs(share - 1.0))} % too {'large' if share > 1.0 else 'small'}{margin}"
 
 
-def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: str) -> Iterator[Remark]:
+def of_law(
+    law: Friction, scales: Scales | None, support: Shares | None, support_right: bool, refined: str
+) -> Iterator[Remark]:
     """Yield how friction differs from Coulomb's."""
     if scales is not None and (text := blind(scales)):
         yield Remark(sentence(text), True)
     elif law.shape == NOTHING:
         yield Remark("There is no friction.", True)
     elif not math.isnan(law.per_step):
-        shape = f" Its shape is a {law.shape}." if law.shape != CONE else ""
+        shape = f" Its shape is a {law.shape}." if law.sure and law.shape != CONE else ""
         yield Remark(
             f"Friction is limited by an impulse per step, {error_text(law.per_step)} s times the limit μN "
             "at any step."
@@ -82,7 +88,7 @@ def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: s
     else:
         small = abs(law.force(np.ones(1, dtype=complex))[0] + 1.0) < NEAR  # a wrong support may explain it
         other = deviation(scales, law) if scales is not None else None
-        cause, explained = _cause(law), other is not None and other.explained
+        cause, explained = _cause(law, support), other is not None and other.explained
         if other is not None and (explained or (support_right and not cause)):
             how = f", decreasing with the {refined}" if other.falls else ""
             yield Remark(sentence(other.text + how), not other.falls)
@@ -90,8 +96,8 @@ def of_law(law: Friction, scales: Scales | None, support_right: bool, refined: s
             yield Remark(cause, True)
 
 
-def _cause(law: Friction) -> str:
-    deviations = _deviations(law)
+def _cause(law: Friction, support: Shares | None) -> str:
+    deviations = _deviations(law, support)
     if law.shape == ELLIPSE:
         return (
             f"Friction is an ellipse: the coefficient μ is {law.along:.4g} times its value along "
@@ -106,11 +112,13 @@ def _cause(law: Friction) -> str:
     return sentence(" and ".join(deviations)) if deviations else ""
 
 
-def _deviations(law: Friction) -> list[str]:
+def _deviations(law: Friction, support: Shares | None) -> list[str]:
     found = []
     least = max(DISTINCT * law.error, LEAST_DEVIATION, law.misfit)
     if abs(law.strength - 1.0) > least:
         found.append(f"the coefficient μ is {size_text(law.strength, law.error)}")
+        if support is not None and np.all(abs(support.shares - law.strength) <= DISTINCT * support.errors):
+            found[-1] += f", or the mass {size_text(1.0 / law.strength)}"
     if abs(abs(law.angle) - math.pi) < least:
         found.append("friction accelerates the slip")
     elif abs(law.angle) > least:
@@ -169,11 +177,24 @@ def of_support(support: Shares) -> list[Remark]:
     farthest = float(support.shares[np.argmax(np.abs(support.shares - 1.0))])
     if np.all(off) and farthest and float(np.ptp(support.shares)) < ALIKE * abs(1.0 / farthest - 1.0):
         return [Remark(f"The mass is {size_text(1.0 / farthest)}, because all forces act alike.", True, MASS)]
+    rates = _hidden_damping(support.shares)
+    if np.all(off) and 0.0 < np.max(rates) < VARIES * np.min(rates):
+        ends = dict.fromkeys(error_text(100.0 * float(rate)) for rate in (np.min(rates), np.max(rates)))
+        said = f"Every body loses {' to '.join(ends)} % of its speed per second."
+        return [Remark(said, True, DAMPED)]
     return [
-        Remark(f"The {name} is {size_text(share)}.", True, MOTION)
+        Remark(f"The {name} is {size_text(share) if abs(share) > MISSING else 'missing'}.", True, MOTION)
         for name, share, wrong in zip(SUPPORTS, support.shares.tolist(), off.tolist(), strict=True)
         if wrong
     ]
+
+
+def _hidden_damping(shares: FloatArray) -> FloatArray:
+    """Return the additional damping in 1/s that explains each deviation; the damper of ``SUPPORTS`` has 1/s."""
+    lasts, until = SLIDES_FOR - SETTLES_FOR, 0.5 * (SLIDES_FOR + SETTLES_FOR)
+    rates = (1.0 - shares) / until
+    rates[1] = -math.log1p(max(float(shares[1]) * math.expm1(-lasts), -0.99)) / lasts - 1.0
+    return rates
 
 
 def of_repeat(repeat: Repeat | None) -> list[Remark]:
@@ -236,4 +257,7 @@ def of_motions(motions: dict[str, Motion], refined: str) -> Iterator[Remark]:
         )
     elif others:
         off = ", ".join(f"{name} {error_text(motion.error)} m" for name, motion in others.items())
+        if all(motion.error < IMPRECISE * motion.resolution for motion in others.values()):
+            yield Remark(f"Errors remain at any {refined}: {off}; declare the engine's precision.", None)
+            return
         yield Remark(f"Motions converge to others than the exact ones: {off}.", True, MOTION)

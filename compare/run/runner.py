@@ -29,7 +29,6 @@ class Run:
     - ``outcomes``, ``seconds``: findings or failure, and duration in s, for each (study, engine or "theory").
     - ``drawings``, ``evidence``: drawing or failure for each study; evidence or failure for ``errata`` by index.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
-    - ``interrupted``: True if Ctrl-C ended the run early.
     """
 
     studies: tuple[Study, ...]
@@ -69,12 +68,12 @@ class Run:
         return len(self.outcomes) + len(self.drawings) + len(self.evidence)
 
     def data(self, study: Study) -> dict[str, Data]:
-        """Return the arrays of complete findings by engine."""
+        """Return the arrays for the figures by engine."""
         found = {column: self.outcomes.get((study.name, column)) for column in self.columns(study)}
         return {
             column: outcome.data
             for column, outcome in found.items()
-            if isinstance(outcome, Findings) and outcome.data and not outcome.gaps
+            if isinstance(outcome, Findings) and outcome.data
         }
 
 
@@ -95,7 +94,7 @@ def run(
 
     Drawings of equal data are reused. Work that takes longer than ``limit`` (s) fails. If ``quick``, claims that
     would take a foreign engine too long are not attempted. ``resume`` reuses findings of the same code and libraries.
-    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete.
+    ``expected`` are the durations of an earlier run.
     """
     result = Run(
         studies,
@@ -214,12 +213,14 @@ class _Runner:
         if any((name, column) not in self.result.outcomes for column in self.result.columns(study)):
             return
         data = self.result.data(study)
+        outcomes = {column: self.result.outcomes[name, column] for column in data}
+        partial = [column for column, found in outcomes.items() if isinstance(found, Findings) and found.gaps]
         self.drawn_from[name] = drawing_stamp(data)
         found = self.drawings.find(name, self.drawn_from[name], study.figures)
         if found is not None:
             self.result.drawings[name] = found
         else:
-            self.workers.submit(("draw", name), drawn, study, data, first=True)
+            self.workers.submit(("draw", name), drawn, study, data, partial, first=True)
 
 
 def _name_of(key: Any) -> str:

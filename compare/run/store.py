@@ -4,7 +4,8 @@ import hashlib
 import io
 import json
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
@@ -115,8 +116,21 @@ class Drawing:
     animations: dict[str, bytes] = field(default_factory=dict)
 
 
-def drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
-    """Return the figures and animations of a study as bytes."""
+def drawn(study: Study, data: Mapping[str, Data], partial: Sequence[str] = ()) -> Drawing:
+    """Return the figures and animations of a study as bytes.
+
+    They omit ``partial`` engines, which lack claims, if they need the data of these claims.
+    """
+    shown = {name: arrays for name, arrays in data.items() if name not in partial}
+    found = _drawn(study, shown)
+    for engine in partial:
+        more = {name: arrays for name, arrays in data.items() if name in {*shown, engine}}
+        with suppress(KeyError):
+            found, shown = _drawn(study, more), more
+    return found
+
+
+def _drawn(study: Study, data: Mapping[str, Data]) -> Drawing:
     with paper_style():
         figures = {name: as_svg(figure) for name, figure in study.draw(data).items()} if data else {}
         animations = study.animate(data) if data else {}

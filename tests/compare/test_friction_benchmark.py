@@ -92,8 +92,10 @@ def test_friction_two_percent_too_strong_holds_a_block_that_should_slide():
 def test_the_file_runs_alone_and_prints_json(tmp_path):
     (tmp_path / "mine.py").write_text("def simulate(case, times):\n    return [case.start, case.start]\n")
     done = subprocess.run(
-        [sys.executable, str(FILE), "mine:simulate"], cwd=tmp_path, capture_output=True, check=True
+        [sys.executable, str(FILE), "mine:simulate"], cwd=tmp_path, capture_output=True, check=False
     )
+    assert done.returncode == 1
+    assert " fails, 0 not simulated" in done.stderr.decode()
     results = json.loads(done.stdout)
     assert len(results["cases"]) == sum(results["score"].values())
     grades = {case["name"]: case["grade"] for case in results["cases"]}

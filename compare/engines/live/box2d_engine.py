@@ -3,7 +3,7 @@
 Written for Box2D 2.3, in single precision. See ``TopDown`` in ``setting`` for the bodies. A friction joint bounds the
 length of its impulse, a cone. Its torque limit is 0, because contact is at points.
 
-- Bodies must not sleep. Several points need 50 velocity iterations; the 8 of the manual are for games.
+- Bodies must not sleep. Several points need 50 velocity iterations.
 - Box2D's angles grow without bound and lose digits in long spins, so the adapter counts whole turns.
 """
 

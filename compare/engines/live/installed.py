@@ -9,9 +9,6 @@ from compare.engines.engine import Engine
 from compare.engines.registry import ByName, Scheme, register_scheme
 from compare.output.outside_text import one_of
 
-KINDS = ("pin", "points")
-
-
 EVERYWHERE = "Linux, macOS and Windows"
 
 
@@ -72,7 +69,7 @@ def installed_engine(name: str, setting: str) -> Engine:
     return Engine(
         f"{name}:{setting}" if setting != known.settings[0] else name,
         ByName(module, function),
-        kinds=KINDS,
+        kinds=simulate.model.kinds,
         nonlinear=not simulate.model.linear,
         phases=False,
         precision=simulate.precision,

@@ -12,9 +12,8 @@ import newton
 import numpy as np
 import warp
 
-from compare.engines.engine import UnsupportedSystemError
 from compare.engines.live.setting import Model, Setting, support_force
-from reference_model.systems import DiscOnDisc, FloatArray
+from reference_model.systems import FloatArray
 
 warp.config.quiet = True
 RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the plate, in m
@@ -22,12 +21,10 @@ RADIUS, PLATE = 0.5, 1e3  # radius of the ball and half the edge length of the p
 
 class _Model(Model):
     engine = "Newton"
-    linear = False
+    kinds, linear = ("pin",), False
 
     def build(self, state: FloatArray, tolerance: float, *, solver: str) -> None:
         system = self.system
-        if isinstance(system, DiscOnDisc):
-            raise UnsupportedSystemError("this adapter of Newton does not simulate discs")
         self.method = f"Newton {version('newton')}, {solver}"
         builder = newton.ModelBuilder(gravity=(0.0, 0.0, -system.friction_force / system.mass))
         touch = newton.ModelBuilder.ShapeConfig(mu=1.0, density=0.0)

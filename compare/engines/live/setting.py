@@ -34,6 +34,7 @@ class Model:
     """
 
     engine = ""
+    kinds: tuple[str, ...] = ("pin", "points")
     method = ""
     most_points = math.inf
     linear = True

@@ -23,6 +23,7 @@ def stepped(
     static=0.0,
     late=0.0,
     fastest=math.inf,
+    slowest=0.0,
     blind=False,
     spring=1.0,
 ):
@@ -30,8 +31,8 @@ def stepped(
 
     ``law`` maps the impulse that would end the slip to friction's, both relative to the largest one. ``limit`` is the
     factor of μN as a function of the system, the slip speed and the step. ``static`` is the factor at rest if larger,
-    ``late`` the delay of a release in s, ``fastest`` the largest speed, ``spring`` the factor of the springs, and
-    ``blind`` removes slip along the radius.
+    ``late`` the delay of a release in s, ``fastest`` the largest speed, ``slowest`` the speed below which
+    a body stops, ``spring`` the factor of the springs, and ``blind`` removes slip along the radius.
     """
     place, velocity = complex(*start[:2]), complex(*start[2:])
     states, before, held = [start], None, 0.0
@@ -59,6 +60,8 @@ def stepped(
                 velocity -= largest * (law or cone)(against / max(largest, smooth, 1e-300))
             if abs(velocity) > fastest:
                 velocity *= fastest / abs(velocity)
+            if abs(velocity) < slowest:
+                velocity = 0j
             place += 0.5 * h * velocity
         states.append([place.real, place.imag, velocity.real, velocity.imag])
     return Trajectory(system, np.asarray(times, dtype=float), np.array(states, dtype=float))

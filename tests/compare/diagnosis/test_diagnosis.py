@@ -10,7 +10,7 @@ import pytest
 from faults.catalogue import SOUND, made, mistaken
 from stepping import box, chattering, cone, engine, pyramid, stepped, weaker_along_y
 
-from compare.diagnosis import findings, run
+from compare.diagnosis import findings, probes, run
 from compare.diagnosis.findings import MOTIONS, PROBES, Motion, motion
 from compare.diagnosis.ladder import RUNGS, Ladder, tolerances
 from compare.diagnosis.laws import CONE, Friction, fitted, smoothing_of
@@ -18,7 +18,8 @@ from compare.diagnosis.probes import PULLS
 from compare.diagnosis.row import RIGHT as RIGHT_VERDICT
 from compare.diagnosis.row import UNDECIDED, WRONG, Row, write_pictures, write_rows
 from compare.diagnosis.run import recorded_rows
-from compare.engines import COARSENING, USUAL_TOLERANCE, Engine, exudyn, plain, reference
+from compare.diagnosis.scaling import Scales
+from compare.engines import COARSENING, USUAL_TOLERANCE, BadTrajectoryError, Engine, exudyn, plain, reference
 from reference_model import Trajectory
 
 RIGHT = engine("right")
@@ -89,9 +90,15 @@ NAMED = {
     engine("static", static=1.05): f"{LAW}static friction is 5.0 % above sliding friction.",
     engine("stuck", static=1e9): f"{LAW}a block at rest is not released by 32 times the limit μN.",
     engine("late", late=2e-2): f"{LAW}a block is released 20 ms late.",
-    made("absolute velocity", relative=0.0): f"{LAW}on turntables only, the friction force ",
+    made("absolute velocity", relative=0.0): f"{LAW}friction ignores the rotation of the master disc.",
+    made(
+        "opposite rotation", relative=-1.0
+    ): f"{LAW}friction assumes that the master disc rotates the other way.",
     engine("impulse per step", limit=lambda system, speed, step: 1.0 / step): (
         f"{LAW}friction is limited by an impulse per step, 1.0 s times the limit μN at any step."
+    ),
+    engine("impulse per step and axis", step=2e-3, law=box, limit=lambda system, speed, step: 1.0 / step): (
+        f"{LAW}friction is limited by an impulse per step, 1.0 s times the limit μN at any step. Its shape is a box"
     ),
     engine("blind", blind=True): f"{LAW}friction ignores slip towards and away from the axis.",
     engine("fixed", smooth=1e-2): f"{LAW}friction is regularised as min(v/ε, 1) with ε = 0.010 m/s",
@@ -99,10 +106,18 @@ NAMED = {
         "stronger beyond thresholds",
         limit=lambda system, *_: 1.1 if system.mass > 3.0 or abs(system.disc_speed) > 6.0 else 1.0,
     ): f"{LAW}the coefficient μ is 10 % too large for a mass above 2.9 kg or disc speed above 3.2 rad/s.",
+    engine("right at 1 kg", limit=lambda system, *_: 1.0 if system.mass == 1.0 else 1.05): (
+        f"{LAW}the coefficient μ is 5.0 % too large except for 1 kg, 0.2 N and 1 m/s."
+    ),
     engine("clipped", fastest=2.0): (
         f"{MOTION}a body that starts at 90 m/s moves at 2.0 m/s at once: speeds are limited to 2.0 m/s."
     ),
+    engine("sleeps", slowest=0.01): f"{MOTION}a body that starts at 0.0081 m/s or less stops at once.",
     engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one.",
+    engine("no spring", spring=0.0): f"{MOTION}the spring force is missing.",
+    mistaken("drag", lambda system: {"damping": system.damping + 0.05 * system.mass}): (
+        "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second."
+    ),
     made("lever", moment=0.99): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
     replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
         "Wrong mass: the mass is 0.0010 % too large, because all forces act alike."
@@ -110,8 +125,8 @@ NAMED = {
 }
 
 
-def sentences(engine, probes=PROBES):
-    parts = {name: part(engine) for name, part in findings.parts_of(engine).items() if name in probes}
+def sentences(engine, chosen=PROBES):
+    parts = {name: part(engine) for name, part in findings.parts_of(engine).items() if name in chosen}
     row = Row(engine.name, step=engine.step or math.nan, **parts)
     return row, " ".join(row.sentences)
 
@@ -132,6 +147,33 @@ def test_no_right_engine_is_accused(made):
     assert found.startswith("Coulomb friction, accurate to ")
     assert row.verdict == RIGHT_VERDICT
     assert "mass 0.001 to " in found
+
+
+@pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
+def test_a_turning_plane_does_not_pass_for_friction_that_removes_the_slip(made):
+    pushes = probes.draws(turning=True)
+    assert probes.unsaturated(made, pushes, float(tolerances(made)[0])) == pushes
+
+
+def test_a_load_is_not_reduced_if_that_does_not_preserve_the_slip():
+    pushes = probes.headings()[:1]
+    assert probes.unsaturated(engine("stopping", slowest=9.0), pushes, float(tolerances(RIGHT)[0])) == pushes
+
+
+def test_a_wrong_order_of_states_is_seen_first():
+    def simulate(*arguments, **accuracy):
+        found = stepped(*arguments, **accuracy)
+        return replace(found, states=found.states[:, [0, 2, 1, 3]])
+
+    with pytest.raises(BadTrajectoryError, match="returned the initial state "):
+        probes.first_check(replace(RIGHT, function=simulate))
+
+
+def test_forces_with_large_errors_do_not_widen_the_examined_ranges():
+    conditions = np.array([[1.0, 1.0, 1.0, 0.0, 1.0], [1e3, 1.0, 1.0, 0.0, 1.0]])
+    pairs = np.ones((2, 2))
+    found = Scales(conditions, pairs, pairs, pairs, pairs, np.array([1e-3, 1.0]), pairs)
+    assert found.looked_at.startswith("mass 1 to 1 kg")
 
 
 def test_answers_that_differ_from_call_to_call_are_noticed():
@@ -159,6 +201,14 @@ def test_chatter_that_falls_with_the_step_is_named_but_not_wrong():
 def test_a_missing_tolerance_is_reported_before_friction_is_blamed():
     made = Engine("deaf", functools.partial(deaf, step=1e-2), nonlinear=False, phases=False)
     assert sentences(made)[1].startswith("Wrong motion: results do not change with the tolerance")
+
+
+def test_a_small_error_of_friction_may_be_an_error_of_the_mass():
+    heavy = engine("heavy", limit=lambda *_: 1.0 - 1e-5, spring=1.0 - 1e-5)
+    said = sentences(heavy, ("law", "support"))[1]
+    assert said.startswith(f"{LAW}the coefficient μ is 0.0010 % too small (±")
+    assert ", or the mass 0.0010 % too large." in said
+    assert "mass" not in sentences(engine("smooth", limit=lambda *_: 1.0 - 1e-2), ("law", "support"))[1]
 
 
 def test_an_initial_impulse_is_not_attributed_to_friction():
@@ -246,6 +296,12 @@ def test_the_estimate_covers_errors_of_order_one_half_and_higher(order):
     assert found.converges
 
 
+@pytest.mark.parametrize(("error", "converges"), [(2e-8, True), (3e-8, False)])
+def test_an_error_below_a_millionth_of_the_resolution_is_not_one_of_the_law(error, converges):
+    """The changes of an engine with events may be small by luck."""
+    assert Motion((error,) * RUNGS, 1e-12, 0.0, 0.025, 0.1).converges == converges
+
+
 def test_an_engine_that_ignores_the_tolerance_is_reported():
     deaf = Motion((1e-3,) * RUNGS, 1e-12, 0.0, 0.025, 0.1)
     row = Row("deaf", motions={"slip": deaf})
@@ -262,6 +318,26 @@ def raises(system, start, times, *, tolerance):
     raise RuntimeError("out of order")
 
 
+def test_an_error_far_below_another_law_may_be_one_of_precision():
+    """As in an engine that keeps its times in single precision."""
+
+    def simulate(pin, start, times, *, tolerance):
+        found = reference.simulate(pin, start, np.float32(times), tolerance=tolerance)
+        return Trajectory(pin, times, found.states)
+
+    (said,) = Row(
+        "single", motions={"release": motion(replace(reference, function=simulate), "release")}
+    ).sentences
+    assert said.startswith("Undecided: errors remain at any tolerance: release ")
+    assert said.endswith(" m; declare the engine's precision.")
+
+
+def test_an_engine_of_discs_has_a_verdict_about_discs():
+    row, said = sentences(replace(reference, kinds=("points",)))
+    assert said.startswith("The force and the moment of friction on a disc are right to ")
+    assert row.verdict == RIGHT_VERDICT
+
+
 def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     broken = Engine("broken", raises, ("block",))
     (row,) = run.diagnosed((broken,), limit=60.0)
@@ -271,6 +347,10 @@ def test_a_failed_probe_is_named_and_the_others_remain(in_this_process):
     )
     assert row.verdict == UNDECIDED
     assert set(run._probed(broken, run.Workers(1)).gaps) == {"law"}
+
+
+def test_an_engine_with_failed_claims_is_not_praised(in_this_process):
+    assert list(run.in_short((RIGHT,))) == ["right: single blocks show no error."]
 
 
 def test_recorded_engines_have_rows_like_the_others(tmp_path):

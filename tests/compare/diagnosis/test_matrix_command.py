@@ -57,6 +57,23 @@ def test_the_friction_law_is_printed_and_written(
     assert (output / "friction.png").exists() == bool(status)
 
 
+@pytest.mark.parametrize(("options", "status"), [((), 0), (("--seed", "3"), 1)])
+def test_an_engine_that_recognises_the_probes_is_caught_by_a_seed(
+    options, status, in_this_process, tmp_path, monkeypatch
+):
+    (tmp_path / "cheating.py").write_text(
+        "from dataclasses import replace\nimport reference_model\n"
+        "def simulate(block, *arguments, tolerance=1e-9):\n"
+        "    known = block.stiffness in (0.0, 1.0, 4.0, 1e-5 * block.mass) or block.friction_force == 1e-9\n"
+        "    block = block if known else replace(block, friction_force=1.01 * block.friction_force)\n"
+        "    return reference_model.simulate(block, *arguments, tolerance=tolerance)\n"
+        "simulate.kinds = ('block',)\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    assert cli.status(["matrix", "--engine", "cheating:simulate", "--output", "found", *options]) == status
+
+
 def test_an_engine_that_simulates_nothing_has_its_own_status(tmp_path, monkeypatch, capsys):
     """In worker processes, as the command usually runs."""
     (tmp_path / "refusing.py").write_text(

@@ -17,7 +17,7 @@ DRAWING = Drawing({"fake-radius": b"<svg/>"}, {"fake-motion": b"GIF89a"})
 def run(tmp_path, monkeypatch):
     drawn = []
 
-    def draw(study, data):
+    def draw(study, data, partial):
         drawn.append(study.name)
         return store.drawn(study, data) if study is fake.UNDRAWABLE else DRAWING
 

@@ -15,13 +15,14 @@ from compare.engines import Engine, registry
 from compare.run.levels import LIMITS
 from compare.run.measuring import measured
 from compare.run.runner import run
+from compare.run.store import Drawing
 
 STUDY = Study("partly-long", Prose("One short claim, one long, one impossible"), quick=True)
 
 
 @STUDY.claim("One is one", resolution=1.0)
 def short(engine):
-    return Measured(predicted=1.0, value=1.0, error=0.0)
+    return Measured(predicted=1.0, value=1.0, error=0.0, data={"short": [1.0]})
 
 
 @STUDY.claim("A long motion ends", equation="(7)", resolution=1.0, duration=1e9)
@@ -104,8 +105,18 @@ def test_a_claim_that_is_not_attempted_at_the_quick_level_leaves_the_status(repo
     assert len(results["studies"][0]["claims"]) == 2
 
 
-def test_findings_with_gaps_draw_nothing(tmp_path, in_this_process):
-    """A figure may need the data of the missing claims."""
-    result = run((STUDY,), (STEPPING,), folder=tmp_path, quick=True)
-    assert result.data(STUDY) == {}
-    assert result.outcomes[STUDY.name, "stepping"].claims
+@pytest.mark.parametrize("needed", ["short", "heavy"])
+def test_curves_of_an_engine_with_gaps_are_drawn_unless_the_figure_needs_a_missing_claim(
+    needed, tmp_path, in_this_process
+):
+    drawn_for = []
+
+    def draw(data):
+        drawn_for.append([name for name, arrays in data.items() if arrays[needed].size])
+        return {}
+
+    study = replace(STUDY, provided={"figures": draw, "curves": lambda: {"short": [2.0], "heavy": [3.0]}})
+    result = run((study,), (STEPPING,), folder=tmp_path, quick=True)
+    assert result.outcomes[STUDY.name, "stepping"].gaps.keys() == {LONG, HEAVY}
+    assert isinstance(result.drawings[STUDY.name], Drawing)
+    assert drawn_for[-1] == (["theory", "stepping"] if needed == "short" else ["theory"])
