@@ -93,24 +93,15 @@ def coarsely(patch):
     patch.setattr(coupled_clutches, "EPSILONS", 2.0 * coupled_clutches.EPSILONS)
 
 
-def coupled_off(coarse=True, **factors):
-    """Build models with numbers off by ``factors``; not ``coarse`` if rounding matters."""
+def coupled_off(**factors):
+    """Build models with numbers off by ``factors``."""
 
     def put(patch):
-        if coarse:
-            coarsely(patch)
+        coarsely(patch)
         for name, factor in factors.items():
             patch.setattr(coupled_models, name, np.multiply(factor, getattr(coupled_models, name)).tolist())
 
     return put
-
-
-def first_load_late(patch):
-    """Delay the load of the first clutch by 1 ms."""
-    on_time = coupled_models.first_load
-    late = lambda time: on_time(time - 1e-3)  # noqa: E731
-    patch.setattr(coupled_models, "first_load", late)
-    patch.setattr(coupled_models, "LOADS", (late, *coupled_models.LOADS[1:]))
 
 
 def torque_late(patch):
