@@ -45,8 +45,6 @@ def test_refinement_finds_the_region_as_a_full_grid_does(shape, region):
     np.testing.assert_array_equal(np.flatnonzero(grid.simulated), np.sort(numbers))
 
 
-
-
 @pytest.mark.parametrize("region", [disc, three_regions, rings, comb])
 def test_all_points_of_a_mixed_cell_are_simulated(region):
     grid, truth, _ = refine((41, 61), 21, region)
