@@ -136,6 +136,9 @@ def workplace(tmp_path, monkeypatch, in_this_process):
         (tmp_path / name).write_text(engine, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("compare.sweep.compute.run.CHECKED", 2)
+    monkeypatch.setattr(
+        "compare.sweep.figures.write_figures", lambda store, folder: ()
+    )  # other tests draw them
     monkeypatch.syspath_prepend(ROOT / "examples")
     monkeypatch.syspath_prepend(tmp_path)
 

@@ -12,6 +12,8 @@ from typing import Any
 import exudyn.itemInterface
 import numpy as np
 import pytest
+from faults.make import Make
+from faults.plain import simulate as simulate_plainly
 
 import compare.studies.drivetrain.clutch_parts as clutch_parts
 import compare.studies.drivetrain.coupled_clutches.study as coupled_clutches
@@ -32,7 +34,6 @@ from exudyn_models.parts.friction_sensors import RingFriction
 from exudyn_models.solver import linear_matrices
 from reference_model.contact.annulus import Annulus
 from reference_model.contact.contact_law import Ring
-from reference_model.trajectory import Solution, Trajectory
 
 items: Any = exudyn.itemInterface
 
@@ -92,24 +93,15 @@ def coarsely(patch):
     patch.setattr(coupled_clutches, "EPSILONS", 2.0 * coupled_clutches.EPSILONS)
 
 
-def coupled_off(coarse=True, **factors):
-    """Build models with numbers off by ``factors``; not ``coarse`` if rounding matters."""
+def coupled_off(**factors):
+    """Build models with numbers off by ``factors``."""
 
     def put(patch):
-        if coarse:
-            coarsely(patch)
+        coarsely(patch)
         for name, factor in factors.items():
             patch.setattr(coupled_models, name, np.multiply(factor, getattr(coupled_models, name)).tolist())
 
     return put
-
-
-def first_load_late(patch):
-    """Delay the load of the first clutch by 1 ms."""
-    on_time = coupled_models.first_load
-    late = lambda time: on_time(time - 1e-3)  # noqa: E731
-    patch.setattr(coupled_models, "first_load", late)
-    patch.setattr(coupled_models, "LOADS", (late, *coupled_models.LOADS[1:]))
 
 
 def torque_late(patch):
@@ -248,24 +240,12 @@ def heat_counted_wrong(factor):
 # ---------------------------------------------------------------- Exudyn's solvers
 
 
-def euler(pin, start, times, *, integrator, step, regularisation=0.0):
-    """Return a motion by Euler's explicit method, for any integrator name."""
-    x, y, vx, vy = start
-    z, v = complex(x, y), complex(vx, vy)
-    states = [start]
-    inside = round((times[1] - times[0]) / step)
-    for _ in times[1:]:
-        for _ in range(inside):
-            slip = v - 1j * pin.disc_speed * z
-            friction = -pin.friction_force * slip / abs(slip)
-            force = friction - pin.damping * v - pin.stiffness * (z - pin.offset)
-            z, v = z + step * v, v + step * force / pin.mass
-        states.append((z.real, z.imag, v.real, v.imag))
-    return Trajectory(pin, times.copy(), np.array(states), (), Solution("Euler", np.nan, 0, 0, 0.0))
-
-
 def first_order(patch):
-    """Replace every fixed-step solver by one of first order."""
+    """Replace every fixed-step solver by Euler's method."""
+
+    def euler(pin, start, times, *, integrator, step, regularisation=0.0):
+        return simulate_plainly(pin, start, times, make=Make(order=1, step=step))
+
     patch.setattr(exudyn_models, "simulate_fixed_step", euler)
 
 

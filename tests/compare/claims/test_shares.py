@@ -54,8 +54,3 @@ def test_an_undecided_corner_leaves_the_area_of_its_cell_open():
     assert (shares[WHIRL].low, shares[WHIRL].value, shares[WHIRL].high) == (0.0, 0.75, 1.0)
     assert (shares[STUCK].low, shares[STUCK].value, shares[STUCK].high) == (0.0, 0.0, 1.0)
     assert shares[UNDECIDED].value == 0.25
-
-
-def test_one_corner_of_an_end_leaves_the_area_of_its_cell_open():
-    ends = np.array([[WHIRL, STUCK], [STUCK, STUCK]], dtype=np.uint8)
-    assert of_grid(ends)[WHIRL] == (0.25, 0.0, 1.0)

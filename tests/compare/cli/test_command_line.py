@@ -302,15 +302,6 @@ def test_a_reader_that_stops_early_changes_no_status(arguments, status, tmp_path
     assert capsys.readouterr().err == ""
 
 
-def test_ctrl_c_during_a_command_is_reported(monkeypatch, capsys):
-    def interrupted(*arguments, **more):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("compare.engines.engines", interrupted)
-    assert cli.status(["list"]) == 130
-    assert capsys.readouterr().err == "Interrupted.\n"
-
-
 def test_lack_of_memory_is_reported(monkeypatch, tmp_path, capsys):
     try:
         try:

@@ -71,6 +71,7 @@ BAD = [
     ("export-fmu pin --output pin.zip", "output = 'pin.zip': the name of a unit must end with .fmu"),
     ("export-fmu clutch --set plate=2 --output c.fmu", "unknown parameter 'plate': did you mean 'plates'?"),
     ("export-fmu clutch --set plates=0 --output c.fmu", "plates = 0: it must lie between 1 and 1000"),
+    ("export-fmu clutch --set plates=1.5 --output c.fmu", "plates = 1.5: it must be a whole number"),
     ("reprot", "…"),
     ("simulate", "…"),
     (f"{PIN} --plot a.gif", "--plot 'a.gif': the file name must end in .png or .pdf or .svg"),

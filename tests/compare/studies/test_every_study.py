@@ -98,7 +98,7 @@ def test_figures_are_drawn_from_any_available_data(tested):
     found = {name: tested.found(name).data for name in (*tested.sound[:1], "theory")}
     alone = dict(list(found.items())[:1])
     everything = found | {"exudyn": next(iter(found.values()))}
-    for case in ({"theory": found["theory"]}, found, alone, everything):
+    for case in ({"theory": found["theory"]}, alone, everything):
         present = {name: values for name, values in case.items() if values}
         if not present:
             continue

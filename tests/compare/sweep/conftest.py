@@ -12,9 +12,21 @@ def few_checks():
         yield
 
 
+def draw_nothing(patch):
+    patch.setattr("compare.sweep.figures.write_figures", lambda store, folder: ())
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Omit the figures of sweeps."""
+    draw_nothing(monkeypatch)
+
+
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory):
     """Contents of the store of an undisturbed sweep."""
     folder = tmp_path_factory.mktemp("undisturbed")
-    assert cli.status([*LONG, "--output", str(folder)]) == 0
+    with pytest.MonkeyPatch.context() as patch:
+        draw_nothing(patch)
+        assert cli.status([*LONG, "--output", str(folder)]) == 0
     return content(folder / "sweep.zarr")

@@ -126,12 +126,6 @@ def test_disc_that_friction_holds_everywhere_is_stuck(points):
     assert full.states[0] == pytest.approx(simulate(disc, start, [0.0, 50.0]).at_end, abs=1e-12)
 
 
-def test_disc_that_sticks_repeatedly_ends_in_stick_slip():
-    found = simulate_ensemble(STICKING, stuck_state(STICKING, -0.08, 0.0), duration=2000.0)
-    assert found.end[0] == EndState.STICK_SLIP
-    assert found.time[0] < 500.0
-
-
 @pytest.mark.parametrize("points", [None, 6])
 @pytest.mark.filterwarnings("error")
 def test_disc_without_friction_that_starts_without_slip_oscillates_and_is_decided(points):

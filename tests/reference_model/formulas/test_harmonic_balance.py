@@ -11,7 +11,6 @@ from test_systems import refusal
 
 from reference_model import PinOnDisc, whirl_orbit, whirls
 from reference_model.formulas.harmonic_balance import whirl_by_harmonic_balance
-from reference_model.formulas.pin import whirl_shift
 
 HARD = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=2.5, hardening=0.5)
 HARDER = PinOnDisc(mass=1.3, stiffness=1.0, damping=0.4, friction_force=0.3, disc_speed=2.0, hardening=1.5)
@@ -81,12 +80,6 @@ def test_errors_are_of_second_order_in_the_offset_and_of_first_order_for_the_mea
     # The circle without offset has an error of the same order, but a larger one.
     (whirl,) = whirls(replace(pin, offset=0.0))
     assert errors[1][0] < 0.2 * abs(abs(first) - whirl.radius)
-
-
-def test_mean_on_a_linear_support_agrees_with_18_to_first_order():
-    pin = replace(HARD, hardening=0.0, offset=1e-4)
-    x, y = whirl_shift(pin)
-    assert whirl_by_harmonic_balance(pin).mean / 1e-4 == pytest.approx(complex(x, y) / 1e-4, abs=1e-6)
 
 
 def test_pin_without_a_harmonic_balance_is_refused():

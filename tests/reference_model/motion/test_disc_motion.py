@@ -11,7 +11,7 @@ from plain_engines import release_after, stuck_state
 
 from compare.claims.parameters import FIG11
 from reference_model import PinOnDisc, simulate
-from reference_model.contact.contact_law import Ring, ThreeTermRing
+from reference_model.contact.contact_law import Ring
 from reference_model.formulas.disc import held_pin
 from reference_model.motion.exact import simulate_with
 from reference_model.motion.stepper import Thresholds
@@ -78,17 +78,6 @@ def test_disc_at_the_axis_sticks_if_the_moment_of_its_shaft_is_below_friction(po
         slip = 0.25 - STICKY.friction_force * STICKY.contact_radius / b
         decay = math.exp(-b / disc.polar_inertia * 30.0)
         assert 1.5 - trajectory.at_end[5] == pytest.approx(slip * (1.0 - decay), rel=1e-7)
-
-
-def test_motion_under_23_with_stick_phases_reaches_the_default_tolerance():
-    law, times = ThreeTermRing(0.12), np.linspace(0.0, 30.0, 301)
-    default, tight = (
-        simulate(STICKY, STICKING, times, tolerance=tolerance, contact=law) for tolerance in (1e-9, 1e-13)
-    )
-    assert "stick" in kinds(default)
-    assert kinds(default) == kinds(tight)
-    assert default.stick_times == pytest.approx(tight.stick_times, abs=1e-8)
-    assert np.abs(default.states - tight.states).max() < 1e-8
 
 
 PIN = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.1, friction_force=0.09, disc_speed=1.5, offset=0.1)

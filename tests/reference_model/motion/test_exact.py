@@ -248,17 +248,6 @@ def test_motion_does_not_depend_on_the_requested_times():
     assert np.abs(some.states - tight.states).max() < 1e-8
 
 
-@pytest.mark.parametrize("shift", [-7.25, 1e4])
-def test_shifted_times_give_the_same_motion(shift):
-    times = np.linspace(0.0, 20.0, 81)
-    at_zero, later = simulate(FIG_5, TO_WHIRL, times), simulate(FIG_5, TO_WHIRL, times + shift)
-    # The shifted times themselves are rounded.
-    rounding = 4.0 * np.spacing(abs(shift) + 20.0)
-    assert np.abs(later.states - at_zero.states).max() < 1e-13 + 10.0 * rounding
-    assert event_times(later) - shift == pytest.approx(event_times(at_zero), abs=1e-13 + 10.0 * rounding)
-    assert later.phases[0].start == shift
-
-
 def test_positions_reach_the_tolerance_on_a_disc_much_faster_than_the_natural_frequency():
     # An error of 1e-9·ωL in the velocity would become an error of 57e-9·L in the position.
     pin = replace(FIG_5, damping=0.11150754, friction_force=0.06107226, disc_speed=-57.613787, offset=0.0)

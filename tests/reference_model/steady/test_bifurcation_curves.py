@@ -7,15 +7,14 @@ import numpy as np
 import pytest
 
 from compare.claims.parameters import FIG11
-from reference_model.contact.contact_law import Pin, Ring, ThreeTermRing
+from reference_model.contact.contact_law import Ring, ThreeTermRing
 from reference_model.formulas.characteristic_polynomial import characteristic_coefficients
 from reference_model.formulas.disc import whirl_at
-from reference_model.formulas.pin import characteristic_coefficients as coefficients_of_pin
 from reference_model.steady import bifurcation_curves as module
 from reference_model.steady.bifurcation_curves import ParameterPlane, boundaries, crossings
 from reference_model.steady.stability import onset_load, whirl_eigenvalues
 from reference_model.steady.steady_states import whirls
-from reference_model.systems import DiscOnDisc, PinOnDisc
+from reference_model.systems import DiscOnDisc
 
 RING, THREE_TERMS = Ring(0.12), ThreeTermRing(0.12)
 LAWS = pytest.mark.parametrize("law", [RING, THREE_TERMS], ids=["ring", "(23)"])
@@ -55,12 +54,6 @@ def test_the_characteristic_equation_has_the_eigenvalues_of_the_jacobian(law):
         roots = np.roots([1.0, *coefficients])
         for value in expected:
             assert np.min(np.abs(roots - value)) < 1e-9 * np.max(np.abs(expected))
-
-
-def test_characteristic_polynomial_without_moment_of_friction_factors_into_pin_and_torsion():
-    pin = PinOnDisc(mass=1.0, stiffness=1.0, damping=0.5, friction_force=0.0225, disc_speed=1.5)
-    expected = np.polymul(coefficients_of_pin(pin), [1.0, FIG11.shaft_damping / FIG11.polar_inertia])
-    assert [1.0, *characteristic_coefficients(FIG11, 1.0, 0.3, Pin())] == pytest.approx(expected, rel=1e-14)
 
 
 @LAWS

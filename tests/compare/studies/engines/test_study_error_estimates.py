@@ -3,30 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults.reference import simulate
-from studies_under_test import engine_named
-from tested_studies import ERROR_ESTIMATES
 
-from compare.claims.claim import Verdict
 from compare.claims.error_estimates import COARSENING, ROUNDING, SAFETY
 from compare.claims.parameters import FIG5
 from compare.engines import Engine
-from compare.studies.engines.error_estimates.study import STUDY, simulated
 from compare.studies.engines.error_estimates.theory import KNOWN, PROBLEMS, Calibration, Problem, calibrated
-
-
-def of(motions):
-    """Return arguments for this number of random motions."""
-    return {"coverage": {"motions": motions}, "over_estimate": {"motions": motions}}
-
-
-def test_error_bars_of_exudyns_built_in_contact_are_calibrated():
-    engine = engine_named("exudyn-native")
-    found = STUDY.measure(engine, of(18))
-    assert len(found.claims) == 2 * len(simulated(engine)) > 0
-    assert {claim.verdict for claim in found.claims} == {Verdict.AGREES}, [c.note for c in found.claims]
-    assert found.not_simulated == "exudyn-native does not simulate a disc on a continuous ring"
-    figures = STUDY.draw({"exudyn-native": found.data, "reference": ERROR_ESTIMATES.found("reference").data})
-    assert set(figures) == set(STUDY.figures)
 
 
 def off_by(error):

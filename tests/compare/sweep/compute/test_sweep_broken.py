@@ -36,8 +36,7 @@ def whole(tmp_path_factory):
 
 
 @pytest.fixture
-def copied(whole, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("compare.sweep.figures.write_figures", lambda store, folder: ())
+def copied(whole, tmp_path, monkeypatch, capsys, undrawn):
     monkeypatch.setattr(store, "SMALL", 0)
     folder = shutil.copytree(whole[0], tmp_path / "copied")
     capsys.readouterr()

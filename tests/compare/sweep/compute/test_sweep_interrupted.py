@@ -20,7 +20,7 @@ def times(folder):
 
 
 def test_a_sweep_gives_the_same_results_after_an_interrupt_and_a_full_disk(
-    undisturbed, tmp_path, monkeypatch, capsys
+    undisturbed, undrawn, tmp_path, monkeypatch, capsys
 ):
     monkeypatch.setattr("compare.sweep.store.SMALL", 0)  # prevents packing
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes ignore it

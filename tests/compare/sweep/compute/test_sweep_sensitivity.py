@@ -41,11 +41,6 @@ def test_indices_of_a_function_with_known_ones_lie_in_their_intervals():
     assert np.max(found.first_error) < 0.05
 
 
-def test_intervals_close_with_the_root_of_the_number_of_rows():
-    few, many = (np.mean(indices_of(table_of(ishigami, n, 3)).first_error) for n in (2**10, 2**14))
-    assert 2.0 < few / many < 8.0  # 4, from the scatter of 16 groups
-
-
 def test_a_constant_result_has_no_indices():
     found = indices_of(np.ones((256, 4)))
     assert np.all(np.isnan(found.first))

@@ -46,14 +46,6 @@ def test_refinement_finds_the_region_as_a_full_grid_does(shape, region):
 
 
 @pytest.mark.parametrize("region", [disc, three_regions, rings, comb])
-def test_every_cell_with_different_corners_has_simulated_corners(region):
-    grid, _, _ = refine((300, 211), 9, region)
-    y, x = np.nonzero(mixed(grid.ends))
-    for right, up in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        assert np.all(grid.simulated[y + up, x + right])
-
-
-@pytest.mark.parametrize("region", [disc, three_regions, rings, comb])
 def test_all_points_of_a_mixed_cell_are_simulated(region):
     grid, truth, _ = refine((41, 61), 21, region)
     for y, x in 2 * np.argwhere(mixed(truth[::2, ::2])):
@@ -61,7 +53,7 @@ def test_all_points_of_a_mixed_cell_are_simulated(region):
 
 
 def test_the_number_of_simulated_points_grows_like_the_length_of_the_boundary():
-    counts = [len(refine((n, n), 33, disc)[2]) - 33**2 for n in (513, 1025, 2049)]
+    counts = [len(refine((n, n), 33, disc)[2]) - 33**2 for n in (257, 513, 1025)]
     np.testing.assert_allclose(np.log2(np.divide(counts[1:], counts[:-1])), 1.0, atol=0.1)
 
 
