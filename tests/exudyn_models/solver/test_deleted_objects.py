@@ -103,7 +103,9 @@ def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_t
         shown = [float(mbs.GetSensorValues(sensor)) for sensor in sensors]
         spin = 3.0 - 12.0 * 0.1 / 0.5
         heat = 0.5 * (3.0**2 - spin**2) / 2.0
-        accuracy = 1e-6 if solve is solve_dynamic else 1e-2  # Exudyn's own run starts without the rate of heat
+        accuracy = (
+            1e-6 if solve is solve_dynamic else 1e-2
+        )  # Exudyn's own run starts without the rate of heat
         assert shown == pytest.approx([spin, -12.0, 12.0 * spin, heat], rel=accuracy)
         if body is not None:
             mbs.DeleteObject(int(body))  # with its node
