@@ -185,11 +185,12 @@ class RingFriction:
         on_axis = on_one_axis(contact.kinds, contact.factors)
         law = constant_law(contact.kinds, contact.factors) if contact.built_in else None
         moment, creep = law or (0.0, 1.0)
+        master, disc = first.start, first.stop - 1
 
         def of_constant_moment(t: float) -> float:
-            velocities = get_velocities()[first].tolist()
-            spin = abs(velocities[-1] - velocities[0] if pair else velocities[0])
-            return float(moment * (spin if spin > creep else spin * spin / creep))
+            velocities = get_velocities()
+            spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
+            return moment * (spin if spin > creep else spin * spin / creep)
 
         def of_any(t: float) -> float:
             values = get_velocities()

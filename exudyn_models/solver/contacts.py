@@ -5,7 +5,7 @@ starts their numbers again.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -21,10 +21,11 @@ _CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
 
 @dataclass(eq=False, kw_only=True)
 class Connector:
-    """A connector with a ``name`` and the ``places`` of its coordinates, which hold until objects are deleted."""
+    """A connector with a ``name`` and the ``places`` of its coordinates while the model has so many ``objects``."""
 
     name: str = ""
-    places: list[slice] | None = None
+    places: list[slice] = field(default_factory=list)
+    objects: int = 0
 
 
 @dataclass(eq=False)
@@ -73,10 +74,11 @@ def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
 
     Raises ``ValueError`` if it was deleted.
     """
-    if connector.places is None:
+    if connector.objects != (count := mbs.systemData.NumberOfObjects()):
         places = np.array(mbs.systemData.GetObjectLTGODE2(present_item(mbs, connector, item)))
         runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
         connector.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
+        connector.objects = count
     return connector.places
 
 
@@ -97,17 +99,23 @@ def contacts_of(mbs: Any) -> dict[int, Contact]:
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
 
 
+def forget_places(mbs: Any) -> None:
+    """Forget where the coordinates of all connectors are, because objects may be deleted."""
+    contacts: list[Contact] = list(mbs.sys.get(_CONTACTS, {}).values())
+    for connector in (*mbs.sys.get(_SUPPORTS, []), *contacts):
+        connector.objects = 0
+    for contact in contacts:
+        contact.power = None
+
+
 def find_again(mbs: Any) -> None:
-    """Find the locks of all contacts again, and forget places, because objects may have been deleted.
+    """Find the locks of all contacts again.
 
     Raises ``ValueError`` if a contact has lost its locks.
     """
     contacts: list[Contact] = list(mbs.sys.get(_CONTACTS, {}).values())
-    for connector in (*mbs.sys.get(_SUPPORTS, []), *contacts):
-        connector.places = None
     numbers = _numbers(mbs) if contacts else {}
     for contact in contacts:
-        contact.power = None
         if contact.stick is None or contact.name not in numbers:
             continue
         names = [contact.lock_name(direction) for direction in range(len(contact.stick.locks))]
@@ -133,4 +141,7 @@ def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
     for number in (item, *range(count)):  # mostly the first
         if int(number) < count and mbs.GetObjectParameter(number, "name") == connector.name:
             return number
-    raise ValueError(f"{connector.name!r} was deleted: it cannot be changed or measured")
+    raise ValueError(
+        f"{connector.name!r} was deleted: it cannot be changed or measured; keep objects that sensors or an energy "
+        "balance use"
+    )

@@ -1,7 +1,7 @@
 """Modes that let all contacts of a model obey Coulomb's law at one time of a run.
 
 A contact in the plane begins to slide normal to the limit surface, with the slip that its load reaches within a
-millionth of a step.
+millionth of a step or Newton's method can resolve. ``take_back`` removes this slip when the contact slides faster.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,6 +22,9 @@ ROUNDING = 1e-12
 
 SETTLED = 1e-10
 """Largest relative change of a settled load."""
+
+GROWN = 10.0
+"""Least slip for ``take_back``, relative to the first slip."""
 
 MOST_CHANGES = 100
 """Largest number of changes of mode at one time."""
@@ -47,6 +50,7 @@ class ModeChoice:
         self._step, self._at_start = step, at_start
         self._planar = [contact for contact in contacts if isinstance(contact, PlanarContact)]
         self._locked = LockedContacts(mbs, t, contacts)
+        self._first_slips: dict[PlanarContact, float] = {}
 
     def survey(self, t: float) -> None:
         """Find the directions of slip that joints and locks hold."""
@@ -61,6 +65,21 @@ class ModeChoice:
             if contact.mode == Mode.LOCKED:
                 self._locked.set_slip(contact, np.zeros(3))
 
+    def take_back(self, t: float) -> None:
+        """Subtract the first slip of contacts that slide much faster at the time t (s).
+
+        Friction keeps this excess of speed in the direction of the slip, so subtract it in this direction.
+        """
+        for contact, first in list(self._first_slips.items()):
+            motion = contact.motion(self._mbs, exu.ConfigurationType.Initial)
+            if contact.free_to_slide and motion.potential < GROWN * first:
+                continue
+            del self._first_slips[contact]
+            if contact.free_to_slide:
+                self.survey(t)
+                self._locked.set_slip(contact, (1.0 - first / motion.potential) * motion.slip)
+        self._slides.starts = bool(self._first_slips)
+
     def margins(self, t: float) -> list[float]:
         """Return the margins of all contacts, after redistributing loads that would end a rest."""
         margins = [contact.margin(self._mbs, t) for contact in self._contacts]
@@ -72,7 +91,7 @@ class ModeChoice:
         """Let a contact enter its next mode; if several share a load, the most loaded one."""
         if isinstance(contact, PlanarContact) and contact.planar.rests and mode != Mode.OPEN:
             locked = [one for one in self._planar if one.mode == Mode.LOCKED]
-            contact = max(locked, key=lambda one: one.overload(self._mbs, t), default=contact)
+            contact = self._most_loaded(t, locked or [contact])
             mode = contact.driven(self._mbs)
         self.enter(contact, mode)
 
@@ -114,6 +133,7 @@ class ModeChoice:
             speed = 2.0 * max(shortest * free.rate_potential, RESOLVED * free.largest_term)
             slip = speed * contact.planar.direction
             self._slides.begin(max(shortest, speed / free.rate_potential))
+            self._first_slips[contact] = speed
         contact.enter(self._mbs, Mode.OPEN)
         self._locked.set_slip(contact, slip)
         contact.enter(self._mbs, mode)
@@ -154,9 +174,9 @@ class ModeChoice:
         for contact in self._contacts:
             if contact.opens_or_closes(contact.holding(t)):
                 return contact, contact.following(mbs, t)
-        if self._most_loaded(t).overload(mbs, t) > 1.0 + ROUNDING:
-            self._locked.balance(t)
-        most = self._most_loaded(t)
+        most = self._most_loaded(t, self._contacts)
+        if most.overload(mbs, t) > 1.0 + ROUNDING and self._locked.balance(t):
+            most = self._most_loaded(t, self._contacts)
         if most.overload(mbs, t) > 1.0 + ROUNDING:
             return most, most.driven(mbs)
         for contact in self._contacts:
@@ -164,8 +184,8 @@ class ModeChoice:
                 return contact, Mode.LOCKED
         return None
 
-    def _most_loaded(self, t: float) -> StickingContact:
-        return max(self._contacts, key=lambda contact: contact.overload(self._mbs, t))
+    def _most_loaded(self, t: float, contacts: Sequence[StickingContact]) -> StickingContact:
+        return max(contacts, key=lambda contact: contact.overload(self._mbs, t))
 
     def _start_with_forces(self, t: float) -> bool:
         """Take accelerations and constraint forces as initial values; return whether dependent loads agree."""

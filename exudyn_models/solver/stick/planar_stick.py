@@ -54,6 +54,8 @@ class PlanarStick(AxialStick):
 
     Their sum over these contacts is zero, so they change no motion.
     """
+    radius: float = 0.0
+    """Distance of the disc's centre from the master's axis in m, constant in stick."""
     frozen: bool = False
     """True in the last step before rest: friction keeps its value from the start of the step."""
     predicts: bool = False
@@ -150,7 +152,7 @@ class PlanarStick(AxialStick):
 
     def holding_force(self, t: float) -> float:
         """Return the static friction in N."""
-        return self.static_ratio * self.factors.friction_force(t, 0.0, 0.0, 0.0)
+        return self.static_ratio * self.factors.friction_force(t, self.radius, 0.0, 0.0)
 
     def capacity_share(self, mbs: Any, t: float, angle: float = 0.0) -> float:
         """Return load divided by capacity: 1 while the contact slides, 0 while it is open."""

@@ -1,5 +1,6 @@
 """Contacts that stick exactly in an assembled model: their modes, and when each mode ends."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -230,11 +231,13 @@ class PlanarContact(StickingContact):
     def driven(self, mbs: Any) -> Mode:
         """Return the mode into which the load drives a locked contact, and store the direction."""
         _, self.planar.direction = self.planar.load_share(self.planar.held_wrench(mbs), 1.0)
-        return _sliding_mode(self.planar.direction)
+        return self._sliding_mode(self.planar.direction)
 
     def motion(self, mbs: Any, configuration: Any = CURRENT) -> SlipMotion:
-        """Return the present motion."""
-        return self.planar.motion(*self._state(mbs, configuration))
+        """Return the present motion, and store its radius for the capacity in stick."""
+        motion = self.planar.motion(*self._state(mbs, configuration))
+        self.planar.radius = motion.radius
+        return motion
 
     def active_locks(self) -> Sequence[int]:
         """Return the object numbers of the active constraints."""
@@ -248,7 +251,7 @@ class PlanarContact(StickingContact):
     def slid(self, mbs: Any) -> SlipMotion:
         """Return the present motion, and store its direction as the mode."""
         motion = self.motion(mbs)
-        self.stick.mode = _sliding_mode(motion.slip)
+        self.stick.mode = self._sliding_mode(motion.slip)
         return motion
 
     def margin(self, mbs: Any, t: float) -> float:
@@ -267,14 +270,14 @@ class PlanarContact(StickingContact):
         return self.free_to_slide and self.motion(mbs).rests_within(time)
 
     def _free_mode(self, mbs: Any, t: float, configuration: Any) -> Mode:
+        motion = self.motion(mbs, configuration)
         if self.holding(t) == 0.0:
             return Mode.OPEN
-        motion = self.motion(mbs, configuration)
-        return _sliding_mode(motion.slip) if motion.is_resolved else Mode.LOCKED
+        return self._sliding_mode(motion.slip) if motion.is_resolved else Mode.LOCKED
 
-
-def _sliding_mode(slip: FloatArray) -> Mode:
-    return Mode.BACKWARD if slip[2] < 0.0 else Mode.FORWARD
+    def _sliding_mode(self, slip: FloatArray) -> Mode:
+        sideways, rim = math.hypot(slip[0], slip[1]), slip[2] * (self.planar.mean_radius or 1.0)
+        return Mode.BACKWARD if rim < -NEGLIGIBLE * sideways else Mode.FORWARD  # spin may be a rounding error
 
 
 def sticking_contacts(mbs: Any, t: float) -> list[StickingContact]:

@@ -26,7 +26,7 @@ LOCATED = 1e-12
 """Accuracy of the time of a change, as a share of a step."""
 
 FORCES = 1e-12
-"""Relative residual of Newton's method for contacts in the plane.
+"""Residual of Newton's method for contacts in the plane, relative to its first value or to the friction.
 
 Constraint forces, which decide about releases, contain errors of velocities divided by the step.
 """
@@ -105,13 +105,15 @@ class _Run:
             kept(file, "append", "write", "writeInitialValues"),
             kept(sensors, "append"),
             kept(alpha, "computeInitialAccelerations"),
-            kept(newton, "useModifiedNewton", "relativeTolerance", "maxIterations"),
+            kept(newton, "useModifiedNewton", "relativeTolerance", "absoluteTolerance", "maxIterations"),
         ):
             newton.maxIterations = max(newton.maxIterations, ITERATIONS)
             if self._planar:
                 # The direction of friction turns too fast for an old Jacobian.
                 newton.useModifiedNewton = False
                 self._tolerances = newton.relativeTolerance, min(newton.relativeTolerance, FORCES)
+                friction = max(contact.holding(self._start) for contact in self._planar)
+                newton.absoluteTolerance = min(newton.absoluteTolerance, FORCES * friction)
             try:
                 yield
             finally:
@@ -173,6 +175,7 @@ class _Run:
         Return None, or the end of a step that passed a change, with the margins at both of its ends.
         """
         data, start = self._mbs.systemData, self._reached
+        self._modes.take_back(start)
         whole = (start - self._start) / self._step
         on_grid = abs(whole - round(whole)) < ON_GRID
         done = round(whole) if on_grid else math.floor(whole)

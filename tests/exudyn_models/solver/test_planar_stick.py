@@ -132,8 +132,8 @@ def test_points_stick_pivot_and_break_loose_as_in_the_reference(points, paramete
                 *np.abs(np.array(times[1:]) - exact.phases[-1].start),
             ]
         )
-    assert max(errors[1]) < 1.5e-5  # m, rad or s
-    assert (np.array(errors[0]) > 3.0 * np.array(errors[1])).all()  # of second order in the step
+    assert max(errors[1]) < 2.5e-5  # m, rad or s
+    assert (np.array(errors[0]) > 3.6 * np.array(errors[1])).all()  # of second order in the step
 
 
 @pytest.mark.parametrize("annulus", [False, True])
@@ -165,6 +165,15 @@ def test_a_load_on_the_limit_surface_releases_the_contact(annulus):
         ((time, _, before, after),) = run(mbs, 0.6, 1e-2)
         assert time == pytest.approx(0.5, abs=1e-9)
         assert (before, after) == (LOCKED, -1 if slip[2] < 0.0 else 1)
+
+
+def test_a_load_of_the_radius_holds_a_disc_by_its_own_radius():
+    mbs = new_model()
+    node = planar_body(mbs, MASS, INERTIA, [0.02, 0.0, 0.0], [0.0] * 3)
+    add_ring_friction(mbs, None, node, normal_load=lambda radius: LOAD * (1.0 - 20.0 * radius), **RING)
+    push(mbs, node, 1, lambda t: 30.0 * t)
+    ((time, *_),) = run(mbs, 0.35, 1e-2)
+    assert time == pytest.approx(COEFFICIENT * 0.6 * LOAD / 30.0, abs=1e-9)
 
 
 def test_a_held_disc_does_not_creep_within_an_hour():
@@ -255,11 +264,11 @@ def test_the_pin_of_fig_5_sticks_and_slips_as_in_the_reference():
     start = (0.1, 0.0, 0.03, 0.0)
     exact = simulate(pin, start, [0.0, 24.0], tolerance=1e-11).stick_times.ravel()
     assert len(exact) == 8
-    coarse, fine = (switching_times(pin, start, step, 24.0) for step in (1e-2, 5e-3))
+    coarse, fine = (switching_times(pin, start, step, 24.0) for step in (4e-3, 2e-3))
     assert len(coarse) == len(fine) == len(exact)
-    assert np.abs(fine - exact).max() < 2e-4
+    assert np.abs(fine - exact).max() < 1e-5
     ratio = np.linalg.norm(coarse - exact) / np.linalg.norm(fine - exact)
-    assert ratio == pytest.approx(4.0, rel=0.2)
+    assert ratio == pytest.approx(4.0, rel=0.05)
 
 
 def test_joints_leave_a_guided_block_one_direction_of_slip():
