@@ -270,5 +270,5 @@ def test_changes_at_a_break_are_among_the_changes():
 def test_explicit_solvers_are_refused():
     mbs, _ = braked(2.0, lambda t: 0.0)
     mbs.Assemble()
-    with pytest.raises(ValueError, match="solverType = RK44: it is explicit"):
+    with pytest.raises(ValueError, match="solverType = RK44: explicit solvers ignore constraints"):
         solve_dynamic(mbs, settings_of(1.0, 10), SOLVERS.RK44)
