@@ -140,7 +140,9 @@ def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
     cells = recorded.cells(best)
     first, *more = _judged(best)
     sentences = [f"with {_named([best.setting])}, {first}" if best.setting else first, *more]
-    sentences += [best.advice] if best.advice else []
+    if best.advice:
+        others = any(claim.verdict is Verdict.DIFFERS for claim in best.claims)
+        sentences.append(f"in the other motions, {best.advice}" if others else best.advice)
     if coarse := [_case(best, one) for one in best.claims if one.verdict is Verdict.INCONCLUSIVE]:
         sentences.append(f"the runs of {_quoted(coarse)} are too coarse to decide")
     if lacking := [name for name, cell in zip(cases(recorded), cells, strict=True) if cell is None]:

@@ -31,7 +31,7 @@ WRONG = FINE | {"slides": (0.5, 1e-6)}
 def settings():
     return (
         setting("ours", "", **dict.fromkeys(FINE, (1e-12, 1e-12))),
-        setting("Wrong", "box", **WRONG),
+        replace(setting("Wrong", "box", **WRONG), advice="use small steps"),
         *(replace(setting("Kite", name, **WRONG), law="box", whirl=0.26) for name in BOXES),
         setting("Kite", "a user's", own=False, **dict.fromkeys(FINE, (0.0, 0.0))),
         replace(setting("Kite", "cone", **FINE), law="cone", whirl=1e-6, advice="use small steps"),
@@ -84,7 +84,8 @@ def test_a_sentence_lists_missing_motions_and_differences(found):
     assert found["Open"].sentence.endswith(". The runs of “disc” are too coarse to decide.")
     assert found["Blind"].sentence.startswith("With the setting “cone”, the errors are too large to decide. ")
     assert found["Wrong"].sentence == (
-        "With the setting “box”, 1 of 3 motions (“slides”) is wrong at any step."
+        "With the setting “box”, 1 of 3 motions (“slides”) is wrong at any step. "
+        "In the other motions, use small steps."
     )
     assert found["Pins"].cells[2] is None
 
