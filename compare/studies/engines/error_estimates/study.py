@@ -129,7 +129,7 @@ def _scatter(data: ByEngine) -> Figure:
         panel.axis("off")
     figure.supxlabel("true error, relative to the largest number", fontsize=11.0)
     figure.supylabel("estimate, relative to the largest number", fontsize=11.0)
-    panels[0].legend(loc="upper left", fontsize=9.0)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
     return figure
 
 
@@ -163,7 +163,7 @@ def _spread(data: ByEngine) -> Figure:
     panel.set_yticks(range(len(kinds)), kinds)
     panel.invert_yaxis()
     if names:
-        panel.legend(loc="lower right")
+        figure.legend(loc="outside upper right", ncols=len(names))
     return figure
 
 
