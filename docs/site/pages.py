@@ -155,8 +155,15 @@ def linked_claims(text: str) -> str:
         anchor = of_headings.get(found[2])
         return f'<a href="report/index.html#{anchor}">{found[1]}</a>' if anchor else found[0]
 
+    def sentence(found: re.Match[str]) -> str:
+        return (
+            f'{found[1]}<a href="report/index.html#{found[2]}">{found[3]}</a>'
+            if found[2] in names
+            else found[0]
+        )
+
     text = re.sub(r"\[([^]\n]*)\]\((?:findings\.md)?#([\w-]+)\)", number, text)
-    text = re.sub(r"(?m)^(### )([a-z0-9-]+/[a-z0-9/ .-]+)$", r"\1`\2`", text)
+    text = re.sub(r"(?m)^(### (\S+/\S+)\n\n)(.+)$", sentence, text)
     return re.sub(r"(?<!\[)`([a-z0-9-]+/[a-z0-9/ .-]+)`", link, text)
 
 
