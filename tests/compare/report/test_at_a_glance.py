@@ -101,12 +101,10 @@ def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(
 
 def test_an_engine_of_the_run_is_described_by_its_claims(found):
     assert found["good"].sentence == (
-        "3 of 5 checks against independent evidence agree. Of all its checks, 1 differs and 1 is inconclusive."
+        "3 of 5 checks against independent evidence agree. 1 check differs and 1 is inconclusive."
     )
     assert (found["good"].version, found["good"].why) == ("3", "?engine=good#studies")
-    assert found["failing"].sentence == (
-        "1 of 1 checks against independent evidence agree. Of all its checks, 4 failed."
-    )
+    assert found["failing"].sentence == ("1 of 1 checks against independent evidence agree. 4 checks failed.")
 
 
 def test_an_engine_that_was_also_recorded_has_the_grade_of_its_motions(seen):
