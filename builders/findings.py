@@ -2,8 +2,8 @@
 
 ``builders/findings.md`` and the paper's source name each number as in ``#n("fig05: dividing velocity, reference")``:
 a study and a quote of one of its claims (see ``compare.report.quotes``). "claims", "checks" and
-"verdicts: independent" are counts of a whole report, and "engine: Bullet" is its sentence about an engine. README
-contains the numbers of ``IN_README`` literally::
+"verdicts: independent" are counts of a whole report, and "engine: Bullet" is its sentence about an engine. A number
+of a claim links to the claim at the end of the page. README contains the numbers of ``IN_README`` literally::
 
     python builders/findings.py write report/results.json   # docs/numbers.json, docs/findings.md and its figures
     python builders/findings.py check report/results.json   # fails if the report deviates from them
@@ -16,7 +16,7 @@ import re
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -24,12 +24,16 @@ from typing import Any, Literal
 from compare.claims.as_json import claim_from_json
 from compare.output.text_files import write_text
 from compare.report.matrix import WORST_FIRST, State
+from compare.report.numbers import error_text, value_text
 from compare.report.quotes import Nature, parts, quote
 from compare.report.results_json import read_results
 
 ROOT = Path(__file__).parents[1]
 
 QUOTED = re.compile(r'#n\(\s*"([^"]*)"\s*\)')
+
+CLAIMS = "#claims"
+"""Place of the quoted claims in ``builders/findings.md``."""
 
 FIGURE = re.compile(r"\]\(([\w-]+\.svg)\)")
 """Link to a figure of the report."""
@@ -51,12 +55,18 @@ Results = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Number:
-    """A printed number with its value, its error and its nature; a sentence about an engine has only its text."""
+    """A printed number with its value, its error and its nature; a sentence about an engine has only its text.
+
+    A number of a claim also has the claim's name and sentence, and its own unit.
+    """
 
     text: str
     value: float
     error: float
     nature: Nature | Literal["text"]
+    claim: str = ""
+    sentence: str = ""
+    unit: str = ""
 
     def __str__(self) -> str:
         """Return the sentence, or the value with its error."""
@@ -64,8 +74,10 @@ class Number:
 
     def deviates_from(self, other: Number) -> bool:
         """Return whether two reports differ: counts by any amount, other numbers by more than their errors."""
-        if self.nature != other.nature or self.nature == "text":
-            return (self.nature, self.text) != (other.nature, other.text)
+        if (self.nature, self.claim, self.sentence) != (other.nature, other.claim, other.sentence):
+            return True
+        if self.nature == "text":
+            return self.text != other.text
         if self.nature == "count":
             return self.value != other.value
         if self.nature == "error":
@@ -90,7 +102,35 @@ def kept(root: Path = ROOT) -> dict[str, Number]:
 def findings(numbers: Mapping[str, Number], root: Path = ROOT) -> str:
     """Return the text of docs/findings.md."""
     template = (root / "builders" / "findings.md").read_text(encoding="utf-8")
-    return QUOTED.sub(lambda found: numbers[found[1]].text, template)
+    linked = QUOTED.sub(lambda found: _linked(numbers[found[1]]), template)
+    return linked.replace(CLAIMS, "\n\n".join(_claims(numbers, QUOTED.findall(template))))
+
+
+def _linked(number: Number) -> str:
+    return f"[{number.text}](#{anchor(number.claim)})" if number.nature == "measured" else number.text
+
+
+def anchor(claim: str) -> str:
+    """Return the anchor of a claim's heading."""
+    return claim.replace("/", "")
+
+
+def _claims(numbers: Mapping[str, Number], names: Iterable[str]) -> Iterator[str]:
+    """Yield a heading, the sentence and the measured numbers with their errors for each claim behind ``names``."""
+    quoted: dict[str, dict[str, Number]] = {}
+    for name in names:
+        number, words = numbers[name], name.partition(": ")[2].partition(",")[0]
+        if number.nature == "measured":
+            quoted.setdefault(number.claim, {})[words] = number
+    for claim, found in quoted.items():
+        values = [f"- {words}: {_with_error(number)}" for words, number in found.items()]
+        sentence = next(iter(found.values())).sentence
+        yield "\n".join([f"### {claim}", "", f"{sentence}.", "", *values])
+
+
+def _with_error(number: Number) -> str:
+    text = f"{value_text(number.value, number.error)} ± {error_text(number.error, 1)}"
+    return f"{number.text if '±' in number.text else text} {number.unit}".rstrip()
 
 
 def number_in(results: Results, name: str) -> Number | None:
@@ -110,12 +150,17 @@ def number_in(results: Results, name: str) -> Number | None:
     study = next((study for study in results["studies"] if study["name"] == kind), None)
     if study is None:
         return None
-    found = quote([claim_from_json(claim) for claim in study["claims"]], rest)
+    claims = [claim_from_json(claim) for claim in study["claims"]]
+    found = quote(claims, rest)
     if found is None:
         if not _is_whole(results):
             return None
         raise ValueError(f"{name!r}: no claim of the study {kind!r} has that name")
-    return Number(found.text, found.value, found.error, found.nature)
+    name = next(
+        about["id"] for claim, about in zip(claims, study["claims"], strict=True) if claim is found.claim
+    )
+    unit = found.unit if found.unit != "1" else ""
+    return Number(found.text, found.value, found.error, found.nature, name, found.claim.sentence, unit)
 
 
 def _is_whole(results: Results) -> bool:

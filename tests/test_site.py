@@ -105,3 +105,9 @@ def test_names_of_claims_lead_to_the_report(site, tmp_path, monkeypatch):
     assert '<a href="report/index.html#fig05/critical"><code>fig05/critical</code></a>' in text
     assert '"report/index.html#fig11/slides/six-points"><code>fig11/slides</code>' in text
     assert text.endswith("`docs/site`")
+    text = pages.linked_claims(
+        "[0.03](#fig05critical), [4](findings.md#fig05critical), [so](#cost)\n### fig05/critical\n\nAgrees.\n"
+    )
+    address = '<a href="report/index.html#fig05/critical">'
+    assert text.startswith(f"{address}0.03</a>, {address}4</a>, [so](#cost)")
+    assert text.endswith(f"### fig05/critical\n\n{address}Agrees.</a>\n")

@@ -64,6 +64,7 @@ PAPER: dict[Any, Any] = {
     "ytick.direction": "out",
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
+    "axes.prop_cycle": f"cycler(color={PALETTE})",
     "lines.linewidth": 1.3,
     "lines.markersize": 5.0,
     "legend.frameon": False,

@@ -91,26 +91,39 @@ def _measured(run: Run, matrix: Matrix, engine: str, recorded: RecordedMatrix | 
         grade = next((one.value for one in reversed(GRADES) if grades[one]), ROUGH)
     else:
         grade = OPEN
-    independent = matrix.of_evidence("independent", engine)
-    agreeing = f"{independent[State.AGREES]} of {sum(independent.values())} checks against independent evidence agree"
-    gaps = (State.DIFFERS, State.INCONCLUSIVE, State.FAILED, State.MISSING, State.NOT_SIMULATED)
-    rest = [f"{counts[state]} {_verb(state, counts[state])}" for state in gaps if counts[state]]
     where = why = f"?engine={quote(engine)}#studies"
-    sentences = [", ".join([agreeing, *rest])]
+    sentences = _counted(matrix, engine)
     cells: tuple[Cell | None, ...] = ()
     settings = recorded.by_engine.get(engine, []) if recorded is not None else []
     if recorded is not None and settings:
         best = settings[0]
         if grade != DIFFERS:  # compare all engines by the same motions
             grade, why = _grade(best), f"#{recorded.anchor(engine)}"
-        sentences = [_judged(best), *([best.advice] if best.advice else []), *sentences]
+        sentences = [*_judged(best), *([best.advice] if best.advice else []), *sentences]
         cells = recorded.cells(best)
     version = run.versions.get(engine, "")
     return Glance(engine, version, grade, _joined(sentences), where, why, cells)
 
 
-def _verb(state: State, count: int) -> str:
-    return "differ" if state is State.DIFFERS and count > 1 else state.value
+def _counted(matrix: Matrix, engine: str) -> list[str]:
+    independent, counts = matrix.of_evidence("independent", engine), matrix.count(engine)
+    agreeing, total = independent[State.AGREES], sum(independent.values())
+    share = f"all {total}" if 1 < agreeing == total else f"{agreeing} of {total}"
+    sentences = [f"{share} checks against independent evidence agree"] if total else []
+    gaps = [(counts[state], verbs[counts[state] > 1]) for state, verbs in GAPS.items() if counts[state]]
+    nouns = (f" check{'s' * (count > 1)}" * (i == 0) for i, (count, _) in enumerate(gaps))
+    listed = [f"{count}{noun} {verb}" for (count, verb), noun in zip(gaps, nouns, strict=True)]
+    return sentences + ([_listed(listed)] if listed else [])
+
+
+GAPS = {
+    State.DIFFERS: ("differs", "differ"),
+    State.INCONCLUSIVE: ("is inconclusive", "are inconclusive"),
+    State.FAILED: ("failed", "failed"),
+    State.MISSING: ("is missing", "are missing"),
+    State.NOT_SIMULATED: ("was not simulated", "were not simulated"),
+}
+"""Verbs for one check and for several checks without agreement."""
 
 
 def _best(settings: Sequence[Recorded]) -> Recorded:
@@ -125,44 +138,61 @@ def _best(settings: Sequence[Recorded]) -> Recorded:
 
 def _recorded(recorded: RecordedMatrix, best: Recorded) -> Glance:
     cells = recorded.cells(best)
-    sentences = [f"{best.setting}: {_judged(best)}" if best.setting else _judged(best)]
-    sentences += [best.advice] if best.advice else []
+    first, *more = _judged(best)
+    sentences = [f"with {_named([best.setting])}, {first}" if best.setting else first, *more]
+    if best.advice:
+        others = any(claim.verdict is Verdict.DIFFERS for claim in best.claims)
+        sentences.append(f"in the other motions, {best.advice}" if others else best.advice)
     if coarse := [_case(best, one) for one in best.claims if one.verdict is Verdict.INCONCLUSIVE]:
-        sentences.append(f"too coarse to decide: {', '.join(coarse)}")
+        sentences.append(f"the runs of {_quoted(coarse)} are too coarse to decide")
     if lacking := [name for name, cell in zip(cases(recorded), cells, strict=True) if cell is None]:
-        sentences.append(f"not simulated: {', '.join(lacking)}")
-    avoided: dict[str, list[str]] = {}
+        sentences.append(f"we did not simulate {_quoted(lacking)}")
+    avoided: dict[tuple[str, ...], list[str]] = {}
     for one in recorded.by_engine[best.engine]:
         if one is not best and _grade(one) == DIFFERS:
             avoided.setdefault(_judged(one), []).append(one.setting)
-    sentences += [f"avoid {_listed(names)}: {judged}" for judged, names in avoided.items()]
+    for (reason, *more), names in avoided.items():
+        sentences += [f"avoid {_named(names)}, because {reason}", *more]
     anchor = recorded.anchor(best.engine)
     where = f"?engine={quote(best.engine)}#{quote(anchor)}"
     return Glance(best.engine, best.version, _grade(best), _joined(sentences), where, f"#{anchor}", cells)
 
 
-def _listed(settings: Sequence[str]) -> str:
-    *first, last = ["the settings as shipped" if name == SHIPPED else name for name in settings]
+def _named(settings: Sequence[str]) -> str:
+    named = [name for name in settings if name != SHIPPED]
+    noun = f"the setting{'s' * (len(named) > 1)} "
+    words = [noun + _quoted(named)] if named else []
+    return " and ".join(words + ["the default settings"] * (len(named) < len(settings)))
+
+
+def _quoted(names: Sequence[str]) -> str:
+    return _listed([f"“{name}”" for name in names])
+
+
+def _listed(words: Sequence[str]) -> str:
+    *first, last = words
     return f"{', '.join(first)} and {last}" if first else last
 
 
 SHIPPED = "as shipped"
 
 
-def _judged(setting: Recorded) -> str:
+def _judged(setting: Recorded) -> tuple[str, ...]:
+    """Return one or two sentences, to be capitalised. The first may follow "with the setting X" or "because"."""
     wrong = [_case(setting, claim) for claim in setting.claims if claim.verdict is Verdict.DIFFERS]
     if not wrong:
         agrees = any(claim.verdict is Verdict.AGREES for claim in setting.claims)
-        return (
-            "Coulomb friction correct, errors fall with the step" if agrees else "errors too large to decide"
-        )
-    which = f" ({', '.join(wrong)})" if len(wrong) <= MOST_NAMED else ""
-    text = f"wrong in {len(wrong)} of {len(setting.claims)} motions{which} at any step"
-    if setting.law not in ("", CONE):
-        text = f"friction is a {setting.law}, {text}"
-    if setting.whirl > LEAST_SHARE:
-        text += f", radius of the whirl {100.0 * setting.whirl:.0f} % off"
-    return text
+        right = "Coulomb friction is correct, and errors fall with the step"
+        return (right if agrees else "the errors are too large to decide",)
+    total = len(setting.claims)
+    share = f"all {total}" if 1 < len(wrong) == total else f"{len(wrong)} of {total}"
+    which = f" ({_quoted(wrong)})" if len(wrong) <= MOST_NAMED else ""
+    text = f"{share} motions{which} {'is' if len(wrong) == 1 else 'are'} wrong"
+    off = f"the radius of the whirl is {100.0 * setting.whirl:.0f} % off"
+    whirl = f", and {off}" if setting.whirl > LEAST_SHARE else ""
+    if setting.law in ("", CONE):
+        return (f"{text} at any step{whirl}",)
+    return f"a {setting.law} replaces the friction cone", f"at any step, {text}{whirl}"
 
 
 MOST_NAMED = 2

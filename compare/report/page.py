@@ -61,6 +61,7 @@ def page(
             claim_commands=functools.partial(_claim_commands, run.seed),
             recorded_summaries=[(recorded, _in_words(recorded.totals)) for recorded in matrix.recorded],
             exceptions=_exceptions(matrix),
+            once=lambda state: "; ".join(dict.fromkeys("; ".join(matrix.reasons(state)).split("; "))),
             worst=worst,
             in_short=in_short,
             state_of=state_of,
@@ -89,6 +90,7 @@ def environment() -> Environment:
     result.filters.update(
         number=lambda value: _data(value, error_text(value)),
         value=lambda value, uncertainty: _data(value, value_text(value, uncertainty)),
+        exact=lambda value: _data(value, trimmed(value)),
         answers=lambda value: _data(value, answers_text(value)),
         paragraphs=lambda text: [one.strip() for one in text.split("\n\n") if one.strip()],
         urlpath=quote,

@@ -39,13 +39,14 @@ UNITS = {"%": 100.0, "mm": 1e3, "rpm": 30.0 / math.pi, "turns": 0.5 / math.pi}
 
 @dataclass(frozen=True)
 class Quote:
-    """A number as printed in a text, its exact value and error, and its claim."""
+    """A number as printed in a text, its exact value and error, its claim, and the unit of a measured number."""
 
     text: str
     value: float
     error: float
     nature: Nature
     claim: Claim
+    unit: str = ""
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ class _Reference:
     with_error: bool = False
     digits: int = MOST_DIGITS
     factor: float = 1.0
+    unit: str = ""
     origin: float = 0.0
 
     @classmethod
@@ -72,9 +74,9 @@ class _Reference:
                 given["with_error"] = True
             elif option.startswith("% from "):
                 given["origin"] = float(option.removeprefix("% from "))
-                given["factor"] = 100.0 / given["origin"]
+                given["factor"], given["unit"] = 100.0 / given["origin"], "%"
             elif option in UNITS:
-                given["factor"] = UNITS[option]
+                given["factor"], given["unit"] = UNITS[option], option
             elif option.endswith((" digit", " digits")):
                 given["digits"] = int(option.split()[0])
             else:
@@ -107,7 +109,9 @@ def _quote(claim: Claim, asked: _Reference) -> Quote:
         text = sign + value_text(value, error, most=asked.digits)
         if asked.with_error:
             text += f" ± {error_text(error, 1)}"
-        return Quote(text, value, error, "measured", claim)
+        return Quote(
+            text, value, error, "measured", claim, asked.unit or claim.units[place % len(claim.units)]
+        )
     value = error if asked.part == "error" else asked.factor * float(np.max(claim.difference.flat[which]))
     if asked.relative:
         value /= asked.factor * float(np.max(np.abs(claim.predicted.flat[which])))

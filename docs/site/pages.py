@@ -136,7 +136,7 @@ def footer() -> str:
 
 
 def linked_claims(text: str) -> str:
-    """Return a page with links from the names of claims to the report, if there is one."""
+    """Return a page whose names and numbers of claims lead to the report, if there is one."""
     if not (REPORT / "results.json").exists():
         return text
     studies = json.loads((REPORT / "results.json").read_text(encoding="utf-8"))["studies"]
@@ -145,10 +145,25 @@ def linked_claims(text: str) -> str:
     for name in sorted(names, reverse=True):  # a name of a family leads to its first member
         anchors["/".join(name.split("/")[:2])] = name
 
+    of_headings = {name.replace("/", ""): name for name in names}
+
     def link(found: re.Match[str]) -> str:
         anchor = anchors.get(found[1])
         return f'<a href="report/index.html#{anchor}"><code>{found[1]}</code></a>' if anchor else found[0]
 
+    def number(found: re.Match[str]) -> str:
+        anchor = of_headings.get(found[2])
+        return f'<a href="report/index.html#{anchor}">{found[1]}</a>' if anchor else found[0]
+
+    def sentence(found: re.Match[str]) -> str:
+        return (
+            f'{found[1]}<a href="report/index.html#{found[2]}">{found[3]}</a>'
+            if found[2] in names
+            else found[0]
+        )
+
+    text = re.sub(r"\[([^]\n]*)\]\((?:findings\.md)?#([\w-]+)\)", number, text)
+    text = re.sub(r"(?m)^(### (\S+/\S+)\n\n)(.+)$", sentence, text)
     return re.sub(r"(?<!\[)`([a-z0-9-]+/[a-z0-9/ .-]+)`", link, text)
 
 

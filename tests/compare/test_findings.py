@@ -18,10 +18,10 @@ BUILDER = runpy.run_path(str(ROOT / "builders" / "findings.py"))
 PLACE, ERROR = "fig05: place, 3 digits", "fig05: place, error, good"
 
 
-def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="Right."):
+def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="Right.", place="Place"):
     """Return the results of a report on one or all studies, with claims of "fig05" for two engines."""
     found = [
-        claim("Place", engine, measured, measured, error, unit="m", named={"place": 0})
+        claim(place, engine, measured, measured, error, unit="m", named={"place": 0})
         for engine in ("good", "other")
     ]
     # Two claims share a cell of the matrix, which shows the worse verdict.
@@ -29,7 +29,9 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="
         claim("Order", "good", 1.0, value, 0.01, kind="order", resolution=1.0) for value in (other, 1.0)
     ]
     written = [
-        claim_as_json(each) | {"evidence": "self-check" if each.sentence == "Order" else "independent"}
+        claim_as_json(each)
+        | {"id": f"fig05/{each.sentence.lower()}"}
+        | {"evidence": "self-check" if each.sentence == "Order" else "independent"}
         for each in found
     ]
     names = [study.name for study in STUDIES] if whole else ["fig05"]
@@ -45,7 +47,7 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="
 def root(tmp_path, monkeypatch):
     (tmp_path / "docs" / "paper").mkdir(parents=True)
     (tmp_path / "builders").mkdir()
-    (tmp_path / "builders" / "findings.md").write_text(f'At #n("{PLACE}") m, to #n("{ERROR}") m.\n')
+    (tmp_path / "builders" / "findings.md").write_text(f'At #n("{PLACE}") m, to #n("{ERROR}") m.\n#claims\n')
     (tmp_path / "docs" / "paper" / "paper.typ").write_text('#n("claims")', encoding="utf-8")
     (tmp_path / "README.md").write_text("All 2 claims, 3.14 times.\n")
     unmeasured = {"text": "", "value": 0.0, "error": 0.0, "nature": "count"}
@@ -80,7 +82,9 @@ def test_readme_contains_no_other_number_and_is_short():
 
 def test_a_report_writes_its_numbers(root):
     BUILDER["write"](results(), root)
-    assert (root / "docs" / "findings.md").read_text(encoding="utf-8") == "At 0.0512 m, to 1.0×10⁻⁶ m.\n"
+    assert (root / "docs" / "findings.md").read_text(encoding="utf-8") == (
+        "At [0.0512](#fig05place) m, to 1.0×10⁻⁶ m.\n### fig05/place\n\nPlace.\n\n- place: 0.051235 ± 1×10⁻⁶ m\n"
+    )
     kept = BUILDER["kept"](root)
     assert kept["claims"].value == 2
     assert kept["verdicts: independent"].value == 2  # the position by two engines; the order is a self-check
@@ -137,6 +141,7 @@ def test_an_unknown_name_is_an_error_of_a_complete_report():
         ({"error": 9e-6}, set()),
         ({"error": 1.1e-5}, {ERROR}),
         ({"error": 0.9e-7}, {ERROR}),
+        ({"place": "Site"}, {PLACE, ERROR}),  # the claim has another sentence and another name
     ],
 )
 def test_deviations_beyond_the_error_are_reported(root, changed, deviating):

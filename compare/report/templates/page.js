@@ -91,8 +91,10 @@
   }
 
   function show() {
-    const one = recorded.find((it) => it.dataset.engine === wanted().engine);
-    const place = one && !claims.some((it) => !it.element.hidden) ? one : document.getElementById("studies");
+    const shown = claims.filter((it) => !it.element.hidden);
+    const first = shown.find((it) => it.study.open);
+    const settings = shown.length ? null : recorded.find((it) => it.dataset.engine === wanted().engine);
+    const place = settings || (first ? first.element : document.getElementById("studies"));
     if (!narrow && Object.keys(wanted()).length) place.scrollIntoView();
   }
 

@@ -266,7 +266,7 @@ def draw(data: ByEngine) -> Figures:
     judder, (growth,) = new_figure(width=5.5, height=3.6)
     growth.axhline(0.0, color=GREY, linewidth=0.6)
     _both(growth, data, ("falls", "growth"), ("measured falls", "measured growth"))
-    growth.set(xlabel="negative slope of μ over slip speed, relative to the onset")
+    growth.set(xlabel="negative slope of μ against slip speed, relative to the onset")
     growth.set(ylabel="growth rate in 1/s")
     growth.legend(loc="upper left")
 

@@ -138,7 +138,7 @@ def whirls(engine: Engine, loads: Sequence[float] = WHIRL_LOADS) -> Measured:
 
 
 @STUDY.claim(
-    "The whirl ends at the friction force at which a second multiplier of its orbit passes 1",
+    "The whirl ends where a second multiplier of its orbit passes 1",
     kind="trajectory",
     unit="N",
     resolution=1e-8,

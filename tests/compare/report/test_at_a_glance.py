@@ -24,14 +24,15 @@ def setting(engine, name, own=True, **off):
 
 
 FINE = {"slides": (1e-6, 2e-6), "sticks": (3e-6, 4e-6), "disc": (1e-6, 1e-6)}
+BOXES = "box", "as shipped", "pyramid"
 WRONG = FINE | {"slides": (0.5, 1e-6)}
 
 
 def settings():
     return (
         setting("ours", "", **dict.fromkeys(FINE, (1e-12, 1e-12))),
-        setting("Wrong", "box", **WRONG),
-        replace(setting("Kite", "box", **WRONG), law="box", whirl=0.26),
+        replace(setting("Wrong", "box", **WRONG), advice="use small steps"),
+        *(replace(setting("Kite", name, **WRONG), law="box", whirl=0.26) for name in BOXES),
         setting("Kite", "a user's", own=False, **dict.fromkeys(FINE, (0.0, 0.0))),
         replace(setting("Kite", "cone", **FINE), law="cone", whirl=1e-6, advice="use small steps"),
         setting("Pins", "cone", slides=(1e-3, 2e-3), sticks=(1e-3, 9e-3)),
@@ -68,8 +69,9 @@ def test_a_grade_is_the_largest_error_relative_to_the_effect_of_another_law(foun
 
 def test_the_best_setting_of_its_own_friction_represents_an_engine(found):
     assert found["Kite"].sentence == (
-        "Cone: Coulomb friction correct, errors fall with the step. Use small steps. Avoid box: friction is a box, "
-        "wrong in 1 of 3 motions (slides) at any step, radius of the whirl 26 % off."
+        "With the setting “cone”, Coulomb friction is correct, and errors fall with the step. Use small steps. Avoid "
+        "the settings “box” and “pyramid” and the default settings, because a box replaces the friction cone. "
+        "At any step, 1 of 3 motions (“slides”) is wrong, and the radius of the whirl is 26 % off."
     )
     assert (found["Kite"].where, found["Kite"].why) == (
         "?engine=Kite#agreement-recorded/kite",
@@ -78,10 +80,13 @@ def test_the_best_setting_of_its_own_friction_represents_an_engine(found):
 
 
 def test_a_sentence_lists_missing_motions_and_differences(found):
-    assert found["Pins"].sentence.endswith("correct, errors fall with the step. Not simulated: disc.")
-    assert found["Open"].sentence.endswith(". Too coarse to decide: disc.")
-    assert found["Blind"].sentence.startswith("Cone: errors too large to decide. ")
-    assert found["Wrong"].sentence == "Box: wrong in 1 of 3 motions (slides) at any step."
+    assert found["Pins"].sentence.endswith("fall with the step. We did not simulate “disc”.")
+    assert found["Open"].sentence.endswith(". The runs of “disc” are too coarse to decide.")
+    assert found["Blind"].sentence.startswith("With the setting “cone”, the errors are too large to decide. ")
+    assert found["Wrong"].sentence == (
+        "With the setting “box”, 1 of 3 motions (“slides”) is wrong at any step. "
+        "In the other motions, use small steps."
+    )
     assert found["Pins"].cells[2] is None
 
 
@@ -95,12 +100,11 @@ def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(
 
 
 def test_an_engine_of_the_run_is_described_by_its_claims(found):
-    assert (
-        found["good"].sentence
-        == "3 of 5 checks against independent evidence agree, 1 differs, 1 inconclusive."
+    assert found["good"].sentence == (
+        "3 of 5 checks against independent evidence agree. 1 check differs and 1 is inconclusive."
     )
     assert (found["good"].version, found["good"].why) == ("3", "?engine=good#studies")
-    assert found["failing"].sentence == "1 of 1 checks against independent evidence agree, 4 failed."
+    assert found["failing"].sentence == ("1 of 1 checks against independent evidence agree. 4 checks failed.")
 
 
 def test_an_engine_that_was_also_recorded_has_the_grade_of_its_motions(seen):

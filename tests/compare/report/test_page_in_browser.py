@@ -175,9 +175,12 @@ def test_a_link_may_contain_a_filter(browser, reported, asked):
 
 
 def test_keys_move_to_the_search_and_between_claims(page):
+    page.set_viewport_size({"width": 1280, "height": 300})
     page.keyboard.press("/")
     assert page.evaluate("document.activeElement.name") == "q"
     page.keyboard.type("semicircle")
+    (found,) = page.locator("details.claim:not([hidden]) > summary").all()  # below the text of its study
+    assert 0 <= found.bounding_box()["y"] < 200
     page.evaluate("document.activeElement.blur()")
     for _ in range(2):
         page.keyboard.press("j")

@@ -290,6 +290,16 @@ def test_the_page_gives_the_reason_once_per_study_and_counts_it_separately(partl
     assert '<ul class="exceptions">' not in page
 
 
+def test_a_reason_with_a_part_that_is_listed_already_adds_only_the_rest(partly_reported, tmp_path):
+    key, (result, *_) = (RING_ONLY.name, "some"), partly_reported
+    reason = result.outcomes[key].not_simulated
+    more = replace(result.outcomes[key], not_simulated=f"{reason}; some is slow")
+    write_report(replace(result, outcomes=result.outcomes | {key: more}), tmp_path)
+    page = (tmp_path / "index.html").read_text(encoding="utf-8")
+    (legend,) = re.findall(r'<dl class="legend">(.*?)</dl>', page, flags=re.DOTALL)
+    assert (legend.count(reason), legend.count("some is slow")) == (1, 1)
+
+
 @pytest.mark.parametrize(("study", "shown"), [(PARTLY, True), (VERDICTS, False)])
 def test_a_finding_is_on_the_first_screen_while_all_claims_of_its_study_agree(tmp_path, study, shown):
     study = replace(study, prose=replace(study.prose, finding="Straight on."))

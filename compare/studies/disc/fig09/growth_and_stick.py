@@ -353,7 +353,7 @@ def weak_damping() -> Measured:
 
 
 @STUDY.claim(
-    "The inner, unstable whirl shrinks onto the equilibrium at the μN at which the equilibrium loses its stability",
+    "The inner, unstable whirl shrinks onto the equilibrium where the equilibrium loses its stability",
     unit="N",
     note="This is not in the paper. Predicted: the zero of the real part of an eigenvalue of the equilibrium. "
     "Measured: μN of the reference's inner whirls by shooting, as a polynomial in the square of their size (root "

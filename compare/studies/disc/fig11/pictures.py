@@ -157,7 +157,7 @@ def draw_spectrum(panel: Axes, data: ByEngine) -> None:
                 panel.annotate("", *between, arrowprops={"arrowstyle": "<->", "linewidth": 0.8})
                 where = carrier + 1.1 * modulation, 1.5 * top
                 panel.annotate(rf"$2\pi/T$, $T$ = {period:.1f} s", where, fontsize=9.5, va="center")
-    panel.set(xlabel=r"frequency of $x + \mathrm{i}y$ over $k$", ylabel="amplitude in m")
+    panel.set(xlabel=r"frequency of $x + \mathrm{i}y$ divided by $k$", ylabel="amplitude in m")
     panel.set(xlim=(0.83, 1.17), ylim=(floor, 0.4), title="Carrier and side bands")
     if panel.lines:
         panel.legend(loc="upper left", fontsize=9.0)

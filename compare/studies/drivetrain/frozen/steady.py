@@ -39,7 +39,7 @@ ONSET_NOTE = (
 
 
 @STUDY.claim(
-    "By Exudyn's linearisation of the whole drivetrain, the centred disc becomes unstable at ω = k(1 + β/D)",
+    "The centred disc becomes unstable at ω = k(1 + β/D), by Exudyn's linearisation of the whole drivetrain",
     unit="rad/s",
     resolution=1e-9,
     note=ONSET_NOTE,

@@ -113,7 +113,7 @@ def draw(data: ByEngine) -> Figures:
         panel.axis("off")
     figure.supxlabel("true error, relative to the largest number", fontsize=11.0)
     figure.supylabel("estimate, relative to the largest number", fontsize=11.0)
-    panels[0].legend(loc="upper left", fontsize=9.0)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
     return {"error-estimates": figure}
 
 

@@ -237,16 +237,21 @@ def draw(data: ByEngine) -> Figures:
 
 def _small_multiples(ladders: Data, titles: dict[str, str]) -> Figure:
     columns = len(titles)
-    figure, axes = new_figure(
-        columns, len(ROWS), width=3.6 * columns + 2.4, height=13.2, sharex="col", sharey=True
-    )
+    simulated = {
+        name.partition(",")[0]
+        for name, _, case in (key.rpartition(": ") for key in ladders)
+        if case in titles
+    }
+    rows = [row for row in ROWS if simulated.intersection(row)]
+    width, height = 3.6 * columns + 2.4, 2.2 * len(rows)
+    figure, axes = new_figure(columns, len(rows), width=width, height=height, sharex="col", sharey=True)
     for i, panel in enumerate(axes):
         case = list(titles)[i % columns]
         names = [key.removesuffix(f": {case}") for key in ladders if key.endswith(f": {case}")]
         for name in OURS:
             if name in names:
                 panel.loglog(*ladders[f"{name}: {case}"].T, color=GREY, linestyle=OURS[name], label=name)
-        shown = [name for name in names if name not in OURS and name.partition(",")[0] in ROWS[i // columns]]
+        shown = [name for name in names if name not in OURS and name.partition(",")[0] in rows[i // columns]]
         for name, (colour, marker) in zip(shown, LOOKS[: len(shown)], strict=True):
             look: dict[str, Any] = {"color": colour, "marker": marker, "markerfacecolor": "none"}
             panel.loglog(*ladders[f"{name}: {case}"].T, label=name, linewidth=1.0, markersize=4.5, **look)

@@ -257,7 +257,7 @@ def _advice(recording: Recording) -> str:
     if rows[-1, ERROR] > WANTED:
         finest = f"{_rounded(rows[-1, STEPS] / _periods(coarsest))} steps per natural period"
         with_it = finest if fixed else f"a tolerance of {error_text(rows[-1, TOLERANCE], 1)}"
-        return f"the finest run, with {with_it}, has an error of {error_text(rows[-1, ERROR], 1)} m"
+        return f"with {with_it} the error is {error_text(rows[-1, ERROR], 1)} m"
     for_it = f"for an error of {1e3 * WANTED:g} mm"
     if fixed:
         number = max(_at(WANTED, rows, STEPS) / _periods(case) for case, rows in runs.items())

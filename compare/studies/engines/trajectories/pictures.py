@@ -27,6 +27,7 @@ def draw(data: ByEngine) -> Figures:
                 panel.semilogy(found[f"{name}: times"], so_far, **curve(engine))
                 colour = engine_style(engine).colour
                 panel.axhline(float(found[f"{name}: error bar"]), color=colour, linewidth=0.9, linestyle="--")
+    panels[0].plot([], [], color=GREY, linewidth=0.9, linestyle="--", label="error bar")
     spare = panels[len(MOTIONS) :]
     for panel in spare:
         panel.axis("off")

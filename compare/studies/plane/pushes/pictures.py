@@ -3,7 +3,7 @@
 import numpy as np
 
 from compare.claims import ByEngine, Data, Figures
-from compare.output.figures import BLACK, GREY, Axes, Figure, axis, curve, new_figure
+from compare.output.figures import BLACK, GREY, ORANGE, Axes, Figure, axis, curve, new_figure
 from compare.output.limit_surface import draw_limit_surface
 from compare.studies.plane.pushes.theory import (
     LEGS,
@@ -34,12 +34,12 @@ def _forces() -> Figure:
         places = np.array(feet(series), dtype=complex)
         panel.plot(places.real, places.imag, "o", color=GREY)
         for push in by_series()[series]:
-            for wrench, colour in ((coulomb(push), "tab:orange"), (measured(push), BLACK)):
+            for wrench, colour in ((coulomb(push), ORANGE), (measured(push), BLACK)):
                 arrow = complex(push.end_x, push.end_y) - LENGTH * wrench.force * np.array([1.0, 0.0])
                 panel.plot(arrow.real, arrow.imag, color=colour, linewidth=0.9)
         panel.set(xlabel=axis("x", "mm"), ylabel=axis("y", "mm"), aspect="equal", title=_title(series))
     panels[0].plot([], [], color=BLACK, label="measured")
-    panels[0].plot([], [], color="tab:orange", label="Coulomb's law")
+    panels[0].plot([], [], color=ORANGE, label="Coulomb's law")
     panels[0].legend(loc="upper right")
     _limit_surface(panels[-1], SHOWN[0])
     return figure
@@ -52,7 +52,7 @@ LENGTH = 6.0
 def _limit_surface(panel: Axes, series: str) -> None:
     load = SLIDING_FORCES[surface(series)]
     directions = np.radians(range(150, 301, 30)).tolist()  # θ and 270° − θ have the same curve
-    draw_limit_surface(panel, contact_of(series), directions, color="tab:orange", linewidth=0.5)
+    draw_limit_surface(panel, contact_of(series), directions, color=ORANGE, linewidth=0.5)
     for wrench in map(measured, by_series()[series]):
         panel.plot(abs(wrench.force) / load, wrench.moment / load, ".", color=BLACK)
     panel.set(xlim=(0.0, None), title="Limit surface of the feet on the left")
