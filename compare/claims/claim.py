@@ -55,7 +55,7 @@ class Verdict(Enum):
 
 
 class Grade(Enum):
-    """Precision of a claim, see ``Claim.grade``."""
+    """See ``Claim.grade``."""
 
     EXACT = "exact"
     FINE = "fine"

@@ -15,6 +15,7 @@ from compare.cli.command import (
     NOTHING_MEASURED,
     NOTHING_SHOWN,
     SOMETHING_DIFFERS,
+    BadInputError,
     measurements,
     printing,
     refused,
@@ -62,8 +63,8 @@ def matrix(
     The command first prints the motions of a sliding and a resting block next to the exact numbers, which exposes a
     broken adapter. Short motions then identify the law: blocks and discs that slide at many masses, loads and speeds,
     and blocks that are pulled from rest. The motions of the recorded engines follow. The command prints findings and
-    a verdict for each engine, and a table. It writes matrix.json after each row. At the end it draws
-    matrix, and friction with the measured forces if a law is wrong, both as png and svg.
+    a verdict for each engine, and a table. It writes matrix.json after each row. At the end it draws matrix.png
+    and, if a law is wrong, friction.png with the measured forces.
 
     The exit status is 0 if an engine is right, even if only with smaller steps, and 1 if it is wrong. It is 2 for bad
     input, 3 if the verdict is open or a part was not finished in time, 4 if an engine simulates none of these
@@ -79,6 +80,8 @@ def matrix(
     from compare.run.runner import loaded
     from compare.run.workers import Workers
 
+    if benchmark and recorded:
+        raise BadInputError("--recorded: the benchmark has no recorded results; omit it")
     with refused(), Workers(1, limit) as workers:
         chosen = loaded(engine or [], workers, seed)
         check_folder(output)

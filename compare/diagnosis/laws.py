@@ -23,9 +23,7 @@ SIDES = (3, 4, 6, 8, 12, 16)
 """Number of sides of the polygons, each tried with a corner and with a side on the x axis."""
 
 FITS = 1e-6  # misfit/μN allowed for any law, because the force varies a little
-DISTINCT = (
-    3.0  # smallest ratio of the second-best misfit to the best, and of a reported deviation to its error
-)
+DISTINCT = 3.0  # smallest ratio of second-best to best misfit, and of a reported deviation to its error
 
 NEAR, FAR = 1e-3, 100.0
 """Largest misfit of a law with a further difference, and smallest ratio of the next misfit."""

@@ -26,8 +26,6 @@ Whirl
 
         δz' = δv,    δv' = −k²·δz − c·δv − (g/s)·i·n·Im(n̄·δw),    δw = δv − iω·δz
 
-    The classical Runge-Kutta method follows three deviations on the section for one turn.
-
 Stick-slip
     The distance from the axis at a release determines the state, so its change is judged like the crossings above.
 """

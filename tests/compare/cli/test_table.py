@@ -64,6 +64,7 @@ BAD = [
     ("report --claim verdicts/x --resume", CLAIM),
     ("report --claim ''", "--claim '': it must not be empty"),
     ("matrix --limit 0", "limit = 0 s: it must be > 0"),
+    ("matrix --benchmark --recorded", "--recorded: the benchmark has no recorded results; omit it"),
     ("plan --kind sphere", "…unknown kind of system 'sphere'…"),
     ("diff nowhere nowhere", f"cannot read 'nowhere': {MISSING}"),
     ("diff file file", "'file' is not the results.json of a report"),
