@@ -70,7 +70,7 @@ class Support:
         return result
 
     def tangent(self, d: float) -> float:
-        """Return the derivative of the force in the deflection; at the stop, from outside."""
+        """Return the derivative of the force with respect to the deflection; at the stop, from outside."""
         stop = self.stop_stiffness if d >= self.stop_gap else 0.0
         return self.stiffness + 3.0 * self.hardening * d * d + stop
 

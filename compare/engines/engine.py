@@ -155,9 +155,7 @@ class Engine:
 
     @property
     def _asked(self) -> Callable[..., Any]:
-        function = getattr(
-            self.function, "imported", self.function
-        )  # calling it costs no frame of ``ByName``
+        function = getattr(self.function, "imported", self.function)
         return function if self.seed is None else InOtherUnits(function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:

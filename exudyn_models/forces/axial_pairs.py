@@ -186,7 +186,7 @@ class AxialStick:
         return Mode.LOCKED if self.idle or self.mode is None else self.mode
 
     def gradient(self, q: Floats | FloatArray) -> Floats:
-        """Return the derivatives of S in the nodes' velocities, at coordinates without reference values."""
+        """Return the derivatives of S with respect to the nodes' velocities; ``q`` excludes reference values."""
         return [1.0] if self.kinds[0] == GROUND else [-1.0, 1.0]
 
     def rows(self, coordinates: FloatArray) -> FloatArray:

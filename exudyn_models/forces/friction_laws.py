@@ -200,7 +200,7 @@ def ring_friction_derivatives(
     disc_spin: float,
     contact: Contact,
 ) -> FloatArray:
-    """Return the derivatives of (F_x, F_y, M, M_master) in the first seven arguments, shape (4, 7).
+    """Return the derivatives of (F_x, F_y, M, M_master) with respect to the first seven arguments, shape (4, 7).
 
     If points creep as a whole, these contain a ``SECANT`` share, so Newton's method converges.
     """
@@ -229,7 +229,7 @@ def ring_friction_derivatives(
 def derivatives_by_slip(
     ux: float, uy: float, spin: float, angle: float, contact: Contact
 ) -> tuple[float, float, FloatArray]:
-    """Return F_x, F_y and the derivatives of (F_x, F_y, M) in (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
+    """Return F_x, F_y and the derivatives of (F_x, F_y, M) with respect to (u_x, u_y, φ̇ − ω, φ), shape (3, 4)."""
     if contact[1] <= CONTINUOUS:
         return _derivatives_of_circles(ux, uy, spin, contact)
     return _derivatives_of_points(ux, uy, spin, angle, contact)

@@ -101,7 +101,7 @@ def secant_stiffness(square: float, law: Law) -> float:
 
 @compiled
 def secant_slope(square: float, law: Law) -> float:
-    """Return twice the derivative of ``secant_stiffness`` in d², in N/m³."""
+    """Return twice the derivative of ``secant_stiffness`` with respect to d², in N/m³."""
     _, hardening, gap, stop, _ = law
     result = 2.0 * hardening
     if square > gap * gap:

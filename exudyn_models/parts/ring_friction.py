@@ -22,7 +22,7 @@ through friction and presses nothing together.
 - ``relative_spin`` in rad/s, S = φ̇ − ω, positive if the disc is faster.
 
 They may read sensors of ``mbs``, but of this contact only those of slip and heat. The Jacobian contains their
-derivatives in all arguments except time, and none through sensors.
+derivatives with respect to all arguments except time, and none through sensors.
 
 *Exact stick.* Without ε, constraints hold the slip at zero until the load exceeds static friction. This requires
 ``solve_dynamic`` with an implicit solver. Switching times are as accurate as the steps. A contact on one axis that

@@ -50,7 +50,7 @@ def mean_curvatures(slip: float, rim: float) -> tuple[float, float, float]:
     else:
         complement = (larger - smaller) / larger * (1.0 + ratio)  # 1 − m to full precision
         integral = (float(ellipkm1(complement)) - float(ellipe(m))) / m
-    # Derivatives in the smaller argument. The others follow, because first derivatives have degree 0.
+    # Derivatives with respect to the smaller argument. The others follow, because first derivatives have degree 0.
     curvature = 2.0 / math.pi * integral / larger
     mixed, by_larger = -ratio * curvature, m * curvature
     return (by_larger, mixed, curvature) if slip > rim else (curvature, mixed, by_larger)

@@ -69,7 +69,7 @@ COLLAPSED = 1e-6
 
 @dataclass(frozen=True)
 class ShootingProblem:
-    """The return map of an engine and its derivatives in the unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
+    """The return map of an engine and its derivatives for the unknowns (x, y, vx, vy, spin of a disc, T, μN, θ).
 
     ``precision`` is the relative noise of the states.
     """

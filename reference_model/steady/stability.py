@@ -50,7 +50,7 @@ def sliding_jacobian(system: System, state: ArrayLike, contact: Contact | None =
         omega = system.disc_speed
         slip = complex(vx + omega * y, vy - omega * x)
         friction = system.friction_force * law.jacobian(slip, omega - spin, angle)
-        # Derivatives of u_x, u_y, S and φ in x, y, φ and in their rates.
+        # Derivatives of u_x, u_y, S and φ with respect to x, y, φ and their rates.
         with_place = np.array([[0.0, omega, 0.0], [-omega, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
         with_rates = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 0.0, 0.0]])
         by_place += (friction @ with_place)[:size, :size]

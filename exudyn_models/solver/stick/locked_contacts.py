@@ -21,7 +21,7 @@ from reference_model.systems import FloatArray
 class LockedContacts:
     """Joints and locked contacts of an assembled model at its initial values and the time t (s).
 
-    Gradients are derivatives in the n velocities of the model.
+    Gradients refer to the n velocities of the model.
     """
 
     def __init__(self, mbs: Any, t: float, contacts: Sequence[StickingContact]) -> None:

@@ -113,7 +113,7 @@ class StickingContact:
         return Mode.BACKWARD if self.stick.held_moment(mbs) > 0.0 else Mode.FORWARD
 
     def rows(self, mbs: Any) -> FloatArray:
-        """Return the gradients of the locked slips in all velocities of the model."""
+        """Return the gradients of the locked slips for all velocities of the model."""
         return self._widened(mbs, self.stick.rows)
 
     def _widened(self, mbs: Any, gradients_at: Callable[[FloatArray], FloatArray]) -> FloatArray:
@@ -332,7 +332,7 @@ def first_modes(mbs: Any, contacts: Sequence[StickingContact], t: float) -> Iter
 def joints_and_mass(mbs: Any, t: float, contacts: Sequence[StickingContact]) -> tuple[FloatArray, FloatArray]:
     """Return the gradients of all constraints except the locks of ``contacts``, and the mass matrix.
 
-    The gradients, shape (m, n), are derivatives in the n velocities, up to factors, at the initial values.
+    The gradients, shape (m, n), refer to the n velocities, up to factors, at the initial values.
     """
     data = mbs.systemData
     with initialised_solver(mbs, t) as solver:

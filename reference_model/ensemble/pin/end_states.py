@@ -150,7 +150,7 @@ def orbit_attracts(
 
 @scalar
 def return_derivative(z: complex, v: complex, period: float, law: PinLaw, derivative: FloatArray) -> bool:
-    """Write the derivative of the return map in (x, y, ẏ); return whether the turn was completed."""
+    """Write the derivative of the return map with respect to (x, y, ẏ); return whether the turn was completed."""
     work = complex_zeros(32).reshape(4, 4, 2)
     y, stage, change, rates = work[0], work[1], work[2], work[3]
     y[0, 0], y[0, 1], y[1, 0], y[2, 0], y[3, 1] = z, v, 1.0, 1j, 1j
