@@ -3,8 +3,6 @@
 There is one change: friction divides by ε if the slip speed is smaller, so a sticking body creeps slower than ε.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Simulation of one trajectory, in NumPy or by compiled code."""
 
-from __future__ import annotations
-
 from numpy.typing import ArrayLike
 
 from reference_model.contact.contact_law import Contact

@@ -1,7 +1,5 @@
 """The paper's systems: frozen, validated parameters in SI units."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterable

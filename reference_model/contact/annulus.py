@@ -1,7 +1,5 @@
 """Friction of an annulus, such as a clutch facing, as a sum of rings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -6,8 +6,6 @@ Plane vectors are complex numbers. Laws depend only on the ratio of u and S. Law
 force is opposite to u, and nothing depends on the direction of u or on the angle φ.
 """
 
-from __future__ import annotations
-
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass

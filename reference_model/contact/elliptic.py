@@ -10,8 +10,6 @@ with B = [E − (1 − m)K]/m and D = (K − E)/m (DLMF 19.2(iii)). At U = W one
 infinite, like a logarithm.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

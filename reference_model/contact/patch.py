@@ -1,7 +1,5 @@
 """Contact points of a patch under uniform pressure: a quadrature over a polygon."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

@@ -4,8 +4,6 @@ A short trajectory from the last checkpoint, with the same step, gives a request
 depend on the requested times.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

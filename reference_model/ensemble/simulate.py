@@ -1,7 +1,5 @@
 """Simulation of many pins or discs at once."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from dataclasses import fields, replace

@@ -1,7 +1,5 @@
 """Single trajectories by the compiled kernels."""
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Trajectories in the form of compiled code, and their distribution to threads."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """The characteristic equation of a disc's whirl: corrected (13) for section 4 of the paper."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from reference_model.contact.contact_law import IsotropicContact, isotropic_contact_of

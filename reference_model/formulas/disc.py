@@ -4,8 +4,6 @@ Signs are those of :mod:`reference_model.formulas.pin`, with the given Ω/ω. If
 X0 < 0, x and y do.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable

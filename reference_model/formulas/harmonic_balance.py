@@ -12,8 +12,6 @@ The omitted second harmonic is proportional to X0, so the error of the mean is o
 is this balance for C₃ = 0 to first order. ρ and κ do not depend on the sign of X0, so their errors are of order X0².
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

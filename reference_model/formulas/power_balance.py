@@ -1,7 +1,5 @@
 """Energy balance of a trajectory, which checks any engine without a reference solution."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -7,8 +7,6 @@ The torsional balance b(ω − Ω − S) = μN·M gives S the sign of ω − Ω,
 for every law here, so the ratios with μN·M <= b|ω − Ω| form an interval.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Callable, Iterator

@@ -4,8 +4,6 @@ A point at rest about which the disc turns stays at rest while its share of fric
 (:mod:`reference_model.motion.pivot`). If two points rest, the whole disc sticks.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -7,8 +7,6 @@ slip
 λ = −gq·v/|v| with the point's share q of the load; at rest λ = −G⁻¹B, up to gq.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -10,8 +10,6 @@ K. M. Lynch and M. T. Mason, Stable pushing: mechanics, controllability, and pla
 Robotics Research 15 (1996) 533-556.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass

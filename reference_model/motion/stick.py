@@ -4,8 +4,6 @@ In stick w = 0: the pin turns with the disc, z(t) = z₀·exp(iωt), and frictio
 disc sticks only as a whole, so its centre is a stuck pin with reduced friction.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ the end (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). T
 15; SciPy's ``Radau`` has order 5.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

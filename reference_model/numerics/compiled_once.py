@@ -4,8 +4,6 @@ numba's cache checks only the file of the function itself, although it compiles 
 into it. So each package keeps compiled functions in a folder named after a digest of its sources.
 """
 
-from __future__ import annotations
-
 import gc
 import hashlib
 import multiprocessing

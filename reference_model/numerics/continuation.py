@@ -4,8 +4,6 @@ Each point is predicted along the tangent and corrected across it by Newton's me
 every unknown (Keller 1977, Numerical solution of bifurcation and nonlinear eigenvalue problems).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

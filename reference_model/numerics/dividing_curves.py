@@ -5,8 +5,6 @@ may be constant away from its zeros: the error of contourpy is then 1e-2 of the 
 5e-13 with 3,400.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Iterator

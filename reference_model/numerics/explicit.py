@@ -4,8 +4,6 @@ Coefficients, step control and interpolant are SciPy's (Hairer, Nørsett and Wan
 Equations I, II.4 and II.5).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

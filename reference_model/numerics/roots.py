@@ -1,7 +1,5 @@
 """All zeros of a function of one variable on an interval."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 import numpy as np

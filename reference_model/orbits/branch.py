@@ -1,7 +1,5 @@
 """Continuation of orbits in the load, to the fold where whirls end."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Iterator

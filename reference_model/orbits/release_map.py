@@ -6,8 +6,6 @@ its slopes their multipliers. The map has gaps, where the pin never sticks again
 where the next stick phase vanishes.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable, Iterator

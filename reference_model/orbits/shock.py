@@ -4,8 +4,6 @@ A shock changes only the velocity. The smallest one is the nearest point of the 
 velocities through the equilibrium. End states of many starts show its approximate direction.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

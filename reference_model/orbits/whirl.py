@@ -1,7 +1,5 @@
 """The whirl with an offset and the whirl whose radius oscillates (Fig. 11), by shooting."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -6,8 +6,6 @@ whirl before the boundary, and beyond it the motion jumps to another attractor (
 bifurcation theory, sections 3.5 and 5.4).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

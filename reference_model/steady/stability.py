@@ -5,8 +5,6 @@ steady motions have five states without it. ``contact`` None means the law of th
 :func:`sliding_jacobian` raise ``ValueError`` for a disc on single points.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

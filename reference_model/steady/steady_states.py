@@ -1,7 +1,5 @@
 """All steady motions with permanent slip, and their stability."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 :mod:`reference_model.ensemble.recording` computes the motion from them.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

@@ -9,8 +9,6 @@ by the arithmetic-geometric mean of a₀ = 1 and g₀ = √(1 − k²). With the
 where A is the mean (DLMF 19.8(i)). The only cancellation is of order 1/A, a logarithm, at U = |W|.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

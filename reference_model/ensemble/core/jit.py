@@ -4,8 +4,6 @@ Results must be the same bit by bit in any lane, on any number of threads, and o
 nothing may be reordered or contracted.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path

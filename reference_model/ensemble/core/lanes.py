@@ -5,8 +5,6 @@ functions of numbers and tuples. In a round every lane makes one trial step of i
 a flag, which scalar code handles. Results are the same bit by bit in every lane.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar

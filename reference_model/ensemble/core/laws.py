@@ -1,7 +1,5 @@
 """Scaled constants of pins and discs, forces, and the duration of rest."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

@@ -4,8 +4,6 @@ All fields have constant offsets from one address, so loops over lanes can be ve
 of arrays would take four times as long.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import Annotated, Any, Generic, TypeVar, get_args, get_origin, get_type_hints

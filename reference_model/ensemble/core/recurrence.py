@@ -1,7 +1,5 @@
 """Convergence of successive values of a motion, and the motion between them."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, NamedTuple
 

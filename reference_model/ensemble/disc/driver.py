@@ -1,7 +1,5 @@
 """Ensembles of discs and single discs; the plain reference follows contact points that rest until all slip."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -16,8 +16,6 @@ Known trapping regions (:mod:`.trapping`) end trajectories earlier. Functions of
 trajectory ends.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The kernel of discs on rings or points."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The lanes of discs: their data, the step of all lanes, and the end and beginning of slip in one lane."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Annotated, Any, NamedTuple

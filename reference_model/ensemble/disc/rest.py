@@ -4,8 +4,6 @@ A disc on a ring sticks like a pin with the friction that the shaft's moment lea
 return whether the trajectory ends.
 """
 
-from __future__ import annotations
-
 import math
 
 from reference_model.ensemble.core.checkpoints import SLIPS, STICKS, recorded

@@ -4,8 +4,6 @@ The unknowns are x, y, u, r and φ of :mod:`reference_model.motion.disc_equation
 dτ = dt·(s + s₀)/s, s² = |u|² + r², the equations are smooth and not stiff down to s = 0.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

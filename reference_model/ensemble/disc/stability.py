@@ -5,8 +5,6 @@ the inside of the unit circle, so its powers vanish exactly if all eigenvalues d
 the distance.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from reference_model.ensemble.core.contact_shares import LEAST

@@ -5,8 +5,6 @@ fan of directions shows how far out it falls along the true motion. Motion that 
 smaller one inwards goes to the centre. A disc on points oscillates, so only spheres down to INNER of the size count.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Ensembles of pins and single pins."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

@@ -30,8 +30,6 @@ Stick-slip
     The distance from the axis at a release determines the state, so its change is judged like the crossings above.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 Functions that return a bool return whether the trajectory ends, if not stated otherwise.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

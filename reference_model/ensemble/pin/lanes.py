@@ -1,7 +1,5 @@
 """The lanes of pins: their data, the step of all lanes, and operations on one lane."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np

@@ -4,8 +4,6 @@ The position z = x + iy and the slip velocity w satisfy ż = w + iωz and ẇ = 
 dτ = dt·(s + s₀)/s, s = |w|, these equations are smooth and not stiff down to s = 0.
 """
 
-from __future__ import annotations
-
 import math
 from typing import TypeVar
 

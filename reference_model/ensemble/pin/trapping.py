@@ -5,8 +5,6 @@ stable fixed point with the derivative M the map contracts in the norm xᵀPx wi
 region, an ellipsoid, and all smaller ones into clearly smaller ones.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Section 2 of the paper: the self-centred equilibrium, (3) to (5), and sticking, (6) to (9)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -4,8 +4,6 @@ The latter is (18), with the exact first and third orders in X0. Its functions r
 :func:`whirl_radius`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

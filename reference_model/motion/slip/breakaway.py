@@ -4,8 +4,6 @@ Slip that begins at the friction limit grows like ½κt² along the pull, which 
 collocation (:mod:`reference_model.numerics.collocation`) needs only a few steps until an explicit method can follow.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial

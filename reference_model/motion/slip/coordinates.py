@@ -1,7 +1,5 @@
 """Unknowns of a motion, and the end of slip, which all descriptions of slip share."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ vector n of slip s·n, in the stretched time dτ = dt·√(s²+s₀²)/s. Fricti
 smooth and not stiff down to s = 0, where n tends to a limit direction (Antali and Stépán 2019).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

@@ -4,8 +4,6 @@ If slip s stays small, its direction n relaxes to that of the pull at the rate g
 about s/g. As functions of time n and ln s are smooth, so collocation takes steps as long as the motion allows.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

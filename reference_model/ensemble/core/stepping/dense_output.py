@@ -1,7 +1,5 @@
 """The motion in a step: a polynomial through position, velocity, acceleration and jerk at both ends."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import NamedTuple

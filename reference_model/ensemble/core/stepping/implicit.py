@@ -4,8 +4,6 @@ The unknowns are the slip at the nodes: (u_x, u_y) of a pin, and also r of a dis
 is symmetric and zero along the slip, because P is of degree one, so its rounding error along the slip is removed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

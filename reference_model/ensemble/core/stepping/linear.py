@@ -1,7 +1,5 @@
 """Compiled linear algebra for a few unknowns, because NumPy's takes long to compile."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

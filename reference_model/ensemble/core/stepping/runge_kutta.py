@@ -1,7 +1,5 @@
 """One step of Dormand and Prince's method of eighth order, with the coefficients of SciPy's DOP853."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from functools import reduce
