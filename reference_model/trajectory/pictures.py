@@ -107,6 +107,8 @@ def animation_of(
         return spoke, trail, body, contacts
 
     axes.legend(loc="upper right", fontsize="small")
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # a layout for each frame would take 40 % of the time
     return FuncAnimation(figure, show, frames=len(moments), interval=1000.0 / FRAMES_PER_SECOND)
 
 
