@@ -14,7 +14,7 @@ import exudyn as exu
 
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.load_and_coefficient import Coefficient
-from exudyn_models.solver.items import add_integrals, node_sensor
+from exudyn_models.solver.items import CURRENT, add_integrals, node_sensor
 from reference_model.systems import finite_number, positive_number
 
 ARGUMENT = "temperature"
@@ -37,7 +37,7 @@ class ThermalNode:
 
     def temperature(self, mbs: Any) -> float:
         """Return T in the current motion of the assembled model."""
-        return float(mbs.systemData.GetODE1Coordinates()[self._place])
+        return float(mbs.systemData.GetODE1Coordinates(CURRENT, False)[self._place])
 
     def stored_energy(self, mbs: Any) -> float:
         """Return C·(T − T₀) in J, for ``add_energy_balance``."""

@@ -88,7 +88,8 @@ def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> 
     Other arguments and errors are those of ``places_of``.
     """
     data, places = mbs.systemData, places_of(mbs, connector, item)
-    q, q_t = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
+    # False: no copy, which halves the time
+    q, q_t = (read(configuration, False) for read in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
     return np.concatenate([q[place] for place in places]), np.concatenate([q_t[place] for place in places])
 
 

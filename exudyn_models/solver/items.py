@@ -3,9 +3,12 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import exudyn as exu
 import exudyn.itemInterface
 
 items: Any = exudyn.itemInterface  # its type hints reject valid calls
+
+CURRENT = exu.ConfigurationType.Current
 
 IN_MEMORY: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
 """Options of a sensor that stores its values in memory only."""
