@@ -131,7 +131,7 @@ def test_the_load_of_a_pivot_may_be_a_joint_reaction_that_depends_on_friction():
     rise = LENGTH * (1.0 - math.cos(mbs.systemData.GetODE2Coordinates()[2]))
     lost = (INERTIA + MASS * LENGTH**2) / 2.0 - MASS * GRAVITY * rise
     heat = mbs.GetSensorValues(mbs.systemData.NumberOfSensors() - 1)
-    assert heat == pytest.approx(lost, abs=1e-5)  # of second order, though the first step starts with friction
+    assert heat == pytest.approx(lost, abs=1e-5)  # of second order
 
 
 def test_a_load_from_a_spring_acts_without_delay():
