@@ -174,13 +174,11 @@ class RingFriction:
         return (self._contact.power or self._new_power())(t)
 
     def _new_power(self) -> Callable[[float], float]:
-        """Return the power in W as a function of the time in s, for the model as it is assembled now."""
+        """Return the power in W as a function of the time in s, until the next assembly."""
         mbs, contact = self.mbs, self._contact
         first, second, *_ = *places_of(mbs, contact, self.item), None
-        get_coordinates, get_velocities = (
-            mbs.systemData.GetODE2Coordinates,
-            mbs.systemData.GetODE2Coordinates_t,
-        )
+        get_coordinates = mbs.systemData.GetODE2Coordinates
+        get_velocities = mbs.systemData.GetODE2Coordinates_t
         force, pair = contact.functions["force"], len(self.nodes) == 2
         on_axis = on_one_axis(contact.kinds, contact.factors)
         law = constant_law(contact.kinds, contact.factors) if contact.built_in else None
@@ -188,7 +186,7 @@ class RingFriction:
         master, disc = first.start, first.stop - 1
 
         def of_constant_moment(t: float) -> float:
-            velocities = get_velocities(CURRENT, False)  # without a copy, in half the time
+            velocities = get_velocities(CURRENT, False)  # False: no copy
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 

@@ -86,7 +86,7 @@ class ThermalNode:
         )
         return at_temperature
 
-    @cached_property  # until the next assembly; deletions may change the node's number, but not its name
+    @cached_property  # deletions may change the node's number, not its name
     def _place(self) -> int:
         return int(self.mbs.systemData.GetNodeLTGODE1(self.mbs.GetNodeNumber(self._name))[0])
 

@@ -22,14 +22,19 @@ _CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
 
 @dataclass(eq=False, kw_only=True)
 class Connector:
-    """A connector with a ``name`` and the ``places`` of its coordinates, empty after assembly."""
+    """A connector with a ``name``.
+
+    The ``places`` of its coordinates and the ``power`` (W) as a function of time (s) hold until the next assembly.
+    """
 
     name: str = ""
     places: list[slice] = field(default_factory=list)
+    power: Callable[[float], float] | None = None
 
     def forget(self) -> None:
-        """Forget the places, because the next assembly may renumber coordinates."""
+        """Forget places and power."""
         self.places.clear()
+        self.power = None
 
 
 @dataclass(eq=False)
@@ -37,8 +42,7 @@ class Contact(Connector):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
-    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``. The ``power`` (W) as a function of the time (s)
-    and the ``places`` of the nodes' coordinates hold until the next assembly.
+    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
     """
 
     kinds: Kinds
@@ -47,12 +51,6 @@ class Contact(Connector):
     functions: dict[str, Any]
     stick: AxialStick | None
     built_in: bool
-    power: Callable[[float], float] | None = None
-
-    def forget(self) -> None:
-        """Forget the power as well, which contains the places."""
-        super().forget()
-        self.power = None
 
     @property
     def dampers(self) -> StickDampers:
@@ -73,7 +71,7 @@ def register(mbs: Any, contact: Contact) -> None:
 
 
 def register_support(mbs: Any) -> Connector:
-    """Store a support in its model; return it with the name that its connector must have."""
+    """Store a support in its model; return it with its connector's name."""
     known: list[Connector] = mbs.sys.setdefault(_SUPPORTS, [])
     known.append(connector := Connector(name=f"radial support {len(known)}"))
     at_assembly(mbs, connector.forget)
@@ -81,7 +79,7 @@ def register_support(mbs: Any) -> Connector:
 
 
 def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
-    """Return slices of the coordinates of a connector, which was ``item`` when it was added, in its assembled model.
+    """Return slices of the coordinates of a connector in an assembled model, added as ``item``.
 
     Raises ``ValueError`` if it was deleted.
     """
@@ -98,7 +96,6 @@ def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> 
     Other arguments and errors are those of ``places_of``.
     """
     data, places = mbs.systemData, places_of(mbs, connector, item)
-    # False: no copy, which halves the time
     q, q_t = (read(configuration, False) for read in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
     return np.concatenate([q[place] for place in places]), np.concatenate([q_t[place] for place in places])
 
@@ -135,7 +132,7 @@ def _numbers(mbs: Any) -> dict[str, int]:
 
 
 def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
-    """Return the object number of a connector, which was ``item`` when it was added.
+    """Return the present object number of a connector added as ``item``.
 
     Raises ``ValueError`` if it was deleted.
     """

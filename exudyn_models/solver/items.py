@@ -32,7 +32,7 @@ _models.Assemble = _call_and_assemble
 
 
 def at_assembly(mbs: Any, function: Callable[[], None]) -> None:
-    """Call ``function`` before each ``mbs.Assemble``, which follows each deletion and renumbers coordinates."""
+    """Call ``function`` before each ``mbs.Assemble``, which may renumber coordinates."""
     mbs.sys.setdefault(_AT_ASSEMBLY, []).append(function)
 
 

@@ -134,7 +134,7 @@ class _Look:
     def finish(self) -> None:
         """Raise ``SimulationError`` if a check ended the run; warn about jumps."""
         if not self._finite or self._too_many:
-            raise _failure(self._solver.name, self.duration, self._too_many or NOT_FINITE)
+            raise SimulationError(advice(self._solver.name, self.duration, self._too_many or NOT_FINITE))
         if self._jumps is not None:
             self._jumps.warn()
 
@@ -187,12 +187,7 @@ def _raise_cause(error: exu.ExudynError, mbs: Any, solver: str, time: float) -> 
                 f"Exudyn's {solver} failed 0 s after the start: {massless}; add mass or inertia"
             ) from error
         what = mbs.sys["dynamicSolver"].GetErrorString() or str(error)
-        raise _failure(solver, time, what) from error
-
-
-def _failure(solver: str, time: float, what: str) -> SimulationError:
-    other = "GeneralizedAlpha" if solver == "TrapezoidalIndex2" else "TrapezoidalIndex2"
-    return SimulationError(advice(solver, time, what, other))
+        raise SimulationError(advice(solver, time, what)) from error
 
 
 def _singular(mbs: Any, at_start: bool) -> str:

@@ -284,8 +284,9 @@ def quiet() -> AbstractContextManager[None]:
     return changed(exu.config, printToConsole=False, suppressWarnings=True)
 
 
-def advice(integrator: str, time: float, what: str, other: str = "the other solver") -> str:
-    """Return a message about a run that failed at ``time`` (s), with an ``other`` solver to use."""
+def advice(integrator: str, time: float, what: str) -> str:
+    """Return a message about a run that failed at ``time`` (s)."""
+    other = "TrapezoidalIndex2" if integrator == "GeneralizedAlpha" else "another solver"
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
         f"use a smaller step, a larger tolerance or a larger regularisation, or {other}"

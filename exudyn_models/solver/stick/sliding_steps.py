@@ -48,7 +48,7 @@ class SlidingSteps:
         self._growing = step
 
     def stops(self, contact: PlanarContact, motion: SlipMotion) -> bool:
-        """Return whether a contact stops so soon that the shortest step might end without slip."""
+        """Return whether the shortest step might end without slip."""
         return motion.rests_within(contact.rest_share * self._step / APPROACH)
 
     def resolves(self, step: float) -> bool:
