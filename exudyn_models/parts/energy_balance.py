@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 import exudyn as exu
 import numpy as np
 
-from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
+from exudyn_models.solver.items import IN_MEMORY, add_integrals, at_assembly, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.solver_run import quiet
 from reference_model.systems import FloatArray, positive_number
@@ -144,12 +144,11 @@ def _add_works(mbs: Any, named: Mapping[str, Power], unit: float) -> Any:
 
 def _add_energy(mbs: Any, stored: Sequence[Energy]) -> Any:
     bodies: list[int] = []
-    objects = 0
+    at_assembly(mbs, bodies.clear)
 
     def energy(mbs: Any, t: float, sensors: Any, factors: Any, configuration: Any) -> list[float]:
-        nonlocal objects
-        if objects != (present := mbs.systemData.NumberOfObjects()):  # they have outputs only after assembly
-            bodies[:], objects = _bodies(mbs), present
+        if not bodies:  # they have outputs only after assembly
+            bodies[:] = _bodies(mbs)
         return [sum(_kinetic_energy(mbs, body) for body in bodies) + sum(spring(mbs) for spring in stored)]
 
     return mbs.AddSensor(items.SensorUserFunction(sensorUserFunction=energy, **IN_MEMORY))

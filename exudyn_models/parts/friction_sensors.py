@@ -17,7 +17,7 @@ from exudyn_models.forces.user_functions import force_and_jacobian
 from exudyn_models.parts.connector import renew_friction
 from exudyn_models.parts.thermal_node import ThermalNode
 from exudyn_models.solver.contacts import Contact, motion_of, places_of, present_item
-from exudyn_models.solver.items import IN_MEMORY, add_integrals, items, node_sensor
+from exudyn_models.solver.items import CURRENT, IN_MEMORY, add_integrals, items, node_sensor
 from exudyn_models.solver.jumps import watch_powers
 from exudyn_models.solver.stick.point_sticks import PointSticks
 from reference_model.systems import FloatArray
@@ -174,13 +174,11 @@ class RingFriction:
         return (self._contact.power or self._new_power())(t)
 
     def _new_power(self) -> Callable[[float], float]:
-        """Return the power in W as a function of the time in s, for the model as it is assembled now."""
+        """Return the power in W as a function of the time in s, until the next assembly."""
         mbs, contact = self.mbs, self._contact
         first, second, *_ = *places_of(mbs, contact, self.item), None
-        get_coordinates, get_velocities = (
-            mbs.systemData.GetODE2Coordinates,
-            mbs.systemData.GetODE2Coordinates_t,
-        )
+        get_coordinates = mbs.systemData.GetODE2Coordinates
+        get_velocities = mbs.systemData.GetODE2Coordinates_t
         force, pair = contact.functions["force"], len(self.nodes) == 2
         on_axis = on_one_axis(contact.kinds, contact.factors)
         law = constant_law(contact.kinds, contact.factors) if contact.built_in else None
@@ -188,18 +186,18 @@ class RingFriction:
         master, disc = first.start, first.stop - 1
 
         def of_constant_moment(t: float) -> float:
-            velocities = get_velocities()
+            velocities = get_velocities(CURRENT, False)  # False: no copy
             spin: float = abs(velocities.item(disc) - (velocities.item(master) if pair else 0.0))
             return moment * (spin if spin > creep else spin * spin / creep)
 
         def of_any(t: float) -> float:
-            values = get_velocities()
+            values = get_velocities(CURRENT, False)
             velocities = values[first].tolist()
             if second:
                 velocities += values[second].tolist()
             coordinates = velocities  # ignored by rotors on one axis
             if not on_axis:
-                values = get_coordinates()
+                values = get_coordinates(CURRENT, False)
                 coordinates = values[first].tolist()
                 if second:
                     coordinates += values[second].tolist()

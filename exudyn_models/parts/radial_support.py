@@ -37,7 +37,7 @@ from exudyn_models.forces.slip_kinematics import (
 from exudyn_models.parts.connector import add_connector
 from exudyn_models.parts.mounts import checked_sides, nodes_and_kinds
 from exudyn_models.solver.contacts import Connector, motion_of, places_of, register_support
-from exudyn_models.solver.items import IN_MEMORY, items
+from exudyn_models.solver.items import CURRENT, IN_MEMORY, items
 from reference_model.systems import FloatArray, finite_number
 
 Quantity = Literal["deflection", "force", "stored_energy", "power"]
@@ -65,7 +65,7 @@ class RadialSupport:
         # On the ground with the global axes, ẇ is the node's velocity, which costs less.
         if len(self.nodes) == 1 and self._kinds[2] == NO_MOUNTS:
             (place,) = places_of(mbs, self._connector, self.item)
-            vx, vy, *_ = mbs.systemData.GetODE2Coordinates_t()[place].tolist()
+            vx, vy, *_ = mbs.systemData.GetODE2Coordinates_t(CURRENT, False)[place].tolist()
             return float(self._law[4] * (vx * vx + vy * vy))
         return self._state(mbs)[3]
 

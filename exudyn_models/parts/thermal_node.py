@@ -8,16 +8,19 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import count
 from typing import Any
 
 import exudyn as exu
 
 from exudyn_models.forces.laws.functions import checked_not_negative
 from exudyn_models.forces.load_and_coefficient import Coefficient
-from exudyn_models.solver.items import add_integrals, node_sensor
+from exudyn_models.solver.items import CURRENT, add_integrals, at_assembly, node_sensor
 from reference_model.systems import finite_number, positive_number
 
 ARGUMENT = "temperature"
+
+_NUMBERS = count()
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +37,11 @@ class ThermalNode:
     conductance: float
     surroundings: float
     _sources: list[Callable[[Any, float], float]] = field(repr=False)
+    _name: str = field(repr=False)
 
     def temperature(self, mbs: Any) -> float:
         """Return T in the current motion of the assembled model."""
-        return float(mbs.systemData.GetODE1Coordinates()[self._place])
+        return float(mbs.systemData.GetODE1Coordinates(CURRENT, False)[self._place])
 
     def stored_energy(self, mbs: Any) -> float:
         """Return C·(T − T₀) in J, for ``add_energy_balance``."""
@@ -82,9 +86,9 @@ class ThermalNode:
         )
         return at_temperature
 
-    @cached_property  # nodes added later do not change it
+    @cached_property  # deletions may change the node's number, not its name
     def _place(self) -> int:
-        return int(self.mbs.systemData.GetNodeLTGODE1(self.node)[0])
+        return int(self.mbs.systemData.GetNodeLTGODE1(self.mbs.GetNodeNumber(self._name))[0])
 
 
 def add_thermal_node(
@@ -110,5 +114,8 @@ def add_thermal_node(
         to_outside = loss * (state[0] - outside)
         return [(sum(source(mbs, t) for source in sources) - to_outside) / capacity, to_outside]
 
-    node = add_integrals(mbs, rates, [first, 0.0])
-    return ThermalNode(mbs, node, capacity, loss, outside, sources)
+    name = f"thermal node {next(_NUMBERS)}"
+    node = add_integrals(mbs, rates, [first, 0.0], name)
+    thermal = ThermalNode(mbs, node, capacity, loss, outside, sources, name)
+    at_assembly(mbs, lambda: thermal.__dict__.pop("_place", None))
+    return thermal

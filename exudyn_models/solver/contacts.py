@@ -14,6 +14,7 @@ from exudyn_models.forces.axial_pairs import AxialStick
 from exudyn_models.forces.load_and_coefficient import LoadAndCoefficient
 from exudyn_models.forces.slip_kinematics import Kinds
 from exudyn_models.forces.stick_dampers import StickDampers
+from exudyn_models.solver.items import at_assembly
 from reference_model.systems import FloatArray
 
 _CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
@@ -21,11 +22,19 @@ _CONTACTS, _SUPPORTS = "friction contacts", "radial supports"
 
 @dataclass(eq=False, kw_only=True)
 class Connector:
-    """A connector with a ``name`` and the ``places`` of its coordinates while the model has so many ``objects``."""
+    """A connector with a ``name``.
+
+    The ``places`` of its coordinates and the ``power`` (W) as a function of time (s) hold until the next assembly.
+    """
 
     name: str = ""
     places: list[slice] = field(default_factory=list)
-    objects: int = 0
+    power: Callable[[float], float] | None = None
+
+    def forget(self) -> None:
+        """Forget places and power."""
+        self.places.clear()
+        self.power = None
 
 
 @dataclass(eq=False)
@@ -33,8 +42,7 @@ class Contact(Connector):
     """Friction contact between two nodes with ``reference`` coordinates, shape (n,).
 
     ``functions`` contains its "force" and "jacobian". ``stick`` is None if the contact is regularised. ``built_in``
-    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``. The ``power`` (W) as a function of the time (s)
-    and the ``places`` of the nodes' coordinates hold until objects are deleted.
+    contacts are objects ``ObjectConnectorCoordinateSpringDamperExt``.
     """
 
     kinds: Kinds
@@ -43,7 +51,6 @@ class Contact(Connector):
     functions: dict[str, Any]
     stick: AxialStick | None
     built_in: bool
-    power: Callable[[float], float] | None = None
 
     @property
     def dampers(self) -> StickDampers:
@@ -60,25 +67,26 @@ def register(mbs: Any, contact: Contact) -> None:
     known = mbs.sys.setdefault(_CONTACTS, {})
     contact.name = f"friction contact {len(known)}"
     known[contact.name] = contact
+    at_assembly(mbs, contact.forget)
 
 
 def register_support(mbs: Any) -> Connector:
-    """Store a support in its model; return it with the name that its connector must have."""
+    """Store a support in its model; return it with its connector's name."""
     known: list[Connector] = mbs.sys.setdefault(_SUPPORTS, [])
-    known.append(Connector(name=f"radial support {len(known)}"))
-    return known[-1]
+    known.append(connector := Connector(name=f"radial support {len(known)}"))
+    at_assembly(mbs, connector.forget)
+    return connector
 
 
 def places_of(mbs: Any, connector: Connector, item: Any) -> list[slice]:
-    """Return slices of the coordinates of a connector, which was ``item`` when it was added, in its assembled model.
+    """Return slices of the coordinates of a connector in an assembled model, added as ``item``.
 
     Raises ``ValueError`` if it was deleted.
     """
-    if connector.objects != (count := mbs.systemData.NumberOfObjects()):
+    if not connector.places:
         places = np.array(mbs.systemData.GetObjectLTGODE2(present_item(mbs, connector, item)))
         runs = np.split(places, 1 + np.flatnonzero(np.diff(places) != 1))
         connector.places = [slice(int(run[0]), int(run[-1]) + 1) for run in runs]
-        connector.objects = count
     return connector.places
 
 
@@ -88,7 +96,7 @@ def motion_of(mbs: Any, connector: Connector, item: Any, configuration: Any) -> 
     Other arguments and errors are those of ``places_of``.
     """
     data, places = mbs.systemData, places_of(mbs, connector, item)
-    q, q_t = data.GetODE2Coordinates(configuration), data.GetODE2Coordinates_t(configuration)
+    q, q_t = (read(configuration, False) for read in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
     return np.concatenate([q[place] for place in places]), np.concatenate([q_t[place] for place in places])
 
 
@@ -97,15 +105,6 @@ def contacts_of(mbs: Any) -> dict[int, Contact]:
     known: dict[str, Contact] = mbs.sys.get(_CONTACTS, {})
     numbers = _numbers(mbs) if known else {}
     return {numbers[name]: contact for name, contact in known.items() if name in numbers}
-
-
-def forget_places(mbs: Any) -> None:
-    """Forget where the coordinates of all connectors are, because objects may be deleted."""
-    contacts: list[Contact] = list(mbs.sys.get(_CONTACTS, {}).values())
-    for connector in (*mbs.sys.get(_SUPPORTS, []), *contacts):
-        connector.objects = 0
-    for contact in contacts:
-        contact.power = None
 
 
 def find_again(mbs: Any) -> None:
@@ -133,7 +132,7 @@ def _numbers(mbs: Any) -> dict[str, int]:
 
 
 def present_item(mbs: Any, connector: Connector, item: Any) -> Any:
-    """Return the object number of a connector, which was ``item`` when it was added.
+    """Return the present object number of a connector added as ``item``.
 
     Raises ``ValueError`` if it was deleted.
     """

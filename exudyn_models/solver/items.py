@@ -1,14 +1,39 @@
 """Exudyn's items, and functions that add frequent ones."""
 
 from collections.abc import Callable, Sequence
+from functools import wraps
 from typing import Any
 
+import exudyn as exu
 import exudyn.itemInterface
 
 items: Any = exudyn.itemInterface  # its type hints reject valid calls
 
+CURRENT = exu.ConfigurationType.Current
+
 IN_MEMORY: dict[str, Any] = {"storeInternal": True, "writeToFile": False}
 """Options of a sensor that stores its values in memory only."""
+
+
+_AT_ASSEMBLY = "called at assembly"
+
+_models: Any = exu.MainSystem
+_assemble = _models.Assemble
+
+
+@wraps(_assemble)
+def _call_and_assemble(mbs: Any) -> None:
+    for function in mbs.sys.get(_AT_ASSEMBLY, ()):
+        function()
+    _assemble(mbs)
+
+
+_models.Assemble = _call_and_assemble
+
+
+def at_assembly(mbs: Any, function: Callable[[], None]) -> None:
+    """Call ``function`` before each ``mbs.Assemble``, which may renumber coordinates."""
+    mbs.sys.setdefault(_AT_ASSEMBLY, []).append(function)
 
 
 def add_rotor(mbs: Any, inertia: float, speed: float, angle: float = 0.0) -> Any:
@@ -33,10 +58,11 @@ def node_sensor(mbs: Any, node: Any, variable: Any, **options: Any) -> Any:
     )
 
 
-def add_integrals(mbs: Any, rates: Callable[..., list[float]], start: Sequence[float]) -> Any:
+def add_integrals(mbs: Any, rates: Callable[..., list[float]], start: Sequence[float], name: str = "") -> Any:
     """Add first-order coordinates with the user function ``rates``; return their ``NodeIndex``."""
     node = mbs.AddNode(
         items.NodeGenericODE1(
+            name=name,
             referenceCoordinates=[0.0] * len(start),
             initialCoordinates=list(start),
             numberOfODE1Coordinates=len(start),

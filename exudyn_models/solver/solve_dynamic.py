@@ -22,7 +22,7 @@ import exudyn as exu
 
 from exudyn_models.forces.axial_pairs import Mode
 from exudyn_models.solver.breaks import checked_breaks, parts_of_run
-from exudyn_models.solver.contacts import find_again, forget_places
+from exudyn_models.solver.contacts import find_again
 from exudyn_models.solver.jumps import JumpCheck
 from exudyn_models.solver.linear_matrices import singular_mass
 from exudyn_models.solver.repeated_steps import newton_without_restart, restored_accelerations
@@ -83,17 +83,13 @@ def solve_dynamic(
         mbs.Assemble()
     _check_constraints(mbs, solver)
     times = checked_breaks(breaks, simulationSettings.timeIntegration)
-    forget_places(mbs)
     find_again(mbs)
     contacts, changes = sticking_contacts(mbs, simulationSettings.timeIntegration.startTime), []
-    try:
-        with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
-            modes: list[Mode] = []
-            for goes_on in parts:
-                changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
-                modes = [contact.stick.visible_mode for contact in contacts]
-    finally:
-        forget_places(mbs)  # before a run by ``mbs.SolveDynamic``, objects may be deleted
+    with closing(parts_of_run(mbs, simulationSettings, times, updateInitialValues)) as parts:
+        modes: list[Mode] = []
+        for goes_on in parts:
+            changes += _solve(mbs, simulationSettings, solver, goes_on, contacts, modes)
+            modes = [contact.stick.visible_mode for contact in contacts]
     return changes
 
 

@@ -286,7 +286,8 @@ def quiet() -> AbstractContextManager[None]:
 
 def advice(integrator: str, time: float, what: str) -> str:
     """Return a message about a run that failed at ``time`` (s)."""
+    other = "TrapezoidalIndex2" if integrator == "GeneralizedAlpha" else "another solver"
     return (
         f"Exudyn's {integrator} failed {time:.9g} s after the start: {what}; "
-        "use a smaller step, a larger tolerance or a larger regularisation, or the other solver"
+        f"use a smaller step, a larger tolerance or a larger regularisation, or {other}"
     )

@@ -23,6 +23,7 @@ def starting_rates(mbs: Any, t: float) -> Iterator[None]:
         return
     before = np.array(data.GetODE1Coordinates_t(initial))
     with initialised_solver(mbs, t) as solver:
+        data.SetAECoordinates(data.GetAECoordinates(initial))  # a load may be a reaction
         solver.ComputeODE1RHS(mbs)
         rates = np.array(solver.GetSystemResidual())[data.ODE2Size() :][: data.ODE1Size()]
     if np.all(np.isfinite(rates)):  # otherwise the run will report it

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_models.solver.stick.sensor_rows import ON_GRID
+from exudyn_models.solver.stick.slip_motion import SlipMotion
 from exudyn_models.solver.stick.sticking_contacts import PlanarContact
 from reference_model.systems import FloatArray
 
@@ -46,6 +47,10 @@ class SlidingSteps:
         """Begin to slide with a first ``step`` (s)."""
         self._growing = step
 
+    def stops(self, contact: PlanarContact, motion: SlipMotion) -> bool:
+        """Return whether the shortest step might end without slip."""
+        return motion.rests_within(contact.rest_share * self._step / APPROACH)
+
     def resolves(self, step: float) -> bool:
         """Return whether a ``step`` (s) was short enough, and choose the next one."""
         if not self._contacts:
@@ -77,7 +82,7 @@ class SlidingSteps:
                 motion = contact.slid(self._mbs)
                 self._directions[contact] = contact.scaled(motion.gradient)
                 shortest = contact.rest_share * self._step
-                self.rests |= motion.rests_within(shortest)
+                self.rests |= self.stops(contact, motion)
                 if motion.rate_potential > 0.0:
                     longest = APPROACH * motion.potential / motion.rate_potential
                     self._by_slip = min(self._by_slip, max(longest, shortest))

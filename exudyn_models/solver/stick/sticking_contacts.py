@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 
 from exudyn_models.forces.axial_pairs import AxialStick, Mode, spanned
 from exudyn_models.solver.contacts import contacts_of
+from exudyn_models.solver.items import CURRENT
 from exudyn_models.solver.starting_rates import initialised_solver
 from exudyn_models.solver.stick.planar_stick import NEGLIGIBLE, SPIN, PlanarStick
 from exudyn_models.solver.stick.slip_motion import SlipMotion
 from reference_model.systems import FloatArray
-
-CURRENT = exu.ConfigurationType.Current
 
 SOON = 1e-9
 """Time in s that gives the slip of a contact at rest the sign of its acceleration."""

@@ -271,9 +271,7 @@ class _Run:
         """Step under constant friction until contacts in the plane rest, and lock them."""
         motions = [(contact, contact.motion(self._mbs)) for contact in self._planar if contact.free_to_slide]
         resting = [
-            (contact, motion.remaining)
-            for contact, motion in motions
-            if motion.rests_within(contact.rest_share * self._step)
+            (contact, motion.remaining) for contact, motion in motions if self._slides.stops(contact, motion)
         ]
         time = min(remaining for _, remaining in resting)
         if self._reached + time > self._reached:

@@ -1,13 +1,22 @@
 """Contacts after ``mbs.DeleteObject``, which renumbers objects and nodes."""
 
+import itertools
+
 import exudyn as exu
 import numpy as np
 import pytest
 from free_bodies import drive, new_model, planar_body, rotor, settings_of
 
-from exudyn_models import add_energy_balance, add_radial_support, add_ring_friction, solve_dynamic
+from exudyn_models import (
+    add_energy_balance,
+    add_radial_support,
+    add_ring_friction,
+    add_thermal_node,
+    solve_dynamic,
+)
 
 FRICTION = {"contact_radius": 0.1, "friction_coefficient": 0.3}
+SOLVE = solve_dynamic, exu.MainSystem.SolveDynamic
 
 
 def wheel(mbs, planar):
@@ -43,7 +52,7 @@ def test_a_contact_rubs_and_measures_after_earlier_objects_were_deleted(deleted,
     np.testing.assert_allclose(mbs.GetSensorStoredData(moment)[slides, 1], -24.0, rtol=1e-9)
 
 
-@pytest.mark.parametrize("solve", [solve_dynamic, exu.MainSystem.SolveDynamic])
+@pytest.mark.parametrize("solve", SOLVE)
 @pytest.mark.parametrize("planar", [False, True])
 def test_a_deleted_contact_releases_its_bodies(planar, solve):
     mbs = new_model()
@@ -85,12 +94,12 @@ def test_a_contact_without_its_constraints_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("regularisation", "second"),
-    [(None, solve_dynamic), (1e-9, solve_dynamic), (1e-9, exu.MainSystem.SolveDynamic)],
+    ("regularisation", "first", "second"),
+    [(None, solve_dynamic, solve_dynamic), *((1e-9, *pair) for pair in itertools.product(SOLVE, repeat=2))],
 )
 @pytest.mark.parametrize("planar", [False, True])
 def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_two_runs(
-    planar, regularisation, second
+    planar, regularisation, first, second
 ):
     mbs = new_model()
     body = planar_body(mbs, 1.0, 0.5, [0.0] * 3, [1.0, 2.0, 7.0])
@@ -98,7 +107,8 @@ def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_t
     friction = add_ring_friction(mbs, None, wheel(mbs, planar), **law)
     quantities = "relative_spin", "transmitted_moment", "power", "heat"
     sensors = [friction.add_sensor(quantity) for quantity in quantities]
-    for solve in (solve_dynamic, second):
+    mbs.Assemble()
+    for solve in (first, second):
         solve(mbs, settings_of(0.1, 100), exu.DynamicSolverType.TrapezoidalIndex2)
         shown = [float(mbs.GetSensorValues(sensor)) for sensor in sensors]
         spin = 3.0 - 12.0 * 0.1 / 0.5
@@ -111,6 +121,24 @@ def test_sensors_show_the_right_coordinates_after_an_object_is_deleted_between_t
             mbs.DeleteObject(int(body))  # with its node
             mbs.Assemble()
             body = None
+
+
+def test_an_energy_balance_notices_a_body_that_replaces_a_deleted_object():
+    mbs = new_model()
+    first = rotor(mbs, 0.5, 3.0)
+    spare, kept = (
+        add_ring_friction(mbs, None, first, normal_load=0.0, regularisation=1e-3, **FRICTION)
+        for _ in range(2)
+    )
+    read = add_energy_balance(mbs, gains={}, losses={"friction": kept.power})
+    stored = []
+    for _ in range(2):
+        mbs.Assemble()
+        mbs.SolveDynamic(settings_of(0.1, 10), exu.DynamicSolverType.RK44)
+        stored.append(read().stored[-1])
+        mbs.DeleteObject(spare.item, deleteDependentItems=False)
+        rotor(mbs, 1.0, 2.0)
+    assert stored == pytest.approx([2.25, 4.25])
 
 
 @pytest.mark.parametrize("base", [False, True])
@@ -141,3 +169,14 @@ def test_a_deleted_support_cannot_be_measured():
     mbs.Assemble()
     with pytest.raises(ValueError, match=r"^'radial support 0' was deleted"):
         support.stored_energy(mbs)
+
+
+def test_a_thermal_node_finds_its_temperature_after_an_earlier_one_is_deleted():
+    mbs = new_model()
+    _, kept = (add_thermal_node(mbs, heat_capacity=1.0, start=start) for start in (30.0, 50.0))
+    rotor(mbs, 1.0, 0.0)
+    run(mbs)
+    assert kept.temperature(mbs) == pytest.approx(50.0)
+    mbs.DeleteObject(0)
+    run(mbs)
+    assert kept.temperature(mbs) == pytest.approx(50.0)

@@ -76,6 +76,18 @@ def test_a_ring_stops_sliding_and_spinning_at_once_with_the_second_order(solver)
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.1)
 
 
+@pytest.mark.parametrize("solver", [TRAPEZOIDAL, SOLVERS.GeneralizedAlpha])
+@pytest.mark.parametrize("time", [0.3, 0.4])
+def test_a_block_stops_where_a_step_ends(time, solver):
+    """The last short steps leave a millionth of a step, up to rounding."""
+    mbs = new_model()
+    node = planar_body(mbs, 2.0, 0.01, [0.0] * 3, [1.5 * time, 0.0, 0.0])
+    push(mbs, node, 0, lambda t: 3.0)
+    add_ring_friction(mbs, None, node, contact_radius=0.05, friction_coefficient=0.3, normal_load=20.0)
+    (stop,) = run(mbs, 0.45, 1e-3, solver)
+    assert stop[0] == pytest.approx(time, abs=1e-12)
+
+
 @pytest.mark.parametrize("loads", [(30.0, 20.0), (10.0, 15.0, 25.0)])
 def test_contacts_between_the_same_bodies_share_a_load(loads):
     """They stop, hold and release like one contact with the sum of their loads."""
