@@ -82,6 +82,11 @@ def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
     np.testing.assert_allclose(found.states[:, 0] + 1j * found.states[:, 1], turned, rtol=0.0, atol=1e-9)
 
 
+def test_steps_for_a_hardening_spring_are_as_short_as_its_largest_stiffness_requires():
+    pin = replace(FIG5, hardening=1e3)
+    assert simulate(pin, [1.0, 0.0, 0.0, -1.0], [0.0, 1.0]).solution.steps < 1100  # 1838 for the smallest one
+
+
 @pytest.mark.parametrize(
     ("system", "start"),
     [
