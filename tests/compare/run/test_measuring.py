@@ -15,9 +15,8 @@ from compare.claims.study import Findings, Study
 from compare.cli.app import status
 from compare.engines import Engine, registry
 from compare.output.outside_text import Failure
-from compare.run import measuring
 from compare.run.levels import LIMITS
-from compare.run.measuring import NO_CLAIM, Course, measured
+from compare.run.measuring import NO_CLAIM, PACE_STEPS, Course, measured, pace
 from compare.run.runner import run
 from compare.run.store import Drawing
 
@@ -62,8 +61,8 @@ def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted(engine):
 
 
 def test_the_pace_is_the_time_for_a_second_of_motion(monkeypatch):
-    monkeypatch.setattr(measuring.time, "perf_counter", iter([0.0, 4.0]).__next__)
-    assert measuring.pace(replace(STEPPING, name="paced")) == 4.0 / (measuring.PACE_STEPS * 1e-3)
+    monkeypatch.setattr("time.perf_counter", iter([0.0, 4.0]).__next__)
+    assert pace(replace(STEPPING, name="paced")) == 4.0 / (PACE_STEPS * 1e-3)
 
 
 @pytest.mark.parametrize(("quick", "within"), [(False, math.inf), (True, 10.0)])
@@ -79,9 +78,7 @@ def test_a_process_starts_again_after_a_failure_and_only_the_quick_level_omits_c
         return asked
 
     started = [(NO_CLAIM, math.inf), ("short", within)]
-    assert work(Failure("its process ended")) == started
-    assert work(Findings()) == started
-    assert work(Findings()) == started[1:]
+    assert list(map(work, (Failure("ended"), Findings(), Findings()))) == [started, started, started[1:]]
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ from compare.studies.engines.clutch_scale import Scale
 from exudyn_models import simulate, simulate_with_native_contact
 from exudyn_models.paper.model import build_model
 from exudyn_models.paper.recording import Axes, Recording
+from exudyn_models.paper.scales import Units
 from exudyn_models.solver.solver_run import solve
 from reference_model import SimulationError
 
@@ -68,6 +69,11 @@ def test_the_regularisation_is_reported_in_metres_per_second():
     speed = FIG5.offset * FIG5.disc_speed  # of the start and of the disc
     assert one.solution.regularisation == pytest.approx(1e-7 * speed)
     assert other.solution.regularisation == pytest.approx(1e-7 * speed * scale.length / scale.time)
+
+
+def test_dampers_set_the_unit_of_time_without_springs_and_rotation():
+    disc = replace(FIG11, stiffness=0.0, disc_speed=0.0, damping=1.0, polar_inertia=0.01, shaft_damping=0.2)
+    assert Units.of(disc, np.zeros(6)).time == 0.05
 
 
 def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
