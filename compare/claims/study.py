@@ -142,7 +142,7 @@ class Declared:
 
     def identity(self, study: str, case: str) -> str:
         """Return the permanent id of the claim, such as "fig06/rests"."""
-        parts = (study, self.function.__name__.strip("_"), case)
+        parts = (study, self.function.__name__, case)
         return "/".join(slug(part) for part in parts if part)
 
 

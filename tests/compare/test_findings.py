@@ -26,7 +26,8 @@ def results(measured=0.0512345678, error=1e-6, whole=True, other=1.0, sentence="
     ]
     # Two claims share a cell of the matrix, which shows the worse verdict.
     found += [
-        claim("Order", "good", 1.0, value, 0.01, kind="order", resolution=1.0) for value in (other, 1.0)
+        claim("Order", "good", 1.0, value, 0.01, kind="order", resolution=1.0, unit="1", named={"order": 0})
+        for value in (other, 1.0)
     ]
     written = [
         claim_as_json(each)
@@ -86,6 +87,8 @@ def test_a_report_writes_its_numbers(root):
         "At [0.0512](#fig05place) m, to 1.0×10⁻⁶ m.\n### fig05/place\n\nPlace.\n\n- place: 0.051235 ± 1×10⁻⁶ m\n"
     )
     kept = BUILDER["kept"](root)
+    order = BUILDER["number_in"](results(), "fig05: order")
+    assert (order.claim, order.unit) == ("fig05/order", "")
     assert kept["claims"].value == 2
     assert kept["verdicts: independent"].value == 2  # the position by two engines; the order is a self-check
     assert list(BUILDER["deviations"](results(), root)) == []

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from compare.claims.claim import Claim, ErrorBudget, Verdict
+from compare.claims.error_estimates import ROUNDING
 from compare.claims.measured import answers_of, asked
 from compare.report.numbers import in_short
 
@@ -56,3 +57,8 @@ def test_the_allowed_number_of_answers_may_be_open():
 def test_a_margin_within_its_error_is_open_though_the_answer_does_not_change():
     claim = of(*asked(lambda tolerance: [1.5 - 1.0, 1.0 + tolerance - 1.0], 0.1))
     assert (claim.verdict, in_short(claim)) == (Verdict.INCONCLUSIVE, "1 of 2")
+
+
+def test_margins_are_those_of_the_requested_tolerance_and_equal_runs_have_rounding_errors():
+    assert asked(lambda tolerance: [tolerance], 0.1)[0] == 0.1
+    assert asked(lambda tolerance: [-4.0, 1.0], 0.1)[1].tolist() == [4.0 * ROUNDING] * 2

@@ -35,7 +35,7 @@ def study_of(*names):
 
     def whirls(engine, speed):
         if engine.name == "lame":
-            raise UnsupportedSystemError("lame does not whirl")
+            raise UnsupportedSystemError("lame does not \x1bwhirl")
         return None if engine.contact_only else Measured(predicted=speed, value=speed)
 
     def sticks(engine):
@@ -71,6 +71,17 @@ def test_sentences_are_known_without_measuring():
     assert study.declared[2].implied_by == "It rests"
     assert study_of("rests").has_theory is False
     assert study_of(*ALL).has_theory is True
+
+
+def test_a_member_of_a_family_is_implied_by_the_same_member_of_another():
+    study = study_of("whirls")
+    whirls = study.declared[0].function
+    study.claim("A {} repeats", resolution=1.0, each={"slow disc": 1.0}, implied_by=whirls)(repeats)
+    assert study.measure(ENGINE, only=("repeats",)).claims[0].implied_by == "A slow disc whirls"
+
+
+def repeats(engine, speed):
+    return Measured(predicted=speed, value=speed)
 
 
 def test_inserting_a_claim_keeps_the_ids_of_the_others():
@@ -119,7 +130,7 @@ def test_names_of_another_shape_are_rejected(names):
 def test_a_motion_that_an_engine_does_not_support_is_reported_as_missing():
     found = study_of(*ALL).measure(replace(ENGINE, name="lame"))
     assert [claim.sentence for claim in found.claims] == ["It rests", "It sticks"]
-    assert found.not_simulated == "lame does not whirl"
+    assert found.not_simulated == r"lame does not \x1bwhirl"
 
 
 def test_a_function_may_make_no_claim_about_an_engine():

@@ -152,7 +152,8 @@ def test_no_right_engine_is_accused(made):
 @pytest.mark.parametrize("made", [RIGHT, reference], ids=lambda made: made.name)
 def test_a_turning_plane_does_not_pass_for_friction_that_removes_the_slip(made):
     pushes = probes.draws(turning=True)
-    assert probes.unsaturated(made, pushes, float(tolerances(made)[0])) == pushes
+    left = probes.slides(made, pushes, float(tolerances(made)[0]))[:, probes.LEFT]
+    assert np.min(left) >= 1.0 - probes.SPENT
 
 
 def test_a_load_is_not_reduced_if_that_does_not_preserve_the_slip():
@@ -160,10 +161,11 @@ def test_a_load_is_not_reduced_if_that_does_not_preserve_the_slip():
     assert probes.unsaturated(engine("stopping", slowest=9.0), pushes, float(tolerances(RIGHT)[0])) == pushes
 
 
-def test_a_wrong_order_of_states_is_seen_first():
+@pytest.mark.parametrize("order", [[0, 2, 1, 3], [0, 1, 3, 2]])
+def test_a_wrong_order_of_states_is_seen_first(order):
     def simulate(*arguments, **accuracy):
         found = stepped(*arguments, **accuracy)
-        return replace(found, states=found.states[:, [0, 2, 1, 3]])
+        return replace(found, states=found.states[:, order])
 
     with pytest.raises(BadTrajectoryError, match="returned the initial state "):
         probes.first_check(replace(RIGHT, function=simulate))

@@ -94,7 +94,7 @@ def test_a_small_error_that_differs_is_contrasted_with_a_larger_one_that_agrees(
     small = replace(found["Wrong"], cells=(found["Kite"].cells[0],))
     assert contrast(tuple(found.values())) == ""  # all that differ are larger
     wrong = replace(found["Wrong"].cells[0], claims=found["Kite"].cells[0].claims)
-    assert contrast((replace(small, cells=(wrong,)), found["Pins"])) == (
+    assert contrast((replace(small, cells=(wrong,)), found["Wrong"], found["Pins"])) == (
         "For example, the 1×10⁻⁶ m of Wrong do not fall with the step, but the 0.001 m of Pins do."
     )
 

@@ -1,7 +1,9 @@
 """A claim that fails or would take too long costs no other claim of its study."""
 
 import json
+import math
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from dataclasses import replace
 
 import fake_studies
@@ -9,11 +11,12 @@ import pytest
 
 from compare.claims.measured import Measured
 from compare.claims.prose import Prose
-from compare.claims.study import Study
+from compare.claims.study import Findings, Study
 from compare.cli.app import status
 from compare.engines import Engine, registry
+from compare.output.outside_text import Failure
 from compare.run.levels import LIMITS
-from compare.run.measuring import measured
+from compare.run.measuring import NO_CLAIM, PACE_STEPS, Course, measured, pace
 from compare.run.runner import run
 from compare.run.store import Drawing
 
@@ -55,6 +58,27 @@ def test_a_claim_that_raises_or_would_take_too_long_is_a_gap():
 def test_without_a_limit_or_a_fixed_step_every_claim_is_attempted(engine):
     assert measured(STUDY, STEPPING).gaps.keys() == {HEAVY}
     assert measured(STUDY, fake_studies.GOOD, within=10.0).gaps.keys() == {HEAVY}
+
+
+def test_the_pace_is_the_time_for_a_second_of_motion(monkeypatch):
+    monkeypatch.setattr("time.perf_counter", iter([0.0, 4.0]).__next__)
+    assert pace(replace(STEPPING, name="paced")) == 4.0 / (PACE_STEPS * 1e-3)
+
+
+@pytest.mark.parametrize(("quick", "within"), [(False, math.inf), (True, 10.0)])
+def test_a_process_starts_again_after_a_failure_and_only_the_quick_level_omits_claims(quick, within):
+    course = Course(STUDY, "stepping", 10.0, quick)
+
+    def work(result):
+        steps, asked, found = course.claim("short"), [], None
+        with suppress(StopIteration):
+            while True:
+                (_, _, (part,), _, left), _ = steps.send(found)
+                asked, found = [*asked, (part, left)], result
+        return asked
+
+    started = [(NO_CLAIM, math.inf), ("short", within)]
+    assert list(map(work, (Failure("ended"), Findings(), Findings()))) == [started, started, started[1:]]
 
 
 @pytest.fixture

@@ -14,6 +14,7 @@ from types import SimpleNamespace
 import pytest
 from processes import ended, environment, wait_for, wait_until
 from work import (
+    Unreadable,
     close_all_descriptors,
     kill,
     last_words,
@@ -34,6 +35,7 @@ ENDS = [
     (sys.exit, 0, "SystemExit: 0"),
     (raise_it, KeyboardInterrupt(), "KeyboardInterrupt"),
     (os._exit, 0, f"{SUDDEN} (exit status 0)"),
+    (len, Unreadable(), "cannot be read"),
 ]
 
 POSIX_ENDS = [

@@ -26,6 +26,11 @@ def raise_it(error):
     raise error
 
 
+class Unreadable:
+    def __reduce__(self):
+        return raise_it, (ValueError("cannot be read"),)
+
+
 def close_all_descriptors(then, *arguments):
     os.closerange(0, 200)
     then(*arguments)

@@ -97,14 +97,16 @@ def test_slip_that_only_passes_through_zero_is_no_sticking():
     assert [phase.kind for phase in detected_phases(CONTACT, steps)] == ["slip"]
 
 
-def test_stick_starts_at_extrapolated_zero_slip_and_ends_at_the_kink():
+@pytest.mark.parametrize(("damping", "reached"), [(0.0, 1.0), (0.25 * PIN.friction_force / EPSILON, 0.8)])
+def test_stick_starts_at_extrapolated_zero_slip_and_ends_at_the_limit_of_friction(damping, reached):
+    contact = RegularisedContact(replace(PIN, damping=damping), EPSILON)
     steps = motion_of_slip([10.0, 2.0, 0.5, 0.5, 1.5, 10.0], [8e-3, 1e-3, 1.0, 1.0, 1.0])
     steps.accelerations[1, 0] = -2.0 * EPSILON / 4e-4  # zero 4e-4 s later
-    found = detected_phases(CONTACT, steps)
+    found = detected_phases(contact, steps)
     assert [phase.kind for phase in found] == ["slip", "stick", "slip"]
     assert found[1].start == pytest.approx(8.4e-3, rel=1e-12)
-    # The load is creep/ε, plus an inertia share of at most m·a/μN = 1e-4.
-    assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + 0.5, abs=1e-4)
+    # The load is creep/ε and the damper's share, plus an inertia share of at most m·a/μN = 1e-4.
+    assert found[1].end == pytest.approx(8e-3 + 1e-3 + 1.0 + reached - 0.5, abs=1e-4)
 
 
 NEAR_ITS_LIMIT = PinOnDisc(

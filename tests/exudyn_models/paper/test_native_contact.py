@@ -113,22 +113,23 @@ def test_a_disc_comes_to_rest_and_is_let_go_with_errors_of_first_order_but_for_t
 
 
 @pytest.mark.parametrize(
-    ("system", "span", "distance"),
+    ("system", "offset", "span", "distance"),
     [
-        # All start on a table at rest from the middle towards an edge of the triangle with 1 m/s: a pin without
-        # spring after v·t − ½(μN/m)t², a pin on a spring just before it reverses, and a disc without spin.
-        (replace(FIG5, stiffness=0.0), 10.0, 10.0 - 0.5 * 0.01 * 10.0**2),
-        (FIG5, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
-        (replace(DISC, stiffness=0.0, contact_radius=0.5), 1.0, 1.0 - 0.5 * 0.01),
+        # All start on a table at rest from the offset towards an edge of the triangle with 1 m/s: a pin without
+        # spring after v·t − ½(μN/m)t², two pins on springs just before they reverse, and a disc without spin.
+        (replace(FIG5, stiffness=0.0), 0.0, 10.0, 10.0 - 0.5 * 0.01 * 10.0**2),
+        (FIG5, 0.0, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
+        (FIG5, -1.0, 1.5, math.sin(1.5) - 0.01 * (1.0 - math.cos(1.5))),
+        (replace(DISC, stiffness=0.0, contact_radius=0.5), 0.0, 1.0, 1.0 - 0.5 * 0.01),
     ],
 )
-def test_the_contact_persists_at_any_distance(system, span, distance):
-    system = replace(system, friction_force=0.01, damping=0.0, disc_speed=0.0, offset=0.0)
-    start = [0.0, 0.0, -1.0, 0.0]
+def test_the_contact_persists_at_any_distance(system, offset, span, distance):
+    system = replace(system, friction_force=0.01, damping=0.0, disc_speed=0.0, offset=offset)
+    start = [offset, 0.0, -1.0, 0.0]
     if isinstance(system, DiscOnDisc):
         system, start = replace(system, shaft_damping=0.0), [0.0, 0.0, 0.0, -1.0, 0.0, 0.0]
     found = simulate_with_native_contact(system, start, [0.0, span])
-    assert found.at_end[:2] == pytest.approx([-distance, 0.0], abs=1e-9)
+    assert found.at_end[:2] == pytest.approx([offset - distance, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize(

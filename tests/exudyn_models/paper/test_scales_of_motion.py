@@ -13,6 +13,7 @@ from compare.studies.engines.clutch_scale import Scale
 from exudyn_models import simulate, simulate_with_native_contact
 from exudyn_models.paper.model import build_model
 from exudyn_models.paper.recording import Axes, Recording
+from exudyn_models.paper.scales import Units
 from exudyn_models.solver.solver_run import solve
 from reference_model import SimulationError
 
@@ -70,6 +71,11 @@ def test_the_regularisation_is_reported_in_metres_per_second():
     assert other.solution.regularisation == pytest.approx(1e-7 * speed * scale.length / scale.time)
 
 
+def test_dampers_set_the_unit_of_time_without_springs_and_rotation():
+    disc = replace(FIG11, stiffness=0.0, disc_speed=0.0, damping=1.0, polar_inertia=0.01, shaft_damping=0.2)
+    assert Units.of(disc, np.zeros(6)).time == 0.05
+
+
 def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
     omega, stiff = 300.0, 1.7e5  # the natural frequency exceeds ω and does not matter either
     pin = reference_model.PinOnDisc(
@@ -80,6 +86,11 @@ def test_a_pin_that_sticks_at_300_rad_per_second_takes_few_steps():
     assert found.solution.steps <= 500
     turned = 1e-4 * np.exp(1j * omega * found.times)
     np.testing.assert_allclose(found.states[:, 0] + 1j * found.states[:, 1], turned, rtol=0.0, atol=1e-9)
+
+
+def test_steps_for_a_hardening_spring_are_as_short_as_its_largest_stiffness_requires():
+    pin = replace(FIG5, hardening=1e3)
+    assert simulate(pin, [1.0, 0.0, 0.0, -1.0], [0.0, 1.0]).solution.steps < 1100  # 1838 for the smallest one
 
 
 @pytest.mark.parametrize(

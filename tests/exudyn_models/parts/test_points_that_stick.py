@@ -84,6 +84,13 @@ def test_sensors_of_sliding_points_show_the_sums_and_follow_a_changed_load(spin)
     np.testing.assert_allclose(*shown, rtol=1e-9, atol=1e-12)
 
 
+def test_points_without_load_use_no_share_of_their_capacity():
+    mbs, _, contact = body_on_feet(normal_load=0.0)
+    share = contact.add_sensor("capacity_share")
+    run(mbs, 1e-6, 1)
+    assert mbs.GetSensorValues(share) == 0.0
+
+
 def test_sensors_show_modes_and_heat_of_a_body_that_slides_pivots_and_rests():
     motion = [0.2, 0.3, -4.0]
     mbs, _, contact = body_on_feet(motion)

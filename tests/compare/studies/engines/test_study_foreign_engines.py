@@ -186,6 +186,12 @@ def test_the_claims_about_another_law_differ_if_errors_fall(monkeypatch):
     assert found["axes-stay-off"] is found["disc-stays-off"] is Verdict.DIFFERS
 
 
+def test_errors_due_to_another_law_are_extrapolated_to_a_step_of_zero():
+    """Three halves of the last recorded digit remain; the smallest step alone would add 6e-5 m."""
+    found = foreign_engines._as_far_off_as(theory.pyramid, "whirl", theory.PYRAMIDS)
+    assert np.abs(found.value - found.predicted).max() < 1.5e-5
+
+
 def test_the_claim_about_creep_differs_if_its_error_is_one_per_cent_off(monkeypatch):
     monkeypatch.setattr(theory, "recorded", lambda: spoilt(lambda error: 1.01 * error))
     assert verdicts(STUDY.measure_theory(only=("creeps",)).claims) == {"creeps": Verdict.DIFFERS}
