@@ -68,7 +68,7 @@ class Engine:
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
     - ``contact_only``: True if it shares all but the contact with its kin. Unless requested by name, it is then
       measured only in studies of the contact, see ``Study.contact``.
-    - ``about``: one or two sentences for readers of the report.
+    - ``about``: sentences for readers of the report.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
     Raises ``ValueError`` if an argument is unknown, out of range or of another type.

@@ -11,7 +11,7 @@ for 1/2 < c < 2, is attracting, and ln W, time and distance are integrals over u
 Near δ*, δ counts as constant. Then N = ε*·U + c·W decreases at the rate g·P(ε*, 1), so the remaining time is N/(g·P).
 Its error is of second order because F and G are derivatives of one function.
 
-Units are m and s, and g is 1 m/s².
+Units are m and s; g = 1.
 """
 
 import itertools
