@@ -62,9 +62,8 @@ def matrix(
 
     The command first prints the motions of a sliding and a resting block next to the exact numbers, which exposes a
     broken adapter. Short motions then identify the law: blocks and discs that slide at many masses, loads and speeds,
-    and blocks that are pulled from rest. The motions of the recorded engines follow. The command prints findings and
-    a verdict for each engine, and a table. It writes matrix.json after each row. At the end it draws matrix.png
-    and, if a law is wrong, friction.png with the measured forces.
+    and blocks that are pulled from rest. The motions of the recorded engines follow. The command writes matrix.json
+    after each row. At the end it draws matrix.png and, if a law is wrong, friction.png with the measured forces.
 
     The exit status is 0 if an engine is right, even if only with smaller steps, and 1 if it is wrong. It is 2 for bad
     input, 3 if the verdict is open or a part was not finished in time, 4 if an engine simulates none of these
@@ -72,7 +71,6 @@ def matrix(
 
     \b
     Examples:
-      friction-discs matrix --engine reference
       friction-discs matrix --engine reference --engine exudyn --recorded
     """
     from compare.diagnosis.row import Row, write_pictures, write_rows
