@@ -116,7 +116,7 @@ NAMED = {
     engine("spring pushes", spring=-1.0): f"{MOTION}the spring force is -1 times the right one.",
     engine("no spring", spring=0.0): f"{MOTION}the spring force is missing.",
     mistaken("drag", lambda system: {"damping": system.damping + 0.05 * system.mass}): (
-        "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second."
+        "Hidden damping: every body loses 4.9 to 5.0 % of its speed per second. Examined, "
     ),
     made("lever", moment=0.99): f"{MOTION}the friction moment on a disc is 1.0 % too small.",
     replace(mistaken("mass", lambda system: {"mass": (1.0 + 1e-5) * system.mass}), kinds=("pin",)): (
