@@ -55,7 +55,7 @@ class Verdict(Enum):
 
 
 class Grade(Enum):
-    """See ``Claim.grade``."""
+    """Precision of a claim, see ``Claim.grade``."""
 
     EXACT = "exact"
     FINE = "fine"

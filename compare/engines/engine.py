@@ -68,7 +68,7 @@ class Engine:
     - ``kin``: name of the engine whose code it shares; neither is independent evidence for the other.
     - ``contact_only``: True if it shares all but the contact with its kin. Unless requested by name, it is then
       measured only in studies of the contact, see ``Study.contact``.
-    - ``about``: sentences for readers of the report.
+    - ``about``: one or two sentences for readers of the report.
     - ``seed``: seed of the units that ``function`` receives, see ``compare.engines.units``. None for SI units.
 
     Raises ``ValueError`` if an argument is unknown, out of range or of another type.
@@ -155,8 +155,7 @@ class Engine:
 
     @property
     def _asked(self) -> Callable[..., Any]:
-        function = getattr(self.function, "imported", self.function)
-        return function if self.seed is None else InOtherUnits(function, self.seed)
+        return self.function if self.seed is None else InOtherUnits(self.function, self.seed)
 
     def _refuse(self, system: System, initial_state: ArrayLike, times: ArrayLike) -> None:
         if not self.simulates(system):

@@ -110,10 +110,11 @@ def _counted(matrix: Matrix, engine: str) -> list[str]:
     agreeing, total = independent[State.AGREES], sum(independent.values())
     share = f"all {total}" if 1 < agreeing == total else f"{agreeing} of {total}"
     sentences = [f"{share} checks against independent evidence agree"] if total else []
-    gaps = [(counts[state], verbs[counts[state] > 1]) for state, verbs in GAPS.items() if counts[state]]
-    nouns = (f" check{'s' * (count > 1)}" * (i == 0) for i, (count, _) in enumerate(gaps))
-    listed = [f"{count}{noun} {verb}" for (count, verb), noun in zip(gaps, nouns, strict=True)]
-    return sentences + ([_listed(listed)] if listed else [])
+    gaps = [f"{counts[state]} {verbs[counts[state] > 1]}" for state, verbs in GAPS.items() if counts[state]]
+    if gaps:
+        count, rest = _listed(gaps).split(" ", 1)
+        sentences.append(f"{count} {'check' if count == '1' else 'checks'} {rest}")
+    return sentences
 
 
 GAPS = {

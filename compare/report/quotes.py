@@ -1,4 +1,4 @@
-"""Numbers that texts quote from claims.
+"""Numbers that texts quote from claims, so every number in a text was measured.
 
 A quote in a study's text is a name in braces, as in "a pair grows at {rate of growth, 3 digits} 1/s". A claim of the
 study gives this name to one or all of its elements (``Claim.named``). Options follow after commas:

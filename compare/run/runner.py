@@ -29,6 +29,7 @@ class Run:
     - ``outcomes``, ``seconds``: findings or failure, and duration in s, for each (study, engine or "theory").
     - ``drawings``, ``evidence``: drawing or failure for each study; evidence or failure for ``errata`` by index.
     - ``seed``: seed of the units of the motions, see ``Engine.seed``.
+    - ``interrupted``: True if Ctrl-C ended the run early.
     """
 
     studies: tuple[Study, ...]
@@ -94,7 +95,7 @@ def run(
 
     Drawings of equal data are reused. Work that takes longer than ``limit`` (s) fails. If ``quick``, claims that
     would take a foreign engine too long are not attempted. ``resume`` reuses findings of the same code and libraries.
-    ``expected`` are the durations of an earlier run.
+    ``expected`` are the durations of an earlier run. After Ctrl-C the results are incomplete.
     """
     result = Run(
         studies,

@@ -119,7 +119,7 @@ class Drawing:
 def drawn(study: Study, data: Mapping[str, Data], partial: Sequence[str] = ()) -> Drawing:
     """Return the figures and animations of a study as bytes.
 
-    They omit ``partial`` engines, which lack claims, if they need the data of these claims.
+    The engines in ``partial`` lack claims. One is left out if a figure needs the data of these claims.
     """
     shown = {name: arrays for name, arrays in data.items() if name not in partial}
     found = _drawn(study, shown)

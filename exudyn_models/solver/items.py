@@ -21,6 +21,7 @@ _models: Any = exu.MainSystem
 _assemble = _models.Assemble
 
 
+# Exudyn has no hook for assembly, so its method is wrapped.
 @wraps(_assemble)
 def _call_and_assemble(mbs: Any) -> None:
     for function in mbs.sys.get(_AT_ASSEMBLY, ()):

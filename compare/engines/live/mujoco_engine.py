@@ -14,6 +14,9 @@ The plate is a cylinder on a hinge, too heavy to be slowed.
 As shipped, the contact has all of MuJoCo's defaults. The feet weigh 9.81 m/s² times half the mass. A plate at rest is
 fixed. A turning plate is only a hundred times heavier than the body, for the solver's tolerance, and its speed is set
 before each step.
+
+A pyramid's friction acts along the nearest world axis. A sticking pin creeps in proportion to the step with the
+pyramid or Runge–Kutta steps, and to its square with the ellipse.
 """
 
 from __future__ import annotations

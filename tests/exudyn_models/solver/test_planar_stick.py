@@ -238,7 +238,7 @@ def spatial_body(kind):
 
 
 def free_pair(body, step):
-    """Return the time when two free bodies stick, of which one slides and spins on the other."""
+    """Return the time when a body that slides and spins on another stops there; both are free."""
     mbs = new_model()
     first = body(mbs, 3.0, 0.05, [0.0, 0.0, 0.0], [0.1, 0.2, 3.0])
     second = body(mbs, 1.0, 0.01, [0.02, 0.0, 0.0], [1.0, 0.5, 20.0])
